@@ -1,0 +1,165 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file Last line of Fig. 4: the shortest edges are collapsed until only curves are left.
+
+#ifndef VCG_MCF_COLLAPSE_TO_CURVE_H
+#define VCG_MCF_COLLAPSE_TO_CURVE_H
+
+#include "curve_skeleton.h"
+#include "glued_complex.h"
+#include "progress.h"
+#include "stage.h"
+
+#include <functional>
+#include <queue>
+#include <tuple>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+namespace detail {
+
+/**
+ * Contracts edges that have faces, shortest first, until no face is left.
+ *
+ * An edge that a cycle of the shape blocks waits until nothing else can be contracted; then the
+ * longest other edge of the blocking triangle gets a node in its middle, which makes the cycle four
+ * edges long and the contraction possible.
+ */
+inline void contractAllFaces(GluedComplex& complex, const Progress& progress)
+{
+	using Entry = std::tuple<double, int, int>; // squared length, nodes
+	std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> shortest;
+	const auto push = [&](int A, int B) {
+		shortest.emplace(complex.squaredLength(A, B), std::min(A, B), std::max(A, B));
+	};
+	for (const auto& [A, B] : complex.surfaceEdges())
+		push(A, B);
+	const double total = double(shortest.size());
+	std::vector<Entry> blocked;
+	size_t count = 0;
+	while (complex.hasFaces()) {
+		bool contracted = false;
+		while (!shortest.empty()) {
+			if (++count % 4096 == 0)
+				progress.report(1 - double(shortest.size()) / (total + double(shortest.size())),
+					"Collapsing to curves");
+			const auto [length, A, B] = shortest.top();
+			shortest.pop();
+			if (complex.find(A) != A || complex.find(B) != B || complex.squaredLength(A, B) != length)
+				continue;
+			switch (complex.contract(A, B)) {
+			case GluedComplex::Outcome::NoFaces: break;
+			case GluedComplex::Outcome::Blocked: blocked.emplace_back(length, A, B); break;
+			case GluedComplex::Outcome::Contracted:
+				contracted = true;
+				for (int C : complex.surfaceNeighbours(B))
+					push(B, C);
+			}
+		}
+		if (contracted) {
+			for (const Entry& entry : blocked)
+				shortest.push(entry);
+			blocked.clear();
+			continue;
+		}
+		// Only blocked edges are left; the first is the shortest.
+		const auto [length, A, B] = blocked.front();
+		for (int C : complex.blockingNodes(A, B)) {
+			const bool fromA = complex.squaredLength(A, C) > complex.squaredLength(B, C);
+			const int M = complex.split(fromA ? A : B, C);
+			for (int X : complex.surfaceNeighbours(M))
+				push(M, X);
+		}
+		for (const Entry& entry : blocked)
+			shortest.push(entry);
+		blocked.clear();
+	}
+}
+
+/// Merges nodes that are closer than makes sense; each component keeps an edge.
+inline void contractShortCurveEdges(GluedComplex& complex, const Stage& stage, double shortestEdge)
+{
+	const auto contractOneAt = [&](int A, double limit) {
+		for (int B : complex.curveNeighbours(A)) {
+			const bool lastEdge =
+				complex.curveNeighbours(A).size() == 1 && complex.curveNeighbours(B).size() == 1;
+			if (!lastEdge && complex.squaredLength(A, B) < limit * limit && complex.contractCurveEdge(B, A))
+				return true;
+		}
+		return false;
+	};
+	for (int A = 0; A < stage.mesh.vertexSlots(); ++A) {
+		const double limit = shortestEdge * stage.diagonal[stage.component[A]];
+		while (complex.find(A) == A && contractOneAt(A, limit)) {
+		}
+	}
+}
+
+} // namespace detail
+
+/**
+ * Turns a stage into its curve skeleton: repeatedly collapses the shortest edge that has faces.
+ *
+ * The stage need not have converged; its sheets and volumes become curves too. The result has a
+ * component for each component of the stage and as many cycles as its genus (see GluedComplex), no
+ * double edge and no edge of zero length but for a body that is a point in floating point.
+ *
+ * @param shortestEdge edges shorter than this fraction of the component's diagonal are contracted
+ *        at the end, where no cycle vanishes by it.
+ * @throws Cancelled. Complexity: O(V log V).
+ */
+inline CurveSkeleton collapseToCurve(
+	const Stage& stage, double shortestEdge = 1e-4, const Progress& progress = Progress())
+{
+	GluedComplex complex(stage.mesh);
+	detail::contractAllFaces(complex, progress.part(0, 0.9));
+
+	detail::contractShortCurveEdges(complex, stage, shortestEdge);
+
+	CurveSkeleton skeleton;
+	std::vector<int> number(complex.nodeSlots(), -1);
+	for (int A = 0; A < complex.nodeSlots(); ++A)
+		if (complex.find(A) == A) {
+			number[A] = int(skeleton.position.size());
+			skeleton.position.push_back(complex.position(A));
+		}
+	for (int A = 0; A < complex.nodeSlots(); ++A)
+		if (number[A] >= 0)
+			for (int B : complex.curveNeighbours(A))
+				if (A < B)
+					skeleton.edges.push_back({number[A], number[B]});
+	skeleton.node.resize(stage.node.size());
+	for (size_t s = 0; s < stage.node.size(); ++s)
+		skeleton.node[s] = number[complex.find(stage.node[s])];
+
+	// A node made by a split has no surface vertex: it takes the mean of its neighbours' radii.
+	skeleton.radius = meanSurfaceDistance(skeleton.position, *stage.surface, skeleton.node);
+	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
+	for (bool changed = true; changed;) {
+		changed = false;
+		const std::vector<double> before = skeleton.radius;
+		for (size_t v = 0; v < before.size(); ++v) {
+			if (before[v] >= 0)
+				continue;
+			double sum = 0;
+			int count = 0;
+			for (int w : neighbours[v])
+				if (before[w] >= 0) {
+					sum += before[w];
+					++count;
+				}
+			if (count) {
+				skeleton.radius[v] = sum / count;
+				changed = true;
+			}
+		}
+	}
+	progress.report(1, "Collapsing to curves");
+	return skeleton;
+}
+
+} // namespace vcg::tri::mcf
+
+#endif

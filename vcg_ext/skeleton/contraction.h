@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file One implicit step of the constrained mean curvature flow (Sec. 4.2, 4.4, 4.5; Eq. 6).
+
+#ifndef VCG_MCF_CONTRACTION_H
+#define VCG_MCF_CONTRACTION_H
+
+#include "biharmonic_solver.h"
+#include "cotangent_laplacian.h"
+#include "parameters.h"
+#include "progress.h"
+#include "stage.h"
+
+#include <cmath>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/**
+ * The paper's weights belong to another normalisation of L than the dimensionless cotangents used
+ * here: its (w_L, w_H, w_M) = (1, 20, 40) is (1, 0.1, 0.2) for them.
+ */
+constexpr double publishedWeightUnit = 1.0 / 200;
+
+/**
+ * Moves the free vertices of a stage to the minimum of
+ *
+ *   |w_L L v|^2 + w_H^2 sum_i |v_i - v_i^t|^2 + w_M^2 sum_i |v_i - mu(v_i)|^2      (Eq. 6)
+ *
+ * Fixed vertices are known values, not unknowns with a large weight; the Laplacian rows are those
+ * of the free vertices. The medial term is left out for a vertex without a pole and where the pole
+ * lies outwards, (mu(v) - v) . n > 0: there the flow has passed the medial axis, and the term would
+ * blow the surface up again.
+ *
+ * Weights are squared (Eq. 5 does, Eq. 6 does not; the published values belong to the square).
+ * @pre stage.mesh is compact.
+ * @throws SolverError if the system breaks down or a position stops being finite; Cancelled.
+ * Complexity: that of one sparse factorisation, about O(V log V) on a surface mesh.
+ */
+inline void contract(Stage& stage, const Parameters& parameters, const Progress& progress = Progress())
+{
+	SurfaceMesh& mesh = stage.mesh;
+	const double wL = parameters.wL;
+	const double wH2 = std::pow(parameters.wH * publishedWeightUnit, 2);
+	const double wM2 = std::pow(parameters.wM * publishedWeightUnit, 2);
+
+	std::vector<int> unknown(mesh.vertexSlots(), -1), vertexOfUnknown;
+	for (int v = 0; v < mesh.vertexSlots(); ++v)
+		if (!stage.fixed[v]) {
+			unknown[v] = int(vertexOfUnknown.size());
+			vertexOfUnknown.push_back(v);
+		}
+	const int n = int(vertexOfUnknown.size());
+	progress.report(0, "Contracting");
+	const std::vector<double> weight = cotangentWeights(mesh);
+	const std::vector<Point3d> normal = mesh.vertexNormals();
+
+	// w_L L restricted to the unknowns is M; what the fixed neighbours add is the known part g.
+	// Positions are taken relative to the middle: far from the origin, no digits are lost.
+	const Point3d middle = mesh.bounds().Center();
+	SymmetricRows M;
+	M.diagonal.resize(n);
+	M.start.reserve(n + 1);
+	M.start.push_back(0);
+	M.column.reserve(6 * size_t(n));
+	M.value.reserve(6 * size_t(n));
+	std::vector<double> D(n);
+	std::vector<Point3d> known(n), x(n), b(n);
+	for (int i = 0; i < n; ++i) {
+		const int v = vertexOfUnknown[i];
+		double sum = 0;
+		known[i] = Point3d(0, 0, 0);
+		mesh.forEachOutgoing(v, [&](int h) {
+			const double w = wL * weight[h];
+			const int j = mesh.target(h);
+			sum += w;
+			if (unknown[j] >= 0) {
+				M.column.push_back(unknown[j]);
+				M.value.push_back(-w);
+			}
+			else
+				known[i] -= (mesh.position[j] - middle) * w;
+		});
+		M.diagonal[i] = sum;
+		M.start.push_back(int(M.column.size()));
+		const Point3d& p = mesh.position[v];
+		x[i] = p - middle;
+		D[i] = wH2;
+		b[i] = x[i] * wH2;
+		if (stage.poleRadius[v] >= 0 && (stage.pole[v] - p) * normal[v] <= 0) {
+			D[i] += wM2;
+			b[i] += (stage.pole[v] - middle) * wM2;
+		}
+	}
+	// (M^2 + D) x = w_H^2 v + w_M^2 mu - M g
+	std::vector<Point3d> Mg(n);
+	M.multiply(known, Mg);
+	for (int i = 0; i < n; ++i)
+		b[i] -= Mg[i];
+	constexpr double tolerance = 1e-2;
+	solveBiharmonic(M, D, b, x, tolerance, progress);
+	for (int i = 0; i < n; ++i) {
+		const Point3d p = x[i] + middle;
+		if (!(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])))
+			throw SolverError("The contraction left the range of numbers: the mesh has degenerate "
+							  "triangles. Resample it first.");
+		mesh.position[vertexOfUnknown[i]] = p;
+	}
+	progress.report(1, "Contracting");
+}
+
+} // namespace vcg::tri::mcf
+
+#endif

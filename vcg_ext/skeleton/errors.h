@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file The exceptions that the skeleton pipeline throws. Nothing else leaves it but std::bad_alloc.
+
+#ifndef VCG_MCF_ERRORS_H
+#define VCG_MCF_ERRORS_H
+
+#include <stdexcept>
+#include <string>
+
+namespace vcg::tri::mcf {
+
+/// Base of every error of the pipeline.
+class Error : public std::runtime_error
+{
+public:
+	using std::runtime_error::runtime_error;
+};
+
+/// The mesh cannot be skeletonized; the text says what is wrong, how many, where, and what cures it.
+class InvalidInput : public Error
+{
+public:
+	using Error::Error;
+};
+
+/// A parameter is out of its range; the text names it and the range.
+class InvalidParameter : public Error
+{
+public:
+	using Error::Error;
+};
+
+/// A linear system could not be solved, or a position stopped being finite.
+class SolverError : public Error
+{
+public:
+	using Error::Error;
+};
+
+/// The progress callback asked to stop.
+class Cancelled : public Error
+{
+public:
+	Cancelled() : Error("Cancelled.") {}
+};
+
+} // namespace vcg::tri::mcf
+
+#endif

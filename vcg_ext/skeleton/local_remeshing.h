@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file Local dynamic remeshing (Sec. 4.3): short edges are collapsed, wide angles split.
+
+#ifndef VCG_MCF_LOCAL_REMESHING_H
+#define VCG_MCF_LOCAL_REMESHING_H
+
+#include "merge_forest.h"
+#include "parameters.h"
+#include "progress.h"
+#include "stage.h"
+
+#include <cmath>
+#include <queue>
+#include <utility>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+namespace detail {
+
+/// Merges what two vertices know; the survivor is already where it will stay.
+inline void mergeVertexState(Stage& stage, int removed, int survivor)
+{
+	// Of the two poles the one closest to the resulting vertex stays (Sec. 4.5).
+	const Point3d& p = stage.mesh.position[survivor];
+	const bool removedHas = stage.poleRadius[removed] >= 0, survivorHas = stage.poleRadius[survivor] >= 0;
+	if (removedHas
+		&& (!survivorHas
+			|| SquaredDistance(p, stage.pole[removed]) < SquaredDistance(p, stage.pole[survivor]))) {
+		stage.pole[survivor] = stage.pole[removed];
+		stage.poleRadius[survivor] = stage.poleRadius[removed];
+	}
+	stage.fixed[survivor] |= stage.fixed[removed];
+}
+
+} // namespace detail
+
+/**
+ * Collapses edges shorter than epsilon, shortest first, wherever the link condition allows, until
+ * none is left. The merged vertex goes to the middle, or to the fixed end if one end is fixed; an
+ * edge between two fixed vertices stays.
+ *
+ * @param forest gets every merge.
+ * @return the vertices that have a short edge which cannot be collapsed: candidates for
+ *         fixDegenerateVertices(), ordered by id.
+ * @throws Cancelled. Complexity: O(V + c log c) for c short edges.
+ */
+inline std::vector<int> collapseShortEdges(
+	Stage& stage, double epsilon, MergeForest& forest, const Progress& progress = Progress())
+{
+	SurfaceMesh& mesh = stage.mesh;
+	using Entry = std::pair<double, int>; // squared length, half-edge
+	std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> shortest;
+	const auto isShort = [&](int h, double squaredLength) {
+		const double limit = epsilon * stage.diagonal[stage.component[mesh.origin(h)]];
+		return squaredLength < limit * limit;
+	};
+	const auto push = [&](int h) {
+		const double squaredLength = mesh.squaredLength(h);
+		if (isShort(h, squaredLength))
+			shortest.emplace(squaredLength, std::min(h, mesh.twin(h)));
+	};
+	std::vector<int> blocked;
+	const auto collapseQueued = [&] {
+		bool any = false;
+		size_t count = 0;
+		while (!shortest.empty()) {
+			if (++count % 65536 == 0)
+				progress.report(0, "Collapsing short edges");
+			const auto [squaredLength, h] = shortest.top();
+			shortest.pop();
+			if (!mesh.isHalfEdge(h) || mesh.squaredLength(h) != squaredLength)
+				continue; // it has changed since, and was queued again if it still is short
+			const int a = mesh.origin(h), b = mesh.target(h);
+			if (stage.fixed[a] && stage.fixed[b])
+				continue;
+			if (!mesh.isCollapsible(h)) {
+				blocked.push_back(h);
+				continue;
+			}
+			any = true;
+			const Point3d merged = stage.fixed[a] ? mesh.position[a]
+				: stage.fixed[b]				  ? mesh.position[b]
+												  : Point3d((mesh.position[a] + mesh.position[b]) / 2.0);
+			mesh.collapse(h);
+			mesh.position[b] = merged;
+			forest.merge(a, b);
+			detail::mergeVertexState(stage, a, b);
+			mesh.forEachOutgoing(b, push);
+		}
+		return any;
+	};
+	for (int h = 0; h < mesh.halfEdgeSlots(); ++h)
+		if (mesh.isEdge(h))
+			push(h);
+	// A collapse elsewhere may have freed a blocked edge.
+	std::vector<int> retry;
+	while (collapseQueued()) {
+		retry.swap(blocked);
+		blocked.clear();
+		for (int h : retry)
+			if (mesh.isHalfEdge(h))
+				push(h);
+		if (shortest.empty())
+			break;
+	}
+	std::vector<char> isCandidate(mesh.vertexSlots(), 0);
+	for (int h : blocked)
+		if (mesh.isHalfEdge(h))
+			isCandidate[mesh.origin(h)] = isCandidate[mesh.target(h)] = 1;
+	std::vector<int> candidates;
+	for (int v = 0; v < mesh.vertexSlots(); ++v)
+		if (isCandidate[v] && mesh.isVertex(v))
+			candidates.push_back(v);
+	return candidates;
+}
+
+/**
+ * Splits edges whose two opposite angles are both wider than `splitAngle`, until none is left. The
+ * new vertex is the projection of the apex with the wider angle onto the edge; it has no pole.
+ *
+ * The paper splits on one wide angle; taken literally this never ends, since the new edge may have
+ * a wide angle opposite in turn. With both angles wide, alpha + beta > 180 degrees, the edge is the
+ * one that a Delaunay triangulation would not have, and the process ends.
+ * @throws Cancelled. Complexity: O(V + s) for s splits.
+ */
+inline void splitWideAngles(Stage& stage, const Parameters& parameters, MergeForest& forest,
+	const Progress& progress = Progress())
+{
+	SurfaceMesh& mesh = stage.mesh;
+	const double widest = std::cos(parameters.splitAngle * M_PI / 180);
+	// Cosine of the angle at the apex of h; 2 where the triangle has no extent there.
+	const auto apexCosine = [&](int h) {
+		const Point3d& c = mesh.position[mesh.apex(h)];
+		const Point3d u = mesh.position[mesh.origin(h)] - c, v = mesh.position[mesh.target(h)] - c;
+		const double lengths = std::sqrt(u.SquaredNorm() * v.SquaredNorm());
+		return lengths > 0 ? (u * v) / lengths : 2.0;
+	};
+	std::queue<int> queue;
+	for (int h = 0; h < mesh.halfEdgeSlots(); ++h)
+		if (mesh.isEdge(h))
+			queue.push(h);
+	size_t count = 0;
+	// Each split shortens the longest edge of its triangles; the cap only guards against the worst.
+	const size_t mostVertices = 4 * size_t(mesh.vertexCount()) + 1000;
+	while (!queue.empty() && size_t(mesh.vertexCount()) < mostVertices) {
+		if (++count % 65536 == 0)
+			progress.report(0, "Splitting wide angles");
+		const int h = queue.front();
+		queue.pop();
+		const double cosine = apexCosine(h), twinCosine = apexCosine(mesh.twin(h));
+		if (!(cosine < widest && twinCosine < widest))
+			continue;
+		const int a = mesh.origin(h), b = mesh.target(h);
+		const double limit = parameters.epsilon * stage.diagonal[stage.component[a]];
+		const Point3d along = mesh.position[b] - mesh.position[a];
+		const double squaredLength = along.SquaredNorm();
+		if (squaredLength < limit * limit)
+			continue;
+		const int apex = cosine < twinCosine ? mesh.apex(h) : mesh.apex(mesh.twin(h));
+		const double t = ((mesh.position[apex] - mesh.position[a]) * along) / squaredLength;
+		const int m = mesh.split(h, mesh.position[a] + along * t);
+		forest.add();
+		stage.pole.push_back(mesh.position[m]);
+		stage.poleRadius.push_back(-1);
+		stage.fixed.push_back(0);
+		stage.component.push_back(stage.component[a]);
+		mesh.forEachOutgoing(m, [&](int e) {
+			queue.push(e);
+			queue.push(SurfaceMesh::next(e));
+		});
+	}
+}
+
+} // namespace vcg::tri::mcf
+
+#endif

@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file Fig. 4 of the paper as code: one step of the contraction, and the run to the end.
+
+#ifndef VCG_MCF_SKELETONIZE_H
+#define VCG_MCF_SKELETONIZE_H
+
+#include "contraction.h"
+#include "degeneracy.h"
+#include "local_remeshing.h"
+#include "parameters.h"
+#include "progress.h"
+#include "stage.h"
+
+#include <cmath>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/**
+ * One iteration of the loop of Fig. 4: weights and contraction, then connectivity, then degeneracy.
+ *
+ * Convergence: in every component the area changed by less than 1e-4 of the surface's area; the
+ * volume is then below 1e-4 of the surface's. A converged stage stays as it is.
+ * @return the next stage; the given one is not changed.
+ * @throws SolverError, InvalidParameter, Cancelled.
+ */
+inline Stage step(Stage stage, const Parameters& parameters, const Progress& progress = Progress())
+{
+	parameters.check();
+	if (stage.converged)
+		return stage;
+	SurfaceMesh& mesh = stage.mesh;
+	contract(stage, parameters, progress.part(0, 0.8));
+	MergeForest forest(mesh.vertexSlots());
+	const std::vector<int> candidates =
+		collapseShortEdges(stage, parameters.epsilon, forest, progress.part(0.8, 0.9));
+	splitWideAngles(stage, parameters, forest, progress.part(0.9, 1));
+	fixDegenerateVertices(stage, candidates, parameters.epsilon);
+
+	std::vector<int> survivor(stage.node.size());
+	for (size_t s = 0; s < stage.node.size(); ++s)
+		survivor[s] = forest.find(stage.node[s]);
+	const std::vector<int> renumbered = mesh.compact();
+	for (size_t s = 0; s < stage.node.size(); ++s)
+		stage.node[s] = renumbered[survivor[s]];
+	for (size_t v = 0; v < renumbered.size(); ++v) {
+		const int to = renumbered[v];
+		if (to < 0)
+			continue;
+		stage.pole[to] = stage.pole[v];
+		stage.poleRadius[to] = stage.poleRadius[v];
+		stage.fixed[to] = stage.fixed[v];
+		stage.component[to] = stage.component[v];
+	}
+	const size_t left = size_t(mesh.vertexSlots());
+	stage.pole.resize(left);
+	stage.poleRadius.resize(left);
+	stage.fixed.resize(left);
+	stage.component.resize(left);
+
+	const std::vector<double> area =
+		componentAreas(mesh, stage.component, stage.initialArea.size());
+	constexpr double settled = 1e-4;
+	stage.converged = true;
+	for (size_t c = 0; c < area.size(); ++c)
+		stage.converged &= std::abs(area[c] - stage.area[c]) < settled * stage.initialArea[c];
+	stage.area = area;
+	stage.volume = mesh.volume();
+	++stage.iteration;
+	return stage;
+}
+
+/**
+ * Repeats step() until the flow has converged or parameters.maxIterations are made.
+ * @param onStage called with each new stage, e.g. to keep it; may be empty.
+ * @throws as step().
+ */
+inline Stage contractToSkeleton(Stage stage, const Parameters& parameters,
+	const Progress& progress = Progress(),
+	const std::function<void(const Stage&)>& onStage = nullptr)
+{
+	double done = 0;
+	while (!stage.converged && stage.iteration < parameters.maxIterations) {
+		// The area falls by a like factor each iteration: its logarithm tells how far it is.
+		const double next = done + 0.1 * (1 - done);
+		stage = step(std::move(stage), parameters, progress.part(done, next));
+		done = next;
+		if (onStage)
+			onStage(stage);
+	}
+	return stage;
+}
+
+} // namespace vcg::tri::mcf
+
+#endif

@@ -1,0 +1,176 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file The state of the flow between two iterations: a meso-skeleton and all that it knows.
+
+#ifndef VCG_MCF_STAGE_H
+#define VCG_MCF_STAGE_H
+
+#include "check_input.h"
+#include "pole_set.h"
+#include "surface_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/**
+ * A stage of the contraction. Stage 0 is the surface itself; each step() makes the next.
+ *
+ * It holds everything that the flow needs to carry on: N single steps are the full run, bit for
+ * bit. The mesh is compact between steps.
+ */
+struct Stage
+{
+	/// The contracted mesh, mesh units.
+	SurfaceMesh mesh;
+	/// Medial pole of each vertex, and its distance from the surface; -1: none (made by a split).
+	std::vector<Point3d> pole;
+	std::vector<double> poleRadius;
+	/// 1 where the vertex's neighbourhood has collapsed and it no longer moves (Sec. 4.4).
+	std::vector<char> fixed;
+	/// Connected component of each vertex.
+	std::vector<int> component;
+
+	/// Bounding box diagonal of each component of the surface: its unit of length.
+	std::vector<double> diagonal;
+	/// Area of each component, of the surface and of this stage.
+	std::vector<double> initialArea, area;
+	/// Sum of the components' volumes, of the surface and of this stage.
+	double initialVolume = 0, volume = 0;
+
+	/// The surface's vertices, shared by all stages.
+	std::shared_ptr<const std::vector<Point3d>> surface;
+	/// The correspondence: for each surface vertex the vertex of this stage it has merged into.
+	std::vector<int> node;
+
+	/// Iterations made so far.
+	int iteration = 0;
+	/// Whether the area has stopped changing: no volume is left.
+	bool converged = false;
+
+	double areaFraction() const { return sum(area) / sum(initialArea); }
+	double volumeFraction() const { return volume / initialVolume; }
+	double fixedFraction() const
+	{
+		return fixed.empty() ? 1 : double(std::count(fixed.begin(), fixed.end(), 1)) / double(fixed.size());
+	}
+
+private:
+	static double sum(const std::vector<double>& values)
+	{
+		double total = 0;
+		for (double value : values)
+			total += value;
+		return total;
+	}
+};
+
+/// Area of each component of a mesh.
+inline std::vector<double> componentAreas(
+	const SurfaceMesh& mesh, const std::vector<int>& component, size_t components)
+{
+	std::vector<double> area(components, 0);
+	for (int f = 0; f < mesh.faceSlots(); ++f)
+		if (mesh.isFace(f))
+			area[component[mesh.triangle(f)[0]]] += mesh.areaVector(f).Norm() / 2;
+	return area;
+}
+
+/// Bounding box diagonal of each component of a mesh.
+inline std::vector<double> componentDiagonals(
+	const SurfaceMesh& mesh, const std::vector<int>& component, size_t components)
+{
+	std::vector<Box3d> boxes(components);
+	for (int v = 0; v < mesh.vertexSlots(); ++v)
+		if (mesh.isVertex(v))
+			boxes[component[v]].Add(mesh.position[v]);
+	std::vector<double> diagonal;
+	for (const Box3d& box : boxes)
+		diagonal.push_back(box.Diag());
+	return diagonal;
+}
+
+/// Stage 0 of a surface. @pre surface is compact; poles has an entry for each vertex.
+inline Stage initialStage(const SurfaceMesh& surface, const PoleSet& poles)
+{
+	Stage stage;
+	stage.mesh = surface;
+	stage.pole = poles.centre;
+	stage.poleRadius = poles.radius;
+	stage.fixed.assign(surface.vertexSlots(), 0);
+	int components = 0;
+	stage.component = connectedComponents(surface, &components);
+	stage.diagonal = componentDiagonals(surface, stage.component, components);
+	stage.initialArea = stage.area = componentAreas(surface, stage.component, components);
+	stage.initialVolume = stage.volume = surface.volume();
+	stage.surface = std::make_shared<const std::vector<Point3d>>(surface.position);
+	stage.node.resize(surface.vertexSlots());
+	for (size_t v = 0; v < stage.node.size(); ++v)
+		stage.node[v] = int(v);
+	return stage;
+}
+
+/**
+ * Local thickness: for each vertex (or skeleton node) the mean distance to the surface vertices
+ * that have merged into it; -1 where there are none.
+ * @param position where the vertices are; node: for each surface vertex its vertex.
+ */
+inline std::vector<double> meanSurfaceDistance(const std::vector<Point3d>& position,
+	const std::vector<Point3d>& surface, const std::vector<int>& node)
+{
+	std::vector<double> sum(position.size(), 0);
+	std::vector<int> count(position.size(), 0);
+	for (size_t s = 0; s < node.size(); ++s) {
+		if (node[s] < 0)
+			continue;
+		sum[node[s]] += Distance(surface[s], position[node[s]]);
+		++count[node[s]];
+	}
+	for (size_t v = 0; v < sum.size(); ++v)
+		sum[v] = count[v] ? sum[v] / count[v] : -1;
+	return sum;
+}
+
+/// Local thickness at each vertex of a stage; a vertex made by a split takes its neighbours' mean.
+inline std::vector<double> stageRadius(const Stage& stage)
+{
+	const SurfaceMesh& mesh = stage.mesh;
+	std::vector<double> radius = meanSurfaceDistance(mesh.position, *stage.surface, stage.node);
+	std::vector<int> unknown;
+	for (int v = 0; v < mesh.vertexSlots(); ++v)
+		if (radius[v] < 0)
+			unknown.push_back(v);
+	while (!unknown.empty()) {
+		std::vector<int> left;
+		std::vector<std::pair<int, double>> found;
+		for (int v : unknown) {
+			double sum = 0;
+			int count = 0;
+			mesh.forEachOutgoing(v, [&](int h) {
+				const double r = radius[mesh.target(h)];
+				if (r >= 0) {
+					sum += r;
+					++count;
+				}
+			});
+			if (count)
+				found.emplace_back(v, sum / count);
+			else
+				left.push_back(v);
+		}
+		if (found.empty())
+			break;
+		for (const auto& [v, r] : found)
+			radius[v] = r;
+		unknown = std::move(left);
+	}
+	return radius;
+}
+
+} // namespace vcg::tri::mcf
+
+#endif

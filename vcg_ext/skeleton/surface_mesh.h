@@ -1,0 +1,502 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file The lean triangle mesh that every stage works on: a corner table of closed two-manifolds.
+
+#ifndef VCG_MCF_SURFACE_MESH_H
+#define VCG_MCF_SURFACE_MESH_H
+
+#include "errors.h"
+
+#include <vcg/space/box3.h>
+#include <vcg/space/point3.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+using Triangle = std::array<int, 3>;
+
+/**
+ * A closed, oriented, two-manifold triangle mesh of any number of components.
+ *
+ * Half-edge h = 3 f + k runs along triangle f from its corner k to its corner k + 1; its twin runs
+ * back along the neighbour. Twelve integers a vertex, no pointers: a collapse touches one vertex
+ * ring. Removed vertices and faces stay as holes in the numbering until compact().
+ *
+ * Orders (rings, faces, vertices) depend on indices only, so that the same calls give the same bits.
+ */
+class SurfaceMesh
+{
+public:
+	/// Position of each vertex, mesh units; removed vertices keep theirs.
+	std::vector<Point3d> position;
+
+	SurfaceMesh() = default;
+
+	/**
+	 * Builds the connectivity of `triangles` (counter-clockwise seen from outside).
+	 * @pre every edge has two triangles of opposite direction, every vertex one fan: see
+	 *      checkedSurface(), which establishes this and explains what is wrong where it cannot.
+	 * @throws InvalidInput if an edge has no twin.
+	 * Complexity: O(V + F).
+	 */
+	SurfaceMesh(std::vector<Point3d> points, const std::vector<Triangle>& triangles) :
+			position(std::move(points)), origins(3 * triangles.size()),
+			twins(3 * triangles.size(), -1), outgoings(position.size(), -1),
+			liveVertices(0), liveFaces(int(triangles.size()))
+	{
+		for (size_t f = 0; f < triangles.size(); ++f)
+			for (int k = 0; k < 3; ++k)
+				origins[3 * f + k] = triangles[f][k];
+		pairTwins();
+		chooseOutgoing();
+	}
+
+	// Sizes. The ids run over [0, vertexSlots()) and [0, faceSlots()), holes included.
+
+	int vertexSlots() const { return int(outgoings.size()); }
+	int faceSlots() const { return int(origins.size() / 3); }
+	int halfEdgeSlots() const { return int(origins.size()); }
+	int vertexCount() const { return liveVertices; }
+	int faceCount() const { return liveFaces; }
+	int edgeCount() const { return liveFaces + liveFaces / 2; }
+	bool isVertex(int v) const { return outgoings[v] >= 0; }
+	bool isFace(int f) const { return origins[3 * f] >= 0; }
+	bool isHalfEdge(int h) const { return origins[h] >= 0; }
+
+	/// V - E + F: 2 (components - genus).
+	int eulerCharacteristic() const { return vertexCount() - edgeCount() + faceCount(); }
+
+	// Walking.
+
+	static int next(int h) { return h % 3 == 2 ? h - 2 : h + 1; }
+	static int previous(int h) { return h % 3 == 0 ? h + 2 : h - 1; }
+	int twin(int h) const { return twins[h]; }
+	int origin(int h) const { return origins[h]; }
+	int target(int h) const { return origins[next(h)]; }
+	/// The vertex across from the edge, in the half-edge's own triangle.
+	int apex(int h) const { return origins[previous(h)]; }
+	/// A half-edge that starts at v.
+	int outgoing(int v) const { return outgoings[v]; }
+	/// The next half-edge out of the same vertex, clockwise.
+	int rotated(int h) const { return next(twins[h]); }
+	/// Of the two half-edges of an edge, the one with the lower id stands for it.
+	bool isEdge(int h) const { return isHalfEdge(h) && h < twins[h]; }
+
+	Triangle triangle(int f) const { return {origins[3 * f], origins[3 * f + 1], origins[3 * f + 2]}; }
+
+	/// Calls visit(h) for each half-edge out of v.
+	template <class Visitor>
+	void forEachOutgoing(int v, Visitor&& visit) const
+	{
+		const int first = outgoings[v];
+		int h = first;
+		do {
+			visit(h);
+			h = rotated(h);
+		} while (h != first);
+	}
+
+	int valence(int v) const
+	{
+		int count = 0;
+		forEachOutgoing(v, [&](int) { ++count; });
+		return count;
+	}
+
+	/// A half-edge from a to b, or -1.
+	int findHalfEdge(int a, int b) const
+	{
+		int found = -1;
+		forEachOutgoing(a, [&](int h) {
+			if (target(h) == b)
+				found = h;
+		});
+		return found;
+	}
+
+	// Measures.
+
+	/// Twice the area times the unit normal of triangle f.
+	Point3d areaVector(int f) const
+	{
+		const Point3d& a = position[origins[3 * f]];
+		return (position[origins[3 * f + 1]] - a) ^ (position[origins[3 * f + 2]] - a);
+	}
+
+	double squaredLength(int h) const { return SquaredDistance(position[origin(h)], position[target(h)]); }
+
+	double area() const
+	{
+		double sum = 0;
+		for (int f = 0; f < faceSlots(); ++f)
+			if (isFace(f))
+				sum += areaVector(f).Norm();
+		return sum / 2;
+	}
+
+	/// Signed volume; positive when the triangles are counter-clockwise seen from outside.
+	double volume() const
+	{
+		const Point3d middle = bounds().Center(); // keeps the digits of a mesh far from the origin
+		double sum = 0;
+		for (int f = 0; f < faceSlots(); ++f)
+			if (isFace(f))
+				sum += (position[origins[3 * f]] - middle) * areaVector(f);
+		return sum / 6;
+	}
+
+	Box3d bounds() const
+	{
+		Box3d box;
+		for (int v = 0; v < vertexSlots(); ++v)
+			if (isVertex(v))
+				box.Add(position[v]);
+		return box;
+	}
+
+	/// Unit normal of each vertex slot, weighted by area; zero where it is not defined.
+	std::vector<Point3d> vertexNormals() const
+	{
+		std::vector<Point3d> normals(vertexSlots(), Point3d(0, 0, 0));
+		for (int f = 0; f < faceSlots(); ++f) {
+			if (!isFace(f))
+				continue;
+			const Point3d n = areaVector(f);
+			for (int k = 0; k < 3; ++k)
+				normals[origins[3 * f + k]] += n;
+		}
+		for (Point3d& n : normals) {
+			const double length = n.Norm();
+			n = length > 0 ? Point3d(n / length) : Point3d(0, 0, 0);
+		}
+		return normals;
+	}
+
+	/// The live triangles in the order of their ids.
+	std::vector<Triangle> triangles() const
+	{
+		std::vector<Triangle> live;
+		live.reserve(liveFaces);
+		for (int f = 0; f < faceSlots(); ++f)
+			if (isFace(f))
+				live.push_back(triangle(f));
+		return live;
+	}
+
+	// Changes of connectivity. Each keeps the mesh a closed two-manifold of the same genus.
+
+	/**
+	 * A vertex c that is a neighbour of both ends of h though neither triangle at h has it, so that
+	 * collapsing h would pinch the surface; -1 if there is none and collapse(h) keeps the topology
+	 * (link condition: lk(a) n lk(b) = lk(ab)). Of several, the first in the ring of target(h).
+	 * A tetrahedron has none but cannot be collapsed either: see isTetrahedron().
+	 */
+	int pinchVertex(int h) const
+	{
+		const int a = origin(h);
+		const int c = apex(h), d = apex(twins[h]);
+		const int stamp = nextStamp();
+		forEachOutgoing(a, [&](int e) { stamps[target(e)] = stamp; });
+		int pinch = -1;
+		forEachOutgoing(target(h), [&](int e) {
+			const int x = target(e);
+			if (pinch < 0 && stamps[x] == stamp && x != c && x != d)
+				pinch = x;
+		});
+		return pinch;
+	}
+
+	/// Whether h belongs to a tetrahedron, or to two triangles back to back: the smallest closed meshes.
+	bool isTetrahedron(int h) const
+	{
+		const int c = apex(h), d = apex(twins[h]);
+		if (c == d)
+			return true;
+		return valence(origin(h)) == 3 && valence(target(h)) == 3;
+	}
+
+	bool isCollapsible(int h) const { return !isTetrahedron(h) && pinchVertex(h) < 0; }
+
+	/**
+	 * Merges origin(h) into target(h): two triangles and origin(h) disappear.
+	 * @pre isCollapsible(h)
+	 */
+	void collapse(int h)
+	{
+		const int t = twins[h];
+		const int a = origin(h), b = target(h);
+		const int c = apex(h), d = apex(t);
+		forEachOutgoing(a, [&](int e) { ringScratch.push_back(e); });
+		for (int e : ringScratch)
+			origins[e] = b;
+		ringScratch.clear();
+		const int cb = twins[next(h)], bc = twins[previous(h)];
+		const int da = twins[next(t)], bd = twins[previous(t)];
+		join(cb, bc);
+		join(da, bd);
+		removeFace(h / 3);
+		removeFace(t / 3);
+		outgoings[a] = -1;
+		--liveVertices;
+		outgoings[b] = bc;
+		outgoings[c] = cb;
+		outgoings[d] = da;
+	}
+
+	/**
+	 * Puts a new vertex at `point` on the edge of h and joins it to both apexes.
+	 * @return the new vertex. The half-edges of h's triangle and its neighbour keep their ids, but
+	 *         h now ends, and its twin now starts, at the new vertex.
+	 */
+	int split(int h, const Point3d& point)
+	{
+		const int t = twins[h];
+		const int b = target(h), c = apex(h), d = apex(t);
+		const int m = int(position.size());
+		position.push_back(point);
+		outgoings.push_back(-1);
+		stamps.push_back(0);
+		++liveVertices;
+		// (a b c) becomes (a m c) and (m b c); (b a d) becomes (m a d) and (b m d).
+		const int bc = next(h), bcTwin = twins[bc];
+		const int db = previous(t), dbTwin = twins[db];
+		const int f = addFace(m, b, c), g = addFace(b, m, d);
+		origins[bc] = m;
+		origins[t] = m;
+		join(f + 1, bcTwin);
+		join(f + 2, bc);
+		join(f, g);
+		join(g + 2, dbTwin);
+		join(g + 1, db);
+		outgoings[m] = f;
+		outgoings[b] = g;
+		outgoings[c] = f + 2;
+		outgoings[d] = g + 2;
+		return m;
+	}
+
+	/// Whether the other diagonal of the two triangles at h is not an edge yet.
+	bool isFlippable(int h) const
+	{
+		const int c = apex(h), d = apex(twins[h]);
+		return c != d && findHalfEdge(c, d) < 0;
+	}
+
+	/**
+	 * Replaces the edge of h by the other diagonal; h then runs from apex(twin(h)) to apex(h).
+	 * @pre isFlippable(h)
+	 */
+	void flip(int h)
+	{
+		const int t = twins[h];
+		const int a = origin(h), b = target(h), c = apex(h), d = apex(t);
+		const int hn = next(h), hp = previous(h), tn = next(t), tp = previous(t);
+		const int bc = twins[hn], ca = twins[hp], ad = twins[tn], db = twins[tp];
+		// (a b c), (b a d) become (d c a), (c d b), with h = d c and t = c d.
+		origins[h] = d;
+		origins[hn] = c;
+		origins[hp] = a;
+		origins[t] = c;
+		origins[tn] = d;
+		origins[tp] = b;
+		join(hn, ca);
+		join(hp, ad);
+		join(tn, db);
+		join(tp, bc);
+		outgoings[a] = hp;
+		outgoings[b] = tp;
+		outgoings[c] = t;
+		outgoings[d] = h;
+	}
+
+	/**
+	 * Cuts the surface along the closed path of three half-edges (a b), (b c), (c a) that bound no
+	 * triangle, and closes both lips by a triangle. The side left of the path keeps a, b, c, the
+	 * other gets copies of them. The Euler characteristic grows by two.
+	 * @return the copies of a, b, c.
+	 */
+	std::array<int, 3> cutAlong(const std::array<int, 3>& path)
+	{
+		const std::array<int, 3> back = {twins[path[0]], twins[path[1]], twins[path[2]]};
+		std::array<int, 3> copies;
+		for (int k = 0; k < 3; ++k) {
+			copies[k] = int(position.size());
+			position.push_back(Point3d(position[origin(path[k])]));
+			outgoings.push_back(-1);
+			stamps.push_back(0);
+			++liveVertices;
+		}
+		// The fan right of the path at its k-th vertex: clockwise from the edge that leaves along
+		// the path to the edge that came, both seen as half-edges out of the vertex.
+		for (int k = 0; k < 3; ++k) {
+			const int last = back[(k + 2) % 3];
+			int h = path[k];
+			while (h != last) {
+				h = rotated(h);
+				ringScratch.push_back(h);
+			}
+		}
+		// Each back half-edge ends the fan of one vertex; all walks are done before ids change.
+		size_t i = 0;
+		for (int k = 0; k < 3; ++k) {
+			const int last = back[(k + 2) % 3];
+			for (;; ++i) {
+				origins[ringScratch[i]] = copies[k];
+				if (ringScratch[i] == last) {
+					++i;
+					break;
+				}
+			}
+		}
+		ringScratch.clear();
+		const int a = origin(path[0]), b = origin(path[1]), c = origin(path[2]);
+		const int left = addFace(b, a, c); // b a, a c, c b
+		join(left, path[0]);
+		join(left + 1, path[2]);
+		join(left + 2, path[1]);
+		const int right = addFace(copies[0], copies[1], copies[2]);
+		join(right, back[0]);
+		join(right + 1, back[1]);
+		join(right + 2, back[2]);
+		for (int k = 0; k < 3; ++k) {
+			outgoings[origin(path[k])] = path[k];
+			outgoings[copies[k]] = right + k;
+		}
+		return copies;
+	}
+
+	/// Removes a whole face by hand; the caller sees to it that its component disappears with it.
+	void removeFace(int f)
+	{
+		for (int k = 0; k < 3; ++k)
+			origins[3 * f + k] = -1;
+		--liveFaces;
+	}
+
+	/// Removes a vertex by hand, when the last of its faces is gone.
+	void removeVertex(int v)
+	{
+		outgoings[v] = -1;
+		--liveVertices;
+	}
+
+	/**
+	 * Closes the holes in the numbering, order kept, and makes each vertex's outgoing half-edge its
+	 * lowest one, so that the mesh is the same as one built anew from its triangles.
+	 * @return for each old vertex id the new one, -1 where it was removed.
+	 */
+	std::vector<int> compact()
+	{
+		std::vector<int> newVertex(vertexSlots(), -1);
+		int v = 0;
+		for (int old = 0; old < vertexSlots(); ++old) {
+			if (!isVertex(old))
+				continue;
+			newVertex[old] = v;
+			position[v] = position[old];
+			++v;
+		}
+		position.resize(v);
+		std::vector<int> newFace(faceSlots(), -1);
+		int f = 0;
+		for (int old = 0; old < faceSlots(); ++old)
+			if (isFace(old))
+				newFace[old] = f++;
+		for (int old = 0; old < faceSlots(); ++old) {
+			if (newFace[old] < 0)
+				continue;
+			for (int k = 0; k < 3; ++k) {
+				const int t = twins[3 * old + k];
+				origins[3 * newFace[old] + k] = newVertex[origins[3 * old + k]];
+				twins[3 * newFace[old] + k] = 3 * newFace[t / 3] + t % 3;
+			}
+		}
+		origins.resize(3 * size_t(f));
+		twins.resize(3 * size_t(f));
+		outgoings.assign(v, -1);
+		stamps.assign(v, 0);
+		stampClock = 0;
+		chooseOutgoing();
+		return newVertex;
+	}
+
+private:
+	std::vector<int> origins;
+	std::vector<int> twins;
+	std::vector<int> outgoings;
+	int liveVertices = 0;
+	int liveFaces = 0;
+	mutable std::vector<int> stamps;
+	mutable int stampClock = 0;
+	std::vector<int> ringScratch;
+
+	void join(int h, int t)
+	{
+		twins[h] = t;
+		twins[t] = h;
+	}
+
+	int addFace(int a, int b, int c)
+	{
+		const int h = int(origins.size());
+		origins.insert(origins.end(), {a, b, c});
+		twins.insert(twins.end(), {-1, -1, -1});
+		++liveFaces;
+		return h;
+	}
+
+	int nextStamp() const
+	{
+		if (stampClock == std::numeric_limits<int>::max()) {
+			std::fill(stamps.begin(), stamps.end(), 0);
+			stampClock = 0;
+		}
+		return ++stampClock;
+	}
+
+	/// Pairs the half-edges by a bucket for each lower end: O(F).
+	void pairTwins()
+	{
+		const int n = int(position.size());
+		std::vector<int> start(n + 1, 0), bucket(origins.size());
+		const auto lower = [&](int h) { return std::min(origin(h), target(h)); };
+		for (int h = 0; h < halfEdgeSlots(); ++h)
+			++start[lower(h) + 1];
+		for (int v = 0; v < n; ++v)
+			start[v + 1] += start[v];
+		std::vector<int> end(start.begin(), start.end() - 1);
+		for (int h = 0; h < halfEdgeSlots(); ++h) {
+			const int low = lower(h);
+			for (int i = start[low]; i < end[low]; ++i) {
+				const int g = bucket[i];
+				if (twins[g] < 0 && origin(g) == target(h) && target(g) == origin(h)) {
+					join(h, g);
+					break;
+				}
+			}
+			if (twins[h] < 0)
+				bucket[end[low]++] = h;
+		}
+		if (std::find(twins.begin(), twins.end(), -1) != twins.end())
+			throw InvalidInput("The mesh is not closed, or its faces are not oriented alike.");
+	}
+
+	void chooseOutgoing()
+	{
+		for (int h = halfEdgeSlots() - 1; h >= 0; --h)
+			outgoings[origins[h]] = h;
+		liveVertices = int(std::count_if(outgoings.begin(), outgoings.end(), [](int h) { return h >= 0; }));
+		stamps.assign(outgoings.size(), 0);
+	}
+};
+
+} // namespace vcg::tri::mcf
+
+#endif
