@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file Isotropic resampling of the surface: the first line of the paper's Fig. 4.
+
+#ifndef VCG_MCF_RESAMPLE_H
+#define VCG_MCF_RESAMPLE_H
+
+#include "check_input.h"
+#include "errors.h"
+#include "isotropic_remesher.h"
+#include "progress.h"
+#include "surface_mesh.h"
+#include "target_length.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/**
+ * A mesh of the same surface with even, nearly equilateral triangles.
+ *
+ * Each round splits edges longer than 4/3 L, collapses those shorter than 4/5 L, flips edges so
+ * that valences approach six, and moves vertices within the surface to the centroid of their
+ * triangles. Vertices lie on the triangles of the input, those of creases (sharp edges over 60
+ * degrees in long chains) on the creases. A surface much denser than L is coarsened first.
+ *
+ * Genus, orientation, and the number and order of the components are those of the input.
+ *
+ * @param surface                 closed, oriented two-manifold.
+ * @param targetLengthOfComponent L for each component in the order of connectedComponents(), mesh
+ *                                units, > 0: see defaultTargetLength().
+ * @param iterations              rounds, >= 0; 0 gives the input back, without holes in its
+ *                                numbering. Five is plenty.
+ * @param progress                window for reports; cancelling leaves nothing behind.
+ * @return a compact mesh; most edges are between 4/5 L and 4/3 L.
+ * @throws InvalidParameter if there is not one positive length for each component, or if so small
+ *         a length would need more than 20 million vertices.
+ * @throws Cancelled
+ * Complexity: O(iterations (V' + F') + V + F), ' of the result.
+ * Source: Botsch and Kobbelt, "A remeshing approach to multiresolution modeling", SGP 2004, Sec. 4;
+ * the projection by walking, the creases and the coarsening are ours.
+ */
+inline SurfaceMesh resample(const SurfaceMesh& surface,
+	const std::vector<double>& targetLengthOfComponent, int iterations,
+	const Progress& progress = Progress())
+{
+	constexpr double mostVertices = 2e7;
+	int components = 0;
+	const std::vector<int> component = connectedComponents(surface, &components);
+	if (int(targetLengthOfComponent.size()) != components)
+		throw InvalidParameter("Resampling needs one target length for each of the "
+			+ std::to_string(components) + " components, not "
+			+ std::to_string(targetLengthOfComponent.size()) + ".");
+	double expected = 0;
+	for (int f = 0; f < surface.faceSlots(); ++f) {
+		if (!surface.isFace(f))
+			continue;
+		const double length = targetLengthOfComponent[component[surface.origin(3 * f)]];
+		if (!(length > 0) || !std::isfinite(length))
+			throw InvalidParameter("The target length of a component must be greater than 0.");
+		expected += surface.areaVector(f).Norm() / std::sqrt(3.0) / (length * length);
+	}
+	if (expected > mostVertices)
+		throw InvalidParameter("Parameter target_length is too small: the surface would need "
+			+ std::to_string(std::llround(expected / 1e6)) + " million vertices.");
+	if (iterations <= 0) {
+		SurfaceMesh same = surface;
+		same.compact();
+		return same;
+	}
+	detail::IsotropicRemesher remesher(surface, component, targetLengthOfComponent);
+	remesher.coarsen(progress.part(0.05, 0.4));
+	for (int i = 0; i < iterations; ++i) {
+		const Progress round = progress.part(
+			0.4 + 0.55 * i / iterations, 0.4 + 0.55 * (i + 1) / iterations);
+		remesher.splitLongEdges(round.part(0, 0.2));
+		remesher.collapseShortEdges(round.part(0.2, 0.4));
+		remesher.flipForValence(round.part(0.4, 0.5));
+		remesher.smoothAndProject(round.part(0.5, 1));
+	}
+	remesher.flipForAngles(progress.part(0.95, 1));
+	return remesher.take();
+}
+
+} // namespace vcg::tri::mcf
+
+#endif

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file How finely a surface is resampled when the user does not say.
+
+#ifndef VCG_MCF_TARGET_LENGTH_H
+#define VCG_MCF_TARGET_LENGTH_H
+
+#include "check_input.h"
+#include "parameters.h"
+#include "surface_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/**
+ * The edge length to resample each component with, mesh units.
+ *
+ * An even mesh of V vertices has 2 V nearly equilateral triangles, so that a surface of area A gets
+ * V = A / (L^2 sqrt(3) / 2) vertices. The default L gives a single component 45000 vertices, the
+ * size of the models of the paper (Table 1); c components share them, but none gets fewer than
+ * 3000. It is at most 8 epsilon, beyond which the flow leaves the shape.
+ *
+ * @param surface    closed triangle mesh of any number of components.
+ * @param parameters targetLength > 0 is taken instead, as a fraction of each component's own
+ *                   bounding box diagonal.
+ * @return one length for each component, in the order of connectedComponents().
+ * Complexity: O(V + F).
+ */
+inline std::vector<double> defaultTargetLength(
+	const SurfaceMesh& surface, const Parameters& parameters = Parameters())
+{
+	constexpr double totalVertices = 45000, fewestVertices = 3000;
+	const double areaOfVertex = std::sqrt(3.0) / 2; // for edges of length 1
+	int count = 0;
+	const std::vector<int> component = connectedComponents(surface, &count);
+	std::vector<Box3d> box(count);
+	std::vector<double> area(count, 0);
+	for (int v = 0; v < surface.vertexSlots(); ++v)
+		if (surface.isVertex(v))
+			box[component[v]].Add(surface.position[v]);
+	for (int f = 0; f < surface.faceSlots(); ++f)
+		if (surface.isFace(f))
+			area[component[surface.origin(3 * f)]] += surface.areaVector(f).Norm() / 2;
+	const double vertices = std::max(fewestVertices, totalVertices / std::max(count, 1));
+	std::vector<double> length(count);
+	for (int c = 0; c < count; ++c) {
+		const double diagonal = box[c].Diag();
+		length[c] = parameters.targetLength > 0
+			? parameters.targetLength * diagonal
+			: std::min(std::sqrt(area[c] / (areaOfVertex * vertices)), 8 * parameters.epsilon * diagonal);
+	}
+	return length;
+}
+
+} // namespace vcg::tri::mcf
+
+#endif
