@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "filters.h"
+
+#include "filters/all_filters.h"
+#include "layers.h"
+
+#include <skeleton/errors.h>
+
+#include <chrono>
+#include <exception>
+#include <new>
+
+namespace mcfskel {
+
+namespace {
+
+/// Hands progress on to the host, but not more often than anyone can see: a GUI redraws each time.
+vcg::tri::mcf::Progress hostProgress(vcg::CallBackPos* callback)
+{
+	using Clock = std::chrono::steady_clock;
+	if (!callback)
+		return {};
+	auto lastPercent = -1;
+	auto lastTime = Clock::time_point::min();
+	return vcg::tri::mcf::Progress([=](int percent, const char* what) mutable {
+		const auto now = Clock::now();
+		if (percent == lastPercent && now - lastTime < std::chrono::milliseconds(100))
+			return true;
+		lastPercent = percent;
+		lastTime = now;
+		return callback(percent, what);
+	});
+}
+
+QString resultsText(const Results& results)
+{
+	QStringList parts;
+	for (const auto& [name, value] : results)
+		parts << QString("%1 = %2").arg(QString::fromStdString(name), value.toString());
+	return parts.join(", ");
+}
+
+} // namespace
+
+Scalarm defaultLength(const ParameterSpec& spec, double diagonal)
+{
+	return Scalarm(spec.defaultValue / 100 * diagonal);
+}
+
+void ParameterValues::setLength(const ParameterSpec& spec, Scalarm length, double diagonal)
+{
+	const bool isDefault = length == defaultLength(spec, diagonal);
+	const double fraction = diagonal > 0 ? double(length) / diagonal : 0;
+	set(spec.name, isDefault ? spec.defaultValue / 100 : fraction);
+}
+
+const std::vector<FilterSpec>& catalogue()
+{
+	static const std::vector<FilterSpec> filters = {
+		resampleFilter(),
+		medialPolesFilter(),
+		contractionStepFilter(),
+		collapseToCurveFilter(),
+		fullSkeletonizeFilter(),
+	};
+	return filters;
+}
+
+Outcome runFilter(const FilterSpec& filter, MeshDocument& document, const ParameterValues& parameters,
+	const std::function<void(const QString&)>& log, vcg::CallBackPos* callback)
+{
+	Outcome outcome;
+	try {
+		if (!document.mm())
+			throw vcg::tri::mcf::InvalidInput("There is no layer: open a closed triangle mesh first.");
+		FilterRun run {document, parameters, log, hostProgress(callback)};
+		outcome.results = filter.run(run);
+		log(resultsText(outcome.results));
+	}
+	catch (const vcg::tri::mcf::Cancelled&) {
+		outcome.error = "Cancelled; nothing was changed.";
+	}
+	catch (const std::bad_alloc&) {
+		outcome.error = "Not enough memory for this mesh; nothing was changed.";
+	}
+	catch (const std::exception& error) {
+		outcome.error = QString::fromUtf8(error.what());
+	}
+	catch (...) {
+		outcome.error = "An error of unknown kind; nothing was changed.";
+	}
+	return outcome;
+}
+
+} // namespace mcfskel

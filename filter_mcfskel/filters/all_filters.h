@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file The entry of each filter in the catalogue, one source file each.
+
+#ifndef MCFSKEL_ALL_FILTERS_H
+#define MCFSKEL_ALL_FILTERS_H
+
+#include "../filters.h"
+
+namespace mcfskel {
+
+FilterSpec resampleFilter();
+FilterSpec medialPolesFilter();
+FilterSpec contractionStepFilter();
+FilterSpec collapseToCurveFilter();
+FilterSpec fullSkeletonizeFilter();
+
+} // namespace mcfskel
+
+#endif

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "all_filters.h"
+#include "common.h"
+
+#include <skeleton/collapse_to_curve.h>
+#include <skeleton/errors.h>
+
+namespace mcfskel {
+
+namespace mcf = vcg::tri::mcf;
+
+namespace {
+
+Results run(FilterRun& run)
+{
+	const StageLayer found = readStage(run.layer());
+	if (!found)
+		throw mcf::InvalidInput("The current layer '" + run.layer().label().toStdString()
+			+ (hasStageAttributes(run.layer())
+					? "' was a stage of the contraction, but its state is gone or its geometry was changed"
+					: "' is not a stage of the contraction")
+			+ ": make a layer NAME_meso_K current, or run 'Contraction Step' first.");
+	const mcf::CurveSkeleton skeleton =
+		mcf::collapseToCurve(*found.stage, run.parameters.fraction("epsilon"), run.progress);
+
+	DocumentEdit edit(run.document);
+	edit.addCurve(run.layer(), baseName(run.layer()) + "_skeleton", skeleton.position, skeleton.edges,
+		skeleton.radius);
+	edit.writeNodes(found.surface, skeleton.node);
+	edit.commit();
+	return curveResults(skeleton);
+}
+
+} // namespace
+
+FilterSpec collapseToCurveFilter()
+{
+	return {"generate_curve_skeleton_from_meso_mcf", menuName("Collapse to Curve"),
+		helpPage("Turns a stage of the contraction into a curve skeleton, a new layer of nodes and edges: "
+				 "collapses its shortest edges until no face is left, without changing its topology. The "
+				 "vertex quality is the local thickness of the shape, also kept as "
+				 "<i>mcfskel_radius</i>.<br><br>"
+				 "The surface layer, if it is still there, gets <i>mcfskel_node</i>: for each vertex the "
+				 "skeleton vertex that it belongs to. Last stage of the skeletonization."),
+		FilterCategory::Remeshing, MeshModel::MM_FACENUMBER, {epsilonParameter()}, run};
+}
+
+} // namespace mcfskel

@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file What several filters share: parameters, the way to a surface with poles, numbers, texts.
+
+#ifndef MCFSKEL_FILTERS_COMMON_H
+#define MCFSKEL_FILTERS_COMMON_H
+
+#include "../filters.h"
+#include "../layers.h"
+
+#include <skeleton/curve_skeleton.h>
+#include <skeleton/parameters.h>
+#include <skeleton/stage.h>
+
+#include <chrono>
+#include <memory>
+
+namespace mcfskel {
+
+/// "Mean Curvature Skeleton: " and the filter's own name.
+QString menuName(const char* name);
+
+/// The help page of a filter: what it does, and the publication behind it.
+QString helpPage(const QString& whatItDoes);
+
+// Parameters that more than one filter has.
+
+ParameterSpec targetLengthParameter();
+ParameterSpec resampleIterationsParameter();
+ParameterSpec poleMethodParameter();
+std::vector<ParameterSpec> weightParameters();
+ParameterSpec epsilonParameter();
+ParameterSpec splitAngleParameter();
+
+// From values to the pipeline's parameters; each reads the ones of its filters.
+
+void readResampling(const ParameterValues& values, vcg::tri::mcf::Parameters& parameters);
+void readFlow(const ParameterValues& values, vcg::tri::mcf::Parameters& parameters);
+vcg::tri::mcf::PoleMethod readPoleMethod(const ParameterValues& values);
+
+// Reports, for Python and for the log.
+
+Results stageResults(const vcg::tri::mcf::Stage& stage);
+Results curveResults(const vcg::tri::mcf::CurveSkeleton& skeleton);
+QString stageLine(const vcg::tri::mcf::Stage& stage);
+
+/// Mean edge length, mesh units; 0 for a mesh without edges.
+double meanEdgeLength(const vcg::tri::mcf::SurfaceMesh& mesh);
+
+/// Writes the repairs of a surface into the log, once.
+void logNotes(const FilterRun& run, const SurfaceLayer& surface);
+
+/// Resamples a surface; the result is what a layer made from it will be.
+SurfaceLayer resampledSurface(const vcg::tri::mcf::SurfaceMesh& mesh,
+	const vcg::tri::mcf::Parameters& parameters, const vcg::tri::mcf::Progress& progress);
+
+/// A surface together with its poles.
+struct PoledSurface
+{
+	SurfaceLayer surface;
+	std::shared_ptr<const vcg::tri::mcf::PoleSet> poles;
+	/// Whether the poles were computed just now, and are not on the layer yet.
+	bool computed = false;
+};
+
+/// The poles that the current surface layer carries; if it has none, computes them and says so.
+PoledSurface surfaceWithPoles(FilterRun& run, vcg::tri::mcf::PoleMethod method,
+	const vcg::tri::mcf::Progress& progress);
+
+/// NAME_meso_K.
+QString stageLabel(const QString& name, const vcg::tri::mcf::Stage& stage);
+
+/// Measures wall-clock time, seconds.
+class Stopwatch
+{
+public:
+	double lap()
+	{
+		const auto now = Clock::now();
+		const std::chrono::duration<double> seconds = now - start;
+		start = now;
+		return seconds.count();
+	}
+
+private:
+	using Clock = std::chrono::steady_clock;
+	Clock::time_point start = Clock::now();
+};
+
+} // namespace mcfskel
+
+#endif

@@ -1,0 +1,211 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "all_filters.h"
+#include "common.h"
+
+#include <skeleton/collapse_to_curve.h>
+#include <skeleton/errors.h>
+#include <skeleton/point_tree.h>
+#include <skeleton/poles.h>
+#include <skeleton/skeletonize.h>
+
+#include <limits>
+
+namespace mcfskel {
+
+namespace mcf = vcg::tri::mcf;
+
+namespace {
+
+/// What the stages of one run leave behind.
+struct Pipeline
+{
+	SurfaceLayer input;
+	/// The surface that was contracted: resampled, or the input itself.
+	SurfaceLayer surface;
+	std::shared_ptr<const mcf::PoleSet> poles;
+	bool newPoles = false;
+	/// The stages to keep as layers, the last one always among them.
+	std::vector<std::shared_ptr<const mcf::Stage>> kept;
+	mcf::CurveSkeleton skeleton;
+	Results seconds;
+};
+
+void contractAll(FilterRun& run, const mcf::Parameters& parameters, const mcf::Progress& progress,
+	Pipeline& pipeline)
+{
+	const int keepStages = run.parameters.integer("keep_stages");
+	std::shared_ptr<const mcf::Stage> last;
+	const auto onStage = [&](const mcf::Stage& stage) {
+		run.log(stageLine(stage));
+		if (keepStages > 0 && stage.iteration % keepStages == 0) {
+			last = std::make_shared<const mcf::Stage>(stage);
+			pipeline.kept.push_back(last);
+		}
+	};
+	mcf::Stage end = mcf::contractToSkeleton(
+		mcf::initialStage(*pipeline.surface.mesh, *pipeline.poles), parameters, progress, onStage);
+	if (!end.converged)
+		run.log(QString("The contraction has not converged after %1 iterations.").arg(end.iteration));
+	if (!last || last->iteration != end.iteration)
+		pipeline.kept.push_back(std::make_shared<const mcf::Stage>(std::move(end)));
+}
+
+Pipeline skeletonize(FilterRun& run, const mcf::Parameters& parameters)
+{
+	Pipeline pipeline;
+	const auto note = [&](const char* what, double seconds) {
+		pipeline.seconds[std::string("seconds_") + what] = seconds;
+	};
+	pipeline.input = readSurface(run.layer());
+	logNotes(run, pipeline.input);
+
+	Stopwatch watch;
+	if (parameters.resample) {
+		pipeline.surface =
+			resampledSurface(*pipeline.input.mesh, parameters, run.progress.part(0, 0.15));
+		run.log(QString("Resampled to %1 vertices, mean edge length %2 mesh units.")
+					.arg(pipeline.surface.mesh->vertexCount())
+					.arg(meanEdgeLength(*pipeline.surface.mesh)));
+	}
+	else
+		pipeline.surface = pipeline.input;
+	note("resample", watch.lap());
+
+	if (!parameters.resample)
+		pipeline.poles = readPoles(run.layer(), pipeline.input);
+	pipeline.newPoles = !pipeline.poles;
+	if (pipeline.newPoles)
+		pipeline.poles = std::make_shared<const mcf::PoleSet>(mcf::medialPoles(
+			*pipeline.surface.mesh, parameters.poleMethod, run.progress.part(0.15, 0.25)));
+	else
+		run.log("Taking the medial poles that the layer carries.");
+	note("poles", watch.lap());
+
+	contractAll(run, parameters, run.progress.part(0.25, 0.9), pipeline);
+	note("contraction", watch.lap());
+
+	pipeline.skeleton = mcf::collapseToCurve(
+		*pipeline.kept.back(), parameters.epsilon, run.progress.part(0.9, 1));
+	note("collapse", watch.lap());
+	note("refine", 0);
+	return pipeline;
+}
+
+/// A search for the point nearest to a centre, see PointTree::search().
+struct NearestPoint
+{
+	vcg::Point3d centre;
+	double squaredDistance = std::numeric_limits<double>::infinity();
+	int slot = -1;
+
+	double reach(const mcf::PointTree::Box& box) const
+	{
+		const double distance = box.squaredDistance(centre);
+		return distance < squaredDistance ? distance : -1;
+	}
+
+	void visit(int candidate, const vcg::Point3d& point)
+	{
+		const double distance = vcg::SquaredDistance(point, centre);
+		if (distance < squaredDistance) {
+			squaredDistance = distance;
+			slot = candidate;
+		}
+	}
+};
+
+/// For each vertex of the input the skeleton node of the nearest vertex of the resampled surface.
+std::vector<int> nodesOfInput(const Pipeline& pipeline)
+{
+	const mcf::SurfaceMesh& input = *pipeline.input.mesh;
+	const mcf::PointTree tree(pipeline.surface.mesh->position);
+	std::vector<int> node(size_t(input.vertexSlots()));
+	for (size_t v = 0; v < node.size(); ++v) {
+		NearestPoint nearest {input.position[v]};
+		tree.search(nearest);
+		node[v] = pipeline.skeleton.node[size_t(tree.order()[size_t(nearest.slot)])];
+	}
+	return node;
+}
+
+Results run(FilterRun& run)
+{
+	mcf::Parameters parameters;
+	parameters.resample = run.parameters.flag("resample");
+	readResampling(run.parameters, parameters);
+	readFlow(run.parameters, parameters);
+	parameters.poleMethod = readPoleMethod(run.parameters);
+	parameters.maxIterations = run.parameters.integer("max_iterations");
+	parameters.check();
+	if (run.parameters.integer("keep_stages") < 0)
+		throw mcf::InvalidParameter("Parameter keep_stages must be at least 0.");
+	const Pipeline pipeline = skeletonize(run, parameters);
+
+	DocumentEdit edit(run.document);
+	MeshModel& input = run.layer();
+	const QString name = baseName(input);
+	MeshModel* surface = &input;
+	if (parameters.resample) {
+		surface = &edit.addSurface(input, name + "_resampled", *pipeline.surface.mesh);
+		edit.attachSurface(*surface, pipeline.surface);
+	}
+	const SurfaceLink link = linkTo(*surface, pipeline.surface);
+	for (const auto& stage : pipeline.kept)
+		edit.addStage(input, stageLabel(name, *stage), stage, link);
+	edit.addCurve(input, name + "_skeleton", pipeline.skeleton.position, pipeline.skeleton.edges,
+		pipeline.skeleton.radius);
+	if (pipeline.newPoles)
+		edit.writePoles(*surface, pipeline.surface, pipeline.poles);
+	edit.writeNodes(*surface, *pipeline.surface.vertexOfSlot, pipeline.skeleton.node);
+	if (parameters.resample)
+		edit.writeNodes(input, *pipeline.input.vertexOfSlot, nodesOfInput(pipeline));
+	edit.commit();
+
+	Results results = stageResults(*pipeline.kept.back());
+	results.merge(curveResults(pipeline.skeleton));
+	results.insert(pipeline.seconds.begin(), pipeline.seconds.end());
+	return results;
+}
+
+} // namespace
+
+FilterSpec fullSkeletonizeFilter()
+{
+	const mcf::Parameters defaults;
+	std::vector<ParameterSpec> parameters = {
+		{ParameterKind::Boolean, "resample", double(defaults.resample), "Resample first",
+			"Covers the surface with even triangles first, as in the paper. Without, the skeleton is "
+			"only as good as the triangles of the input; edges much longer than 1.5 % of the diagonal "
+			"let it leave the shape."},
+		targetLengthParameter(),
+		resampleIterationsParameter().asAdvanced(),
+	};
+	for (const ParameterSpec& weight : weightParameters())
+		parameters.push_back(weight);
+	parameters.push_back(epsilonParameter());
+	parameters.push_back(splitAngleParameter());
+	parameters.push_back({ParameterKind::Integer, "keep_stages", 0, "Keep every k-th stage",
+		"Every k-th meso-skeleton becomes a layer NAME_meso_K; 0 keeps the last one only."});
+	parameters.push_back(
+		ParameterSpec {ParameterKind::Integer, "max_iterations", double(defaults.maxIterations),
+			"Most iterations",
+			"The contraction stops after this many iterations even if it has not converged; it usually "
+			"does after 10 to 40."}
+			.asAdvanced());
+	parameters.push_back(poleMethodParameter().asAdvanced());
+	return {"generate_curve_skeleton_mcf", menuName("Full Skeletonize"),
+		helpPage("Computes the curve skeleton of a closed surface: a graph of nodes and edges in the "
+				 "middle of the shape, with one component for each of its components and one cycle for "
+				 "each of its handles. Resamples the surface, finds its medial poles, contracts it until "
+				 "no volume is left and collapses the result to curves; each of these is a filter of its "
+				 "own, too.<br><br>"
+				 "New layers: the resampled surface, the last (or every k-th) stage of the contraction, and "
+				 "the skeleton. The skeleton's vertex quality is the local thickness; the vertex attribute "
+				 "<i>mcfskel_node</i> of the surfaces tells the skeleton vertex of each of their "
+				 "vertices."),
+		FilterCategory::Remeshing, MeshModel::MM_FACENUMBER, parameters, run};
+}
+
+} // namespace mcfskel

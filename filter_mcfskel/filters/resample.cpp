@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "all_filters.h"
+#include "common.h"
+
+namespace mcfskel {
+
+namespace mcf = vcg::tri::mcf;
+
+namespace {
+
+Results run(FilterRun& run)
+{
+	mcf::Parameters parameters;
+	readResampling(run.parameters, parameters);
+	const SurfaceLayer surface = readSurface(run.layer());
+	logNotes(run, surface);
+	const SurfaceLayer resampled = resampledSurface(*surface.mesh, parameters, run.progress);
+	const mcf::SurfaceMesh& mesh = *resampled.mesh;
+	const double meanLength = meanEdgeLength(mesh);
+	run.log(QString("Resampled to %1 vertices, mean edge length %2 mesh units%3.")
+				.arg(mesh.vertexCount())
+				.arg(meanLength)
+				.arg(parameters.targetLength == 0 ? " (chosen from the mesh)" : ""));
+
+	DocumentEdit edit(run.document);
+	MeshModel& layer = edit.addSurface(run.layer(), baseName(run.layer()) + "_resampled", mesh);
+	edit.attachSurface(layer, resampled);
+	edit.commit();
+	return {{"vertices", mesh.vertexCount()}, {"faces", mesh.faceCount()},
+		{"edge_length_mean", meanLength}};
+}
+
+} // namespace
+
+FilterSpec resampleFilter()
+{
+	return {"meshing_isotropic_resampling_mcf", menuName("Resample"),
+		helpPage(
+			"Covers the surface with triangles of even size, as a new layer: the skeleton is only as "
+			"good as the sampling that it is computed from. Splits long edges, collapses short ones, "
+			"flips edges towards six neighbours for each vertex, evens the vertices out along the "
+			"surface and puts them back onto it; the topology stays.<br><br>"
+			"First stage of the skeletonization. Needs a closed two-manifold triangle mesh."),
+		FilterCategory::Remeshing, MeshModel::MM_FACENUMBER,
+		{targetLengthParameter(), resampleIterationsParameter()}, run};
+}
+
+} // namespace mcfskel

@@ -1,0 +1,452 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "layers.h"
+
+#include <skeleton/check_input.h>
+#include <skeleton/errors.h>
+
+#include <QRegularExpression>
+
+#include <cmath>
+#include <cstring>
+#include <type_traits>
+#include <typeindex>
+
+namespace mcfskel {
+
+namespace mcf = vcg::tri::mcf;
+using Allocator = vcg::tri::Allocator<CMeshO>;
+
+namespace {
+
+constexpr char poleAttribute[] = "mcfskel_pole";
+constexpr char poleRadiusAttribute[] = "mcfskel_pole_radius";
+constexpr char fixedAttribute[] = "mcfskel_fixed";
+constexpr char radiusAttribute[] = "mcfskel_radius";
+constexpr char nodeAttribute[] = "mcfskel_node";
+constexpr char stateAttribute[] = "mcfskel_state";
+
+/// What a layer knows beyond its attributes. Immutable: copies share it.
+struct LayerState
+{
+	/// Of the geometry that the state belongs to.
+	std::uint64_t fingerprint = 0;
+	/// Surface layers.
+	SurfaceLayer surface;
+	std::shared_ptr<const mcf::PoleSet> poles;
+	/// Stages.
+	StageLayer stage;
+};
+
+using StatePointer = std::shared_ptr<const LayerState>;
+
+template <class Value>
+void mix(std::uint64_t& hash, Value value)
+{
+	static_assert(sizeof(Value) <= sizeof(std::uint64_t));
+	std::uint64_t word = 0;
+	std::memcpy(&word, &value, sizeof value);
+	hash = (hash ^ word) * 0x9E3779B97F4A7C15ULL;
+	hash ^= hash >> 29;
+}
+
+/// A number that changes with any coordinate, any corner and any deletion.
+std::uint64_t fingerprint(const CMeshO& mesh)
+{
+	std::uint64_t hash = mesh.vert.size();
+	for (const CVertexO& v : mesh.vert) {
+		mix(hash, int(v.IsD()));
+		for (int k = 0; k < 3; ++k)
+			mix(hash, v.cP()[k]);
+	}
+	for (const CFaceO& f : mesh.face)
+		for (int k = 0; k < 3; ++k)
+			mix(hash, f.IsD() ? -1 : int(vcg::tri::Index(mesh, f.cV(k))));
+	return hash;
+}
+
+/// Finds an attribute by name in one of a mesh's attribute sets; null if there is none.
+const vcg::PointerToAttribute* findAttribute(
+	const std::set<vcg::PointerToAttribute>& attributes, const char* name)
+{
+	vcg::PointerToAttribute key;
+	key._name = name;
+	const auto found = attributes.find(key);
+	return found == attributes.end() ? nullptr : &*found;
+}
+
+/// VCG finds attributes by name and size alone and writes beyond the end where the size differs.
+template <class T>
+bool isOfType(const vcg::PointerToAttribute& attribute)
+{
+	return attribute._type == std::type_index(typeid(T)) && attribute._sizeof == int(sizeof(T));
+}
+
+template <class T>
+void requireWritable(const MeshModel& layer, const char* name)
+{
+	const auto* attribute = findAttribute(layer.cm.vert_attr, name);
+	if (attribute && !isOfType<T>(*attribute))
+		throw mcf::InvalidInput("The layer '" + layer.label().toStdString()
+			+ "' has an attribute '" + name
+			+ "' of another type, made by something else: remove it, or work on a copy of the layer.");
+}
+
+/// Handle to a per-vertex attribute, made if need be. @pre requireWritable()
+template <class T>
+auto vertexAttribute(MeshModel& layer, const char* name)
+{
+	requireWritable<T>(layer, name);
+	return Allocator::GetPerVertexAttribute<T>(layer.cm, name);
+}
+
+StatePointer findState(const CMeshO& mesh)
+{
+	const auto* attribute = findAttribute(mesh.mesh_attr, stateAttribute);
+	if (!attribute || !isOfType<StatePointer>(*attribute))
+		return nullptr;
+	return Allocator::GetPerMeshAttribute<StatePointer>(mesh, stateAttribute)();
+}
+
+/// The state of a layer, if its geometry is still what the state describes.
+StatePointer validState(const MeshModel& layer)
+{
+	StatePointer state = findState(layer.cm);
+	return state && state->fingerprint == fingerprint(layer.cm) ? state : nullptr;
+}
+
+void setState(MeshModel& layer, LayerState state)
+{
+	const auto* attribute = findAttribute(layer.cm.mesh_attr, stateAttribute);
+	if (attribute && !isOfType<StatePointer>(*attribute))
+		throw mcf::InvalidInput("The layer '" + layer.label().toStdString() + "' has a mesh attribute '"
+			+ stateAttribute + "' made by something else: work on a copy of the layer.");
+	state.fingerprint = fingerprint(layer.cm);
+	Allocator::GetPerMeshAttribute<StatePointer>(layer.cm, stateAttribute)() =
+		std::make_shared<const LayerState>(std::move(state));
+}
+
+vcg::Point3d toDouble(const Point3m& p)
+{
+	return vcg::Point3d(p[0], p[1], p[2]);
+}
+
+Point3m toHost(const vcg::Point3d& p)
+{
+	return Point3m(Scalarm(p[0]), Scalarm(p[1]), Scalarm(p[2]));
+}
+
+/// The slots of a layer that are vertices, in order.
+std::vector<int> liveSlots(const CMeshO& mesh)
+{
+	std::vector<int> live;
+	live.reserve(size_t(mesh.vn));
+	for (size_t i = 0; i < mesh.vert.size(); ++i)
+		if (!mesh.vert[i].IsD())
+			live.push_back(int(i));
+	return live;
+}
+
+void writeScalars(MeshModel& layer, const char* name, const std::vector<double>& values)
+{
+	auto attribute = vertexAttribute<Scalarm>(layer, name);
+	for (size_t i = 0; i < values.size(); ++i)
+		attribute[i] = Scalarm(values[i]);
+}
+
+void writePoints(MeshModel& layer, const char* name, const std::vector<vcg::Point3d>& values)
+{
+	auto attribute = vertexAttribute<Point3m>(layer, name);
+	for (size_t i = 0; i < values.size(); ++i)
+		attribute[i] = toHost(values[i]);
+}
+
+void writeQuality(MeshModel& layer, const std::vector<double>& values)
+{
+	layer.updateDataMask(MeshModel::MM_VERTQUALITY);
+	for (size_t i = 0; i < values.size(); ++i)
+		layer.cm.vert[i].Q() = decltype(layer.cm.vert[i].Q() + 0)(values[i]);
+}
+
+void addVertices(MeshModel& layer, const std::vector<vcg::Point3d>& points)
+{
+	auto vertex = Allocator::AddVertices(layer.cm, points.size());
+	for (const vcg::Point3d& p : points)
+		(vertex++)->P() = toHost(p);
+}
+
+/// Whether each pole is at its radius from its vertex, as those of an edited mesh are not.
+bool fits(const mcf::PoleSet& poles, const mcf::SurfaceMesh& mesh)
+{
+	const double tolerance = 1e-4 * mesh.bounds().Diag();
+	for (int v = 0; v < mesh.vertexSlots(); ++v) {
+		if (!std::isfinite(poles.radius[v]))
+			return false;
+		if (!poles.has(v))
+			continue;
+		const double distance = vcg::Distance(poles.centre[v], mesh.position[v]);
+		if (!(std::abs(distance - poles.radius[v]) <= tolerance))
+			return false;
+	}
+	return true;
+}
+
+/// Whether the exact poles are what the host's scalars show.
+bool sameInHost(const mcf::PoleSet& exact, const mcf::PoleSet& shown)
+{
+	for (size_t v = 0; v < exact.radius.size(); ++v) {
+		if (Scalarm(exact.radius[v]) != Scalarm(shown.radius[v]))
+			return false;
+		if (exact.has(int(v)) && toHost(exact.centre[v]) != toHost(shown.centre[v]))
+			return false;
+	}
+	return true;
+}
+
+} // namespace
+
+double referenceDiagonal(const MeshModel& layer)
+{
+	vcg::Box3d box;
+	if (const StatePointer state = findState(layer.cm); state && state->stage)
+		for (const vcg::Point3d& p : *state->stage.stage->surface)
+			box.Add(p);
+	else
+		for (const CVertexO& v : layer.cm.vert)
+			if (!v.IsD())
+				box.Add(toDouble(v.cP()));
+	const double diagonal = box.IsNull() ? 0 : box.Diag();
+	return std::isfinite(diagonal) ? diagonal : 0;
+}
+
+QString baseName(const MeshModel& layer)
+{
+	static const QRegularExpression copyNumber("\\(\\d+\\)$");
+	static const QRegularExpression fileType("\\.[A-Za-z0-9]{1,5}$");
+	static const QRegularExpression appended("_(resampled|meso_\\d+|skeleton|refined|poles)$");
+	QString name = layer.label();
+	name.remove(copyNumber);
+	name.remove(fileType);
+	name.remove(appended);
+	return name.isEmpty() ? QString("mesh") : name;
+}
+
+SurfaceLayer readSurface(const MeshModel& layer)
+{
+	const std::string label = "'" + layer.label().toStdString() + "'";
+	if (const StatePointer state = validState(layer)) {
+		if (state->stage)
+			throw mcf::InvalidInput("The current layer " + label
+				+ " is a stage of the contraction, not a surface: make the surface layer current.");
+		if (state->surface.mesh)
+			return state->surface;
+	}
+	const CMeshO& mesh = layer.cm;
+	if (mesh.fn == 0 && mesh.en > 0)
+		throw mcf::InvalidInput("The current layer " + label
+			+ " is a curve, edges without faces: make the surface layer current.");
+
+	const std::vector<int> live = liveSlots(mesh);
+	std::vector<int> pointOfSlot(mesh.vert.size(), -1);
+	std::vector<vcg::Point3d> points;
+	points.reserve(live.size());
+	for (int slot : live) {
+		pointOfSlot[size_t(slot)] = int(points.size());
+		points.push_back(toDouble(mesh.vert[size_t(slot)].cP()));
+	}
+	std::vector<mcf::Triangle> triangles;
+	triangles.reserve(size_t(mesh.fn));
+	for (const CFaceO& f : mesh.face) {
+		if (f.IsD())
+			continue;
+		mcf::Triangle triangle;
+		for (int k = 0; k < 3; ++k)
+			triangle[size_t(k)] = pointOfSlot[vcg::tri::Index(mesh, f.cV(k))];
+		triangles.push_back(triangle);
+	}
+	mcf::CheckedSurface checked = mcf::checkedSurface(points, triangles);
+	auto vertexOfSlot = std::make_shared<std::vector<int>>(mesh.vert.size(), -1);
+	for (int slot : live)
+		(*vertexOfSlot)[size_t(slot)] = checked.vertexOfInput[size_t(pointOfSlot[size_t(slot)])];
+	return {std::make_shared<const mcf::SurfaceMesh>(std::move(checked.mesh)), vertexOfSlot,
+		std::move(checked.notes)};
+}
+
+StageLayer readStage(const MeshModel& layer)
+{
+	const StatePointer state = validState(layer);
+	return state ? state->stage : StageLayer();
+}
+
+bool hasStageAttributes(const MeshModel& layer)
+{
+	return findAttribute(layer.cm.vert_attr, fixedAttribute) != nullptr;
+}
+
+std::shared_ptr<const mcf::PoleSet> readPoles(const MeshModel& layer, const SurfaceLayer& surface)
+{
+	const auto* centreFound = findAttribute(layer.cm.vert_attr, poleAttribute);
+	const auto* radiusFound = findAttribute(layer.cm.vert_attr, poleRadiusAttribute);
+	if (!centreFound || !radiusFound)
+		return nullptr;
+	requireWritable<Point3m>(layer, poleAttribute);
+	requireWritable<Scalarm>(layer, poleRadiusAttribute);
+	const auto centre = Allocator::GetPerVertexAttribute<Point3m>(layer.cm, poleAttribute);
+	const auto radius = Allocator::GetPerVertexAttribute<Scalarm>(layer.cm, poleRadiusAttribute);
+
+	auto shown = std::make_shared<mcf::PoleSet>();
+	shown->centre.assign(size_t(surface.mesh->vertexSlots()), vcg::Point3d(0, 0, 0));
+	shown->radius.assign(size_t(surface.mesh->vertexSlots()), -1);
+	for (size_t slot = 0; slot < surface.vertexOfSlot->size(); ++slot) {
+		const int v = (*surface.vertexOfSlot)[slot];
+		if (v < 0)
+			continue;
+		shown->centre[size_t(v)] = toDouble(centre[slot]);
+		shown->radius[size_t(v)] = double(radius[slot]);
+	}
+	const StatePointer state = validState(layer);
+	if (state && state->poles && sameInHost(*state->poles, *shown))
+		return state->poles;
+	return fits(*shown, *surface.mesh) ? shown : nullptr;
+}
+
+SurfaceLink linkTo(const MeshModel& layer, const SurfaceLayer& surface)
+{
+	return {layer.id(), fingerprint(layer.cm), surface.vertexOfSlot};
+}
+
+DocumentEdit::DocumentEdit(MeshDocument& document) :
+		document(document), previousLayer(document.mm()->id())
+{
+}
+
+DocumentEdit::~DocumentEdit()
+{
+	if (committed)
+		return;
+	for (int id : added)
+		host::removeLayer(document, id);
+	document.setCurrentMesh(previousLayer);
+}
+
+MeshModel& DocumentEdit::addLayer(const MeshModel& source, const QString& label)
+{
+	const Matrix44m frame = source.cm.Tr;
+	MeshModel& layer = *document.addNewMesh("", label, false);
+	added.push_back(layer.id());
+	layer.cm.Tr = frame;
+	return layer;
+}
+
+MeshModel& DocumentEdit::addSurface(
+	const MeshModel& source, const QString& label, const mcf::SurfaceMesh& mesh)
+{
+	MeshModel& layer = addLayer(source, label);
+	addVertices(layer, mesh.position);
+	const std::vector<mcf::Triangle> triangles = mesh.triangles();
+	auto face = Allocator::AddFaces(layer.cm, triangles.size());
+	for (const mcf::Triangle& triangle : triangles) {
+		for (int k = 0; k < 3; ++k)
+			face->V(k) = &layer.cm.vert[size_t(triangle[size_t(k)])];
+		++face;
+	}
+	host::updateBoxAndNormals(layer);
+	return layer;
+}
+
+MeshModel& DocumentEdit::addPoints(
+	const MeshModel& source, const QString& label, const std::vector<vcg::Point3d>& points)
+{
+	MeshModel& layer = addLayer(source, label);
+	addVertices(layer, points);
+	host::updateBoxAndNormals(layer);
+	return layer;
+}
+
+MeshModel& DocumentEdit::addCurve(const MeshModel& source, const QString& label,
+	const std::vector<vcg::Point3d>& nodes, const std::vector<std::array<int, 2>>& edges,
+	const std::vector<double>& radius)
+{
+	MeshModel& layer = addLayer(source, label);
+	addVertices(layer, nodes);
+	auto edge = Allocator::AddEdges(layer.cm, edges.size());
+	for (const std::array<int, 2>& ends : edges) {
+		for (int k = 0; k < 2; ++k)
+			edge->V(k) = &layer.cm.vert[size_t(ends[size_t(k)])];
+		++edge;
+	}
+	writeScalars(layer, radiusAttribute, radius);
+	writeQuality(layer, radius);
+	host::updateBoxAndNormals(layer);
+	return layer;
+}
+
+MeshModel& DocumentEdit::addStage(const MeshModel& source, const QString& label,
+	std::shared_ptr<const mcf::Stage> stage, const SurfaceLink& surface)
+{
+	MeshModel& layer = addSurface(source, label, stage->mesh);
+	const std::vector<double> radius = mcf::stageRadius(*stage);
+	writePoints(layer, poleAttribute, stage->pole);
+	writeScalars(layer, poleRadiusAttribute, stage->poleRadius);
+	writeScalars(layer, fixedAttribute, {stage->fixed.begin(), stage->fixed.end()});
+	writeScalars(layer, radiusAttribute, radius);
+	writeQuality(layer, radius);
+	LayerState state;
+	state.stage = {std::move(stage), surface};
+	setState(layer, std::move(state));
+	return layer;
+}
+
+void DocumentEdit::attachSurface(MeshModel& layer, const SurfaceLayer& surface)
+{
+	LayerState state;
+	state.surface = surface;
+	state.surface.notes.clear();
+	setState(layer, std::move(state));
+}
+
+void DocumentEdit::writePoles(
+	MeshModel& layer, const SurfaceLayer& surface, std::shared_ptr<const mcf::PoleSet> poles)
+{
+	requireWritable<Point3m>(layer, poleAttribute);
+	requireWritable<Scalarm>(layer, poleRadiusAttribute);
+	auto centre = vertexAttribute<Point3m>(layer, poleAttribute);
+	auto radius = vertexAttribute<Scalarm>(layer, poleRadiusAttribute);
+	for (size_t slot = 0; slot < layer.cm.vert.size(); ++slot) {
+		const int v = (*surface.vertexOfSlot)[slot];
+		const bool has = v >= 0 && poles->has(v);
+		// A vertex without a pole shows itself: readers that ignore the radius stay inside the box.
+		centre[slot] = has ? toHost(poles->centre[size_t(v)]) : layer.cm.vert[slot].cP();
+		radius[slot] = has ? Scalarm(poles->radius[size_t(v)]) : Scalarm(-1);
+	}
+	LayerState state;
+	state.surface = surface;
+	state.surface.notes.clear();
+	state.poles = std::move(poles);
+	setState(layer, std::move(state));
+}
+
+void DocumentEdit::writeNodes(
+	MeshModel& layer, const std::vector<int>& vertexOfSlot, const std::vector<int>& node)
+{
+	auto attribute = vertexAttribute<Scalarm>(layer, nodeAttribute);
+	for (size_t slot = 0; slot < vertexOfSlot.size(); ++slot)
+		attribute[slot] = vertexOfSlot[slot] < 0 ? Scalarm(-1) : Scalarm(node[size_t(vertexOfSlot[slot])]);
+}
+
+void DocumentEdit::writeNodes(const SurfaceLink& surface, const std::vector<int>& node)
+{
+	MeshModel* layer = document.getMesh(surface.layerId);
+	if (layer && fingerprint(layer->cm) == surface.fingerprint)
+		writeNodes(*layer, *surface.vertexOfSlot, node);
+}
+
+void DocumentEdit::commit()
+{
+	committed = true;
+	if (!added.empty())
+		document.setCurrentMesh(added.back());
+}
+
+} // namespace mcfskel

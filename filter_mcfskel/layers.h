@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file Between the host's layers and the pipeline: reading surfaces and stages from layers,
+/// writing results as new layers and as custom attributes.
+///
+/// What users and scripts see are the attributes mcfskel_*. They hold the host's scalar, often a
+/// float, while the pipeline counts in double; so each layer also carries its exact state, as an
+/// attribute of the whole mesh. Steps made one by one are then the same, bit for bit, as a full run.
+/// The state counts only as long as the layer's geometry is what it was when the state was written.
+
+#ifndef MCFSKEL_LAYERS_H
+#define MCFSKEL_LAYERS_H
+
+#include "hosts/host_api.h"
+
+#include <skeleton/pole_set.h>
+#include <skeleton/stage.h>
+#include <skeleton/surface_mesh.h>
+
+#include <QString>
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace mcfskel {
+
+/// A surface layer as the pipeline takes it: checked, compact, in double.
+struct SurfaceLayer
+{
+	std::shared_ptr<const vcg::tri::mcf::SurfaceMesh> mesh;
+	/// For each vertex slot of the layer, deleted ones included, the vertex of `mesh`, or -1.
+	std::shared_ptr<const std::vector<int>> vertexOfSlot;
+	/// What had to be repaired, for the log.
+	std::vector<std::string> notes;
+};
+
+/// Which layer a stage or skeleton comes from.
+struct SurfaceLink
+{
+	int layerId = -1;
+	/// Of the layer's geometry, so that another layer is never taken for it.
+	std::uint64_t fingerprint = 0;
+	std::shared_ptr<const std::vector<int>> vertexOfSlot;
+};
+
+/// A stage of the contraction as found on a layer.
+struct StageLayer
+{
+	std::shared_ptr<const vcg::tri::mcf::Stage> stage;
+	SurfaceLink surface;
+
+	explicit operator bool() const { return stage != nullptr; }
+};
+
+/**
+ * The length, in mesh units, that 100 % of a Length means on this layer: the bounding box diagonal,
+ * of a stage that of its surface, so that a length means the same at every step.
+ */
+double referenceDiagonal(const MeshModel& layer);
+
+/// The layer's name without file type and without what the filters append: NAME of NAME_meso_4.
+QString baseName(const MeshModel& layer);
+
+/**
+ * Reads and checks a surface layer; the layer itself is not changed.
+ * @throws InvalidInput if it is empty, has no faces, is a stage of the contraction, or is not a
+ *         closed two-manifold: see checkedSurface().
+ */
+SurfaceLayer readSurface(const MeshModel& layer);
+
+/// The stage that a layer holds; false if it is none, or if its geometry was edited since.
+StageLayer readStage(const MeshModel& layer);
+
+/// Whether a layer was a stage once, so that it is worth a word in the log that it is none any more.
+bool hasStageAttributes(const MeshModel& layer);
+
+/**
+ * The poles that a surface layer carries, one for each vertex of `surface`; null if it has none, or
+ * none that fit its vertices. Exact ones unless somebody has changed the visible ones.
+ */
+std::shared_ptr<const vcg::tri::mcf::PoleSet> readPoles(
+	const MeshModel& layer, const SurfaceLayer& surface);
+
+/**
+ * Changes to a document, all or none: what was added is removed again unless commit() is reached.
+ * Each function throws before it changes anything if an attribute of its name has another type.
+ */
+class DocumentEdit
+{
+public:
+	explicit DocumentEdit(MeshDocument& document);
+	~DocumentEdit();
+	DocumentEdit(const DocumentEdit&) = delete;
+	DocumentEdit& operator=(const DocumentEdit&) = delete;
+
+	/// A new surface layer in the frame of `source`.
+	MeshModel& addSurface(const MeshModel& source, const QString& label,
+		const vcg::tri::mcf::SurfaceMesh& mesh);
+
+	/// A new layer of points without faces in the frame of `source`.
+	MeshModel& addPoints(const MeshModel& source, const QString& label,
+		const std::vector<vcg::Point3d>& points);
+
+	/// A new layer of nodes and edges in the frame of `source`; the radius is also the quality.
+	MeshModel& addCurve(const MeshModel& source, const QString& label,
+		const std::vector<vcg::Point3d>& nodes, const std::vector<std::array<int, 2>>& edges,
+		const std::vector<double>& radius);
+
+	/// A new layer of a stage, with all that the next step needs.
+	MeshModel& addStage(const MeshModel& source, const QString& label,
+		std::shared_ptr<const vcg::tri::mcf::Stage> stage, const SurfaceLink& surface);
+
+	/// Gives a layer its surface in full precision.
+	void attachSurface(MeshModel& layer, const SurfaceLayer& surface);
+
+	/// Writes poles as attributes of a surface layer. @pre attachSurface() was called on it.
+	void writePoles(MeshModel& layer, const SurfaceLayer& surface,
+		std::shared_ptr<const vcg::tri::mcf::PoleSet> poles);
+
+	/// Writes mcfskel_node: for each vertex of the layer's surface the vertex it has merged into.
+	void writeNodes(MeshModel& layer, const std::vector<int>& vertexOfSlot,
+		const std::vector<int>& node);
+
+	/// As above for a surface known by its link, if that layer is still there and unchanged.
+	void writeNodes(const SurfaceLink& surface, const std::vector<int>& node);
+
+	/// Keeps the changes and makes the layer added last the current one.
+	void commit();
+
+private:
+	MeshModel& addLayer(const MeshModel& source, const QString& label);
+
+	MeshDocument& document;
+	int previousLayer;
+	std::vector<int> added;
+	bool committed = false;
+};
+
+/// The link to a surface layer, for the stages that will come from it.
+SurfaceLink linkTo(const MeshModel& layer, const SurfaceLayer& surface);
+
+} // namespace mcfskel
+
+#endif

@@ -1,0 +1,83 @@
+# SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+# SPDX-License-Identifier: GPL-3.0-or-later
+#
+# What every command of this folder needs: where things are, how to say something, how to get
+# missing Debian packages. Source it; it runs nothing by itself.
+
+# shellcheck shell=bash
+
+ROOT="$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)"
+# Downloads are shared by all checkouts, so they live outside of them.
+CACHE="${MCFSKEL_CACHE:-${XDG_CACHE_HOME:-$HOME/.cache}/mcfskel}"
+JOBS="${MCFSKEL_JOBS:-$(nproc)}"
+export ROOT CACHE JOBS
+
+# Progress goes to stderr: stdout is for results that other commands read.
+say() {
+	printf '== %s\n' "$*" >&2
+}
+
+die() {
+	printf 'error: %s\n' "$*" >&2
+	exit 1
+}
+
+# Runs a command quietly; its output is shown only if it fails.
+quietly() {
+	local output
+	output="$(mktemp)"
+	if ! "$@" >"$output" 2>&1; then
+		cat "$output" >&2
+		rm -f "$output"
+		return 1
+	fi
+	rm -f "$output"
+}
+
+as_root() {
+	if [ "$(id -u)" -eq 0 ]; then
+		"$@"
+	elif command -v sudo >/dev/null; then
+		sudo "$@"
+	else
+		die "needs root or sudo to run: $*"
+	fi
+}
+
+# need_packages NAME...: installs the Debian packages that are not there yet.
+need_packages() {
+	command -v dpkg-query >/dev/null ||
+		die "this system has no dpkg; install the equivalents of these Debian packages: $*"
+	local name missing=()
+	for name in "$@"; do
+		[ "$(dpkg-query -W -f='${db:Status-Status}' "$name" 2>/dev/null)" = installed ] ||
+			missing+=("$name")
+	done
+	[ "${#missing[@]}" -gt 0 ] || return 0
+	say "installing ${missing[*]}"
+	local apt=(env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=300 -qq)
+	# A machine's package lists may be absent or old: refresh them only when they do not serve.
+	quietly as_root "${apt[@]}" install -y --no-install-recommends "${missing[@]}" 2>/dev/null && return 0
+	quietly as_root "${apt[@]}" update
+	quietly as_root "${apt[@]}" install -y --no-install-recommends "${missing[@]}" ||
+		die "could not install ${missing[*]}"
+}
+
+# publish TEMPORARY FINAL: moves a finished result to its place in one step, so that an interrupted
+# run leaves nothing that looks finished.
+publish() {
+	mkdir -p "$(dirname "$2")"
+	rm -rf "$2"
+	mv "$1" "$2"
+}
+
+# with_lock NAME COMMAND...: keeps two runs from preparing the same thing at once.
+with_lock() {
+	local name="$1"
+	shift
+	mkdir -p "$CACHE"
+	(
+		flock 9
+		"$@"
+	) 9>"$CACHE/$name.lock"
+}

@@ -1,0 +1,34 @@
+# SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+# SPDX-License-Identifier: GPL-3.0-or-later
+#
+# The Python environment with pymeshlab, in the cache. Source after common.sh.
+
+# shellcheck shell=bash
+
+# The shared libraries that the pymeshlab wheel expects from the system: OpenGL's loaders for the
+# module itself, and fonts and X for its Qt. They are needed on machines without a display as well.
+PYMESHLAB_PACKAGES=(libgl1 libopengl0 libegl1 libglib2.0-0 libfontconfig1 libfreetype6
+	libx11-6 libxcb1 zlib1g)
+
+# python_env: prints the path of the environment's interpreter, making the environment if need be.
+python_env() {
+	need_packages python3 python3-venv "${PYMESHLAB_PACKAGES[@]}" >&2
+	local wanted folder
+	# A changed list of requirements is a new environment; the old one may still serve another checkout.
+	wanted="$(sha256sum "$ROOT/scripts/requirements.txt" | cut -c 1-12)"
+	folder="$CACHE/python-$wanted"
+	with_lock "python-$wanted" make_python_env "$folder" >&2
+	echo "$folder/bin/python"
+}
+
+make_python_env() {
+	local folder="$1"
+	[ ! -f "$folder/complete" ] || return 0
+	say "preparing Python with pymeshlab"
+	rm -rf "$folder"
+	# A venv knows its own path, so it cannot be made elsewhere and moved: the mark comes last instead.
+	/usr/bin/python3 -m venv "$folder"
+	quietly "$folder/bin/python" -m pip install --disable-pip-version-check \
+		-r "$ROOT/scripts/requirements.txt" || die "could not install scripts/requirements.txt"
+	touch "$folder/complete"
+}
