@@ -143,6 +143,8 @@ def main() -> int:
     parser.add_argument("--output", type=Path, metavar="FOLDER",
                         default=Path(__file__).resolve().parent.parent / "meshes",
                         help="where to write (default: the project's meshes/)")
+    parser.add_argument("--picture", type=Path, metavar="PNG",
+                        help="draw all shapes of the folder into this file (needs matplotlib)")
     options = parser.parse_args()
     options.output.mkdir(parents=True, exist_ok=True)
     for name in options.names or SHAPES:
@@ -154,6 +156,10 @@ def main() -> int:
         print(f"{name:14} {record['vertices']:6} vertices, genus {record['genus']}, "
               f"{record['components']} component(s)")
     write_index(options.output)
+    if options.picture:
+        from meshgen.picture import draw_contact_sheet
+        there = [name for name in SHAPES if (options.output / f"{name}.off").exists()]
+        draw_contact_sheet(options.output, there, options.picture)
     return 0
 
 
