@@ -8,10 +8,10 @@
 
 #include "cotangent_laplacian.h"
 #include "errors.h"
+#include "incomplete_factor.h"
 #include "progress.h"
 
-#include <Eigen/SparseCholesky>
-
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -22,9 +22,10 @@ namespace vcg::tri::mcf {
  *
  * M^2 is never formed: its factor would be several times as full as that of M + sqrt D, which is
  * as close to it in spectrum (the quotient lies in [1/2, 1] for commuting M and D), so that a
- * handful of iterations does. The factor is kept in single precision; residuals are double.
+ * handful of iterations does. The factor is incomplete and in single precision; residuals are
+ * double.
  *
- * @param M     symmetric, positive semi-definite, n by n.
+ * @param M     symmetric, positive semi-definite, n by n, numbered in an order of low fill.
  * @param D     positive, n.
  * @param b     right-hand sides, n by 3.
  * @param x     in: the start; out: the solution, n by 3.
@@ -36,38 +37,24 @@ inline void solveBiharmonic(const SymmetricRows& M, const std::vector<double>& D
 	const std::vector<Point3d>& b, std::vector<Point3d>& x, double tolerance,
 	const Progress& progress = Progress())
 {
-	using FloatMatrix = Eigen::SparseMatrix<float>;
 	const int n = M.size();
 	if (n == 0)
 		return;
-	// Lower triangle of M + sqrt D, by columns (rows of a symmetric matrix are its columns).
-	FloatMatrix S(n, n);
-	{
-		std::vector<Eigen::Triplet<float>> entries;
-		entries.reserve(M.value.size() / 2 + n);
-		for (int i = 0; i < n; ++i) {
-			entries.emplace_back(i, i, float(M.diagonal[i] + std::sqrt(D[i])));
-			for (int k = M.start[i]; k < M.start[i + 1]; ++k)
-				if (M.column[k] > i)
-					entries.emplace_back(M.column[k], i, float(M.value[k]));
-		}
-		S.setFromTriplets(entries.begin(), entries.end());
-	}
-	Eigen::SimplicialLLT<FloatMatrix, Eigen::Lower> factor(S);
-	if (factor.info() != Eigen::Success)
-		throw SolverError("The contraction's linear system could not be factorised: the mesh has "
-						  "degenerate triangles. Resample it first.");
+	constexpr float dropTolerance = 1e-3f;
+	std::vector<double> rootD(n);
+	for (int i = 0; i < n; ++i)
+		rootD[i] = std::sqrt(D[i]);
+	const IncompleteFactor factor(M, rootD, dropTolerance);
+	progress.report(0.5, "Contracting");
 
-	using Block = Eigen::Matrix<float, Eigen::Dynamic, 3>;
-	Block work(n, 3);
+	FloatQuads work(n);
 	const auto precondition = [&](const std::vector<Point3d>& r, std::vector<Point3d>& z) {
 		for (int i = 0; i < n; ++i)
-			for (int k = 0; k < 3; ++k)
-				work(i, k) = float(r[i][k]);
-		work = factor.solve(work).eval();
-		work = factor.solve(work).eval();
+			work[i] = FloatQuad(float(r[i][0]), float(r[i][1]), float(r[i][2]), 0.f);
+		factor.solve(work);
+		factor.solve(work);
 		for (int i = 0; i < n; ++i)
-			z[i] = Point3d(work(i, 0), work(i, 1), work(i, 2));
+			z[i] = Point3d(work[i][0], work[i][1], work[i][2]);
 	};
 	std::vector<Point3d> scratch(n), Ap(n), r(n), z(n), p(n);
 	const auto apply = [&](const std::vector<Point3d>& in, std::vector<Point3d>& out) {

@@ -8,6 +8,7 @@
 
 #include "biharmonic_solver.h"
 #include "cotangent_laplacian.h"
+#include "elimination_order.h"
 #include "parameters.h"
 #include "progress.h"
 #include "stage.h"
@@ -45,13 +46,11 @@ inline void contract(Stage& stage, const Parameters& parameters, const Progress&
 	const double wH2 = std::pow(parameters.wH * publishedWeightUnit, 2);
 	const double wM2 = std::pow(parameters.wM * publishedWeightUnit, 2);
 
-	std::vector<int> unknown(mesh.vertexSlots(), -1), vertexOfUnknown;
-	for (int v = 0; v < mesh.vertexSlots(); ++v)
-		if (!stage.fixed[v]) {
-			unknown[v] = int(vertexOfUnknown.size());
-			vertexOfUnknown.push_back(v);
-		}
+	const std::vector<int> vertexOfUnknown = eliminationOrder(stage);
 	const int n = int(vertexOfUnknown.size());
+	std::vector<int> unknown(mesh.vertexSlots(), -1);
+	for (int i = 0; i < n; ++i)
+		unknown[vertexOfUnknown[i]] = i;
 	progress.report(0, "Contracting");
 	const std::vector<double> weight = cotangentWeights(mesh);
 	const std::vector<Point3d> normal = mesh.vertexNormals();

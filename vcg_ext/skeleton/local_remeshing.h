@@ -33,6 +33,7 @@ inline void mergeVertexState(Stage& stage, int removed, int survivor)
 		stage.poleRadius[survivor] = stage.poleRadius[removed];
 	}
 	stage.fixed[survivor] |= stage.fixed[removed];
+	stage.rank[survivor] = std::max(stage.rank[survivor], stage.rank[removed]);
 }
 
 } // namespace detail
@@ -118,8 +119,9 @@ inline std::vector<int> collapseShortEdges(
 }
 
 /**
- * Splits edges whose two opposite angles are both wider than `splitAngle`, until none is left. The
- * new vertex is the projection of the apex with the wider angle onto the edge; it has no pole.
+ * Splits edges whose two opposite angles are both wider than `splitAngle`, until none is left whose
+ * halves are at least epsilon long. The new vertex is the projection of the apex with the wider
+ * angle onto the edge; it has no pole.
  *
  * The paper splits on one wide angle; taken literally this never ends, since the new edge may have
  * a wide angle opposite in turn. With both angles wide, alpha + beta > 180 degrees, the edge is the
@@ -157,16 +159,17 @@ inline void splitWideAngles(Stage& stage, const Parameters& parameters, MergeFor
 		const double limit = parameters.epsilon * stage.diagonal[stage.component[a]];
 		const Point3d along = mesh.position[b] - mesh.position[a];
 		const double squaredLength = along.SquaredNorm();
-		if (squaredLength < limit * limit)
-			continue;
 		const int apex = cosine < twinCosine ? mesh.apex(h) : mesh.apex(mesh.twin(h));
 		const double t = ((mesh.position[apex] - mesh.position[a]) * along) / squaredLength;
+		if (std::min(t, 1 - t) * std::sqrt(squaredLength) < limit)
+			continue; // a half shorter than epsilon: the next collapse would undo the split
 		const int m = mesh.split(h, mesh.position[a] + along * t);
 		forest.add();
 		stage.pole.push_back(mesh.position[m]);
 		stage.poleRadius.push_back(-1);
 		stage.fixed.push_back(0);
 		stage.component.push_back(stage.component[a]);
+		stage.rank.push_back(-1);
 		mesh.forEachOutgoing(m, [&](int e) {
 			queue.push(e);
 			queue.push(SurfaceMesh::next(e));

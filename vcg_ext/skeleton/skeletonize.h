@@ -56,12 +56,14 @@ inline Stage step(Stage stage, const Parameters& parameters, const Progress& pro
 		stage.poleRadius[to] = stage.poleRadius[v];
 		stage.fixed[to] = stage.fixed[v];
 		stage.component[to] = stage.component[v];
+		stage.rank[to] = stage.rank[v];
 	}
 	const size_t left = size_t(mesh.vertexSlots());
 	stage.pole.resize(left);
 	stage.poleRadius.resize(left);
 	stage.fixed.resize(left);
 	stage.component.resize(left);
+	stage.rank.resize(left);
 
 	const std::vector<double> area =
 		componentAreas(mesh, stage.component, stage.initialArea.size());

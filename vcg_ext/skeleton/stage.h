@@ -34,6 +34,10 @@ struct Stage
 	std::vector<char> fixed;
 	/// Connected component of each vertex.
 	std::vector<int> component;
+	/// Where each vertex stands in the elimination order of the linear systems, and how many
+	/// vertices there were when that order was made; see elimination_order.h.
+	std::vector<int> rank;
+	int rankedVertices = 0;
 
 	/// Bounding box diagonal of each component of the surface: its unit of length.
 	std::vector<double> diagonal;

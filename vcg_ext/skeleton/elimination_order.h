@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file In which order the flow's unknowns are eliminated, so that the factor stays sparse.
+
+#ifndef VCG_MCF_ELIMINATION_ORDER_H
+#define VCG_MCF_ELIMINATION_ORDER_H
+
+#include "stage.h"
+
+#include <Eigen/OrderingMethods>
+#include <Eigen/SparseCore>
+
+#include <algorithm>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/**
+ * Gives the vertices of a stage new ranks by approximate minimum degree (Amestoy, Davis, Duff 1996).
+ * Complexity: about O(V log V).
+ */
+inline void rankByMinimumDegree(Stage& stage)
+{
+	const SurfaceMesh& mesh = stage.mesh;
+	const int n = mesh.vertexSlots();
+	Eigen::SparseMatrix<char> pattern(n, n);
+	pattern.reserve(Eigen::VectorXi::Constant(n, 8));
+	std::vector<int> row;
+	for (int v = 0; v < n; ++v) {
+		row.assign(1, v); // without a diagonal the ordering comes out as the identity
+		mesh.forEachOutgoing(v, [&](int h) { row.push_back(mesh.target(h)); });
+		std::sort(row.begin(), row.end());
+		for (int w : row)
+			pattern.insert(w, v) = 1;
+	}
+	pattern.makeCompressed();
+	Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
+	Eigen::internal::minimum_degree_ordering(pattern, order);
+	stage.rank.resize(n);
+	for (int k = 0; k < n; ++k)
+		stage.rank[order.indices()[k]] = k;
+	stage.rankedVertices = n;
+}
+
+/**
+ * The free vertices of a stage in the order in which to eliminate them.
+ *
+ * An order is found once and inherited: a merged vertex takes the later rank, a vertex made by a
+ * split comes first. When half of the vertices are gone a new one is made.
+ */
+inline std::vector<int> eliminationOrder(Stage& stage)
+{
+	if (stage.rank.empty() || 2 * stage.mesh.vertexSlots() < stage.rankedVertices)
+		rankByMinimumDegree(stage);
+	std::vector<int> order;
+	for (int v = 0; v < stage.mesh.vertexSlots(); ++v)
+		if (!stage.fixed[v])
+			order.push_back(v);
+	std::sort(order.begin(), order.end(), [&](int v, int w) {
+		return stage.rank[v] != stage.rank[w] ? stage.rank[v] < stage.rank[w] : v < w;
+	});
+	return order;
+}
+
+} // namespace vcg::tri::mcf
+
+#endif
