@@ -58,6 +58,20 @@ public:
 			mesh, [&](int v) { return coarseFraction * lengthAt(v); },
 			[&](int h) { return mergeOf(h) == Merge::Free || mergeOf(h) == Merge::IntoTarget; },
 			[&](int h) { collapse(h); }, progress, "Coarsening the surface");
+	}
+
+	/**
+	 * Splits the long edges of the coarsened input. Triangles that coarsening has left alone are
+	 * subdivided within themselves, so that it is known where their new vertices lie.
+	 */
+	void refine(const Progress& progress)
+	{
+		inputFace.assign(mesh.faceSlots(), -1);
+		for (int f = 0; f < mesh.faceSlots(); ++f)
+			if (mesh.isFace(f) && mesh.triangle(f) == surface.triangle(f))
+				inputFace[f] = f;
+		splitLongEdges(progress);
+		std::vector<int>().swap(inputFace);
 		compact();
 	}
 
@@ -258,6 +272,8 @@ public:
 private:
 	/// A chain of sharp edges shorter than this is no crease; target lengths.
 	static constexpr double shortestCrease = 6;
+	/// Creases closer to each other than this are joined; target lengths.
+	static constexpr double closestCreases = 0.25;
 	/// Coarsening merges edges up to this part of the target, and leaves the rest to the rounds.
 	static constexpr double coarseFraction = 0.6;
 	/// cos of the angle by which a flip may turn a face: 60 degrees.
@@ -273,6 +289,7 @@ private:
 	std::vector<int> component;   ///< of each vertex
 	std::vector<double> length;   ///< of each component
 	std::vector<int> track;       ///< of each vertex a half-edge of `surface`
+	std::vector<int> inputFace;   ///< while refining, the input face that a face lies in, or -1
 
 	/// Counts elements and lets the user cancel now and then.
 	class Ticker
@@ -312,8 +329,15 @@ private:
 		const CreaseRole from = role[mesh.origin(h)], to = role[mesh.target(h)];
 		if (from == CreaseRole::Smooth)
 			return to == CreaseRole::Smooth ? Merge::Free : Merge::IntoTarget;
-		if (from == CreaseRole::Corner || !creases.isCrease(h))
+		if (from == CreaseRole::Corner)
 			return Merge::Never;
+		if (!creases.isCrease(h)) {
+			// Creases stay apart, unless their distance would make needles.
+			const double closest = closestCreases * lengthAt(mesh.origin(h));
+			return to == CreaseRole::Crease && mesh.squaredLength(h) < closest * closest
+				? Merge::IntoTarget
+				: Merge::Never;
+		}
 		// Two crease edges must not fall into one.
 		for (const int side : {h, mesh.twin(h)})
 			if (creases.isCrease(mesh.next(side)) && creases.isCrease(mesh.previous(side)))
@@ -323,6 +347,8 @@ private:
 
 	void collapse(int h)
 	{
+		if (!role.empty() && role[mesh.origin(h)] == CreaseRole::Crease && !creases.isCrease(h))
+			role[mesh.target(h)] = CreaseRole::Corner; // two creases meet from now on
 		creases.beforeCollapse(mesh, h);
 		mesh.collapse(h);
 	}
@@ -339,6 +365,9 @@ private:
 		const Point3d middle = (mesh.position[a] + mesh.position[b]) / 2.0;
 		const int m = mesh.split(h, middle);
 		creases.afterSplit(mesh, h);
+		if (!inputFace.empty())
+			for (const int side : {h, mesh.twin(h)})
+				inputFace.push_back(inputFace[side / 3]);
 		component.push_back(component[a]);
 		if (!role.empty())
 			role.push_back(creases.isCrease(h) ? CreaseRole::Crease : CreaseRole::Smooth);
@@ -358,9 +387,14 @@ private:
 			trackCrease(surface, surfaceCreases, surfaceRoles, mesh.position[m], h);
 			return h;
 		}
-		int face = track[a] / 3;
-		trackSurface(surface, mesh.position[m], face);
-		return 3 * face;
+		if (!inputFace.empty() && inputFace[mesh.outgoing(m) / 3] >= 0)
+			return 3 * inputFace[mesh.outgoing(m) / 3];
+		// At a fold the walk from one end may be stopped where that from the other is not.
+		int faceA = track[a] / 3, faceB = track[b] / 3;
+		const Point3d& middle = mesh.position[m];
+		const Point3d fromA = trackSurface(surface, middle, faceA);
+		const Point3d fromB = trackSurface(surface, middle, faceB);
+		return 3 * (SquaredDistance(fromA, middle) <= SquaredDistance(fromB, middle) ? faceA : faceB);
 	}
 
 	/// A crease edge of the input on the crease that joins two corners, by its direction at a.

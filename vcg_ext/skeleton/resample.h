@@ -73,7 +73,8 @@ inline SurfaceMesh resample(const SurfaceMesh& surface,
 		return same;
 	}
 	detail::IsotropicRemesher remesher(surface, component, targetLengthOfComponent);
-	remesher.coarsen(progress.part(0.05, 0.4));
+	remesher.coarsen(progress.part(0, 0.35));
+	remesher.refine(progress.part(0.35, 0.4));
 	for (int i = 0; i < iterations; ++i) {
 		const Progress round = progress.part(
 			0.4 + 0.55 * i / iterations, 0.4 + 0.55 * (i + 1) / iterations);
