@@ -1,0 +1,202 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// The bare library as a command: mesh in, skeleton and one line of figures out. The bench times it
+// beside CGAL, without any host in between.
+
+#include "read_mesh.h"
+#include "report.h"
+
+#include <skeleton/check_input.h>
+#include <skeleton/collapse_to_curve.h>
+#include <skeleton/parameters.h>
+#include <skeleton/poles.h>
+#include <skeleton/resample.h>
+#include <skeleton/skeletonize.h>
+#include <skeleton/target_length.h>
+
+#include <exception>
+#include <functional>
+#include <iostream>
+#include <map>
+#include <string>
+#include <utility>
+
+namespace mcf = vcg::tri::mcf;
+
+namespace {
+
+const char* const usage =
+	"usage: mcfskel_cli MESH [options]\n"
+	"  --skeleton FILE           write the skeleton, as OBJ\n"
+	"  --surface FILE            write the surface that was contracted\n"
+	"  --stage FILE              write the last stage of the contraction\n"
+	"  --no-resample             contract the mesh as it is\n"
+	"  --target-length PCT       edge length of the resampling, in % of the diagonal\n"
+	"  --resample-iterations N   rounds of the resampling\n"
+	"  --resample-only           stop after the resampling\n"
+	"  --pole-method METHOD      voronoi or balls\n"
+	"  --w-l W  --w-h W  --w-m W weights of Eq. 6, in the paper's units\n"
+	"  --epsilon PCT             edges shorter than this are collapsed, in % of the diagonal\n"
+	"  --split-angle DEGREES     edges opposite wider angles are split\n"
+	"  --max-iterations N        stop the flow after this many\n"
+	"  --verbose                 a line for each iteration, and the notes of the input check\n";
+
+struct Options
+{
+	std::string mesh, skeleton, surface, stage;
+	bool resampleOnly = false;
+	bool verbose = false;
+	mcf::Parameters parameters;
+};
+
+mcf::PoleMethod poleMethod(const std::string& name)
+{
+	if (name == "voronoi")
+		return mcf::PoleMethod::Voronoi;
+	if (name == "balls")
+		return mcf::PoleMethod::Balls;
+	throw std::invalid_argument("unknown pole method " + name);
+}
+
+Options parse(int argc, char** argv)
+{
+	Options options;
+	mcf::Parameters& p = options.parameters;
+	const std::map<std::string, std::function<void()>> flags = {
+		{"--no-resample", [&] { p.resample = false; }},
+		{"--resample-only", [&] { options.resampleOnly = true; }},
+		{"--verbose", [&] { options.verbose = true; }},
+	};
+	using Text = const std::string&;
+	const std::map<std::string, std::function<void(Text)>> values = {
+		{"--skeleton", [&](Text t) { options.skeleton = t; }},
+		{"--surface", [&](Text t) { options.surface = t; }},
+		{"--stage", [&](Text t) { options.stage = t; }},
+		{"--target-length", [&](Text t) { p.targetLength = std::stod(t) / 100; }},
+		{"--resample-iterations", [&](Text t) { p.resampleIterations = std::stoi(t); }},
+		{"--pole-method", [&](Text t) { p.poleMethod = poleMethod(t); }},
+		{"--w-l", [&](Text t) { p.wL = std::stod(t); }},
+		{"--w-h", [&](Text t) { p.wH = std::stod(t); }},
+		{"--w-m", [&](Text t) { p.wM = std::stod(t); }},
+		{"--epsilon", [&](Text t) { p.epsilon = std::stod(t) / 100; }},
+		{"--split-angle", [&](Text t) { p.splitAngle = std::stod(t); }},
+		{"--max-iterations", [&](Text t) { p.maxIterations = std::stoi(t); }},
+	};
+	for (int i = 1; i < argc; ++i) {
+		const std::string word = argv[i];
+		if (const auto flag = flags.find(word); flag != flags.end())
+			flag->second();
+		else if (const auto value = values.find(word); value != values.end()) {
+			if (++i >= argc)
+				throw std::invalid_argument(word + " needs a value");
+			value->second(argv[i]);
+		}
+		else if (options.mesh.empty() && word.rfind("--", 0) != 0)
+			options.mesh = word;
+		else
+			throw std::invalid_argument("unknown argument " + word);
+	}
+	if (options.mesh.empty())
+		throw std::invalid_argument("no mesh given");
+	return options;
+}
+
+bench::Curve toCurve(const mcf::CurveSkeleton& skeleton)
+{
+	bench::Curve curve;
+	for (const vcg::Point3d& p : skeleton.position)
+		curve.points.push_back({p[0], p[1], p[2]});
+	for (const auto& edge : skeleton.edges)
+		curve.edges.emplace_back(size_t(edge[0]), size_t(edge[1]));
+	return curve;
+}
+
+void describe(const mcf::Stage& stage)
+{
+	std::cerr << "iteration " << stage.iteration << ": " << stage.mesh.vertexCount() << " vertices, area "
+			  << stage.areaFraction() << ", volume " << stage.volumeFraction() << ", fixed "
+			  << stage.fixedFraction() << '\n';
+}
+
+void run(const Options& options)
+{
+	const mcf::Parameters& parameters = options.parameters;
+	parameters.check();
+	bench::Soup soup = bench::readMesh(options.mesh);
+	bench::Json seconds, report;
+	report.add("program", "mcfskel").add("mesh", options.mesh);
+	report.add("input_vertices", soup.points.size());
+
+	bench::Stopwatch watch;
+	mcf::CheckedSurface checked = mcf::checkedSurface(soup.points, soup.triangles);
+	seconds.add("check", watch.lap());
+	if (options.verbose)
+		for (const std::string& note : checked.notes)
+			std::cerr << note << '\n';
+	soup = bench::Soup();
+
+	watch.lap();
+	if (parameters.resample)
+		checked.mesh = mcf::resample(checked.mesh,
+			mcf::defaultTargetLength(checked.mesh, parameters), parameters.resampleIterations);
+	seconds.add("resample", watch.lap());
+	const mcf::SurfaceMesh& surface = checked.mesh;
+	int components = 0;
+	mcf::connectedComponents(surface, &components);
+	report.add("mesh_components", components).add("vertices", surface.vertexCount());
+	if (!options.surface.empty())
+		bench::writeMesh(surface, options.surface);
+
+	if (!options.resampleOnly) {
+		watch.lap();
+		const mcf::PoleSet poles = mcf::medialPoles(surface, parameters.poleMethod);
+		seconds.add("poles", watch.lap());
+		const mcf::Stage stage = mcf::contractToSkeleton(mcf::initialStage(surface, poles), parameters,
+			mcf::Progress(), options.verbose ? describe : nullptr);
+		seconds.add("contraction", watch.lap());
+		const mcf::CurveSkeleton skeleton = mcf::collapseToCurve(stage);
+		seconds.add("conversion", watch.lap());
+
+		const mcf::SkeletonStatistics counts = mcf::statistics(skeleton);
+		report.add("poles_missing", poles.missing())
+			.add("iterations", stage.iteration)
+			.add("converged", stage.converged)
+			.add("area_fraction", stage.areaFraction())
+			.add("volume_fraction", stage.volumeFraction())
+			.add("fixed_fraction", stage.fixedFraction())
+			.add("stage_vertices", stage.mesh.vertexCount())
+			.add("skeleton_vertices", skeleton.position.size())
+			.add("skeleton_edges", skeleton.edges.size())
+			.add("components", counts.components)
+			.add("cycles", counts.cycles)
+			.add("branches", counts.branches)
+			.add("terminals", counts.terminals)
+			.add("junctions", counts.junctions)
+			.add("skeleton_length", counts.length);
+		if (!options.stage.empty())
+			bench::writeMesh(stage.mesh, options.stage);
+		if (!options.skeleton.empty())
+			bench::writeObj(toCurve(skeleton), options.skeleton);
+	}
+	report.add("seconds", seconds).add("peak_mb", bench::peakMemory());
+	std::cout << report.text() << std::endl;
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+	try {
+		run(parse(argc, argv));
+		return 0;
+	}
+	catch (const std::invalid_argument& error) {
+		std::cerr << "mcfskel_cli: " << error.what() << '\n' << usage;
+		return 2;
+	}
+	catch (const std::exception& error) {
+		std::cerr << "mcfskel_cli: " << error.what() << '\n';
+		return 1;
+	}
+}
