@@ -73,6 +73,12 @@ def ball(centre: Array, radius: float) -> Field:
     return lambda x: np.linalg.norm(x - middle, axis=1) - radius
 
 
+def ellipsoid(half_axes: tuple[float, float, float]) -> Field:
+    """Ellipsoid about the origin; not the exact distance, but never more than it."""
+    a = np.array(half_axes)
+    return lambda x: (np.linalg.norm(x / a, axis=1) - 1.0) * a.min()
+
+
 def thick_rectangle(half_x: float, half_y: float, radius: float) -> Field:
     """All points within `radius` of the rectangle |x| <= half_x, |y| <= half_y, z = 0."""
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .fields import (Array, Field, Tube, ball, channel, cup_body, holed_plate, thick_rectangle,
-                     union)
+from .fields import (Array, Field, Tube, ball, channel, cup_body, ellipsoid, holed_plate,
+                     thick_rectangle, union)
 from .polygonise import box_grid, decimate, polygonise, torus_grid
 from .skeletons import Skeleton, skeleton_of_tubes
 
@@ -366,11 +366,14 @@ def head() -> Shape:
     for side in (-1.0, 1.0):
         tubes.append(bump((-0.1, side, 0.55), 1.32, 0.2, 0.15))
         tubes.append(bump((0.45, 0.4 * side, 0.95), 1.32, 0.12, 0.1))
-    skull = ball((0, 0, 0), 1.0)
+    # No ball: from its centre all points are closest, the worst case of any search tree.
+    half_axes = (1.0, 0.88, 1.12)
+    skull = ellipsoid(half_axes)
     return tube_shape(tubes, 0.054, blend=0.06, rest=[skull], complete=False, mirror=True, tips=5,
-                      rest_box=np.array([[-1.0] * 3, [1.0] * 3]), junctions=1,
-                      description="Ball with small bumps: two ears, two horns, a nose.",
-                      parameters={"radius": 1.0})
+                      rest_box=np.array([[-a for a in half_axes], half_axes]),
+                      description="Head, nearly a ball, with small bumps: two ears, two horns, "
+                                  "a nose.",
+                      parameters=dict(zip(("half_x", "half_y", "half_z"), half_axes)))
 
 
 def twin_ears() -> Shape:
