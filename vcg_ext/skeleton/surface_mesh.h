@@ -461,7 +461,7 @@ private:
 		return ++stampClock;
 	}
 
-	/// Pairs the half-edges by a bucket for each lower end: O(F).
+	/// Pairs the half-edges; each lower end has a bucket of those that wait for their twin. O(F).
 	void pairTwins()
 	{
 		const int n = int(position.size());
@@ -476,8 +476,9 @@ private:
 			const int low = lower(h);
 			for (int i = start[low]; i < end[low]; ++i) {
 				const int g = bucket[i];
-				if (twins[g] < 0 && origin(g) == target(h) && target(g) == origin(h)) {
+				if (origin(g) == target(h) && target(g) == origin(h)) {
 					join(h, g);
+					bucket[i] = bucket[--end[low]]; // a fan of many faces stays cheap
 					break;
 				}
 			}
