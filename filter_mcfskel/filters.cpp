@@ -68,13 +68,15 @@ const std::vector<FilterSpec>& catalogue()
 	return filters;
 }
 
-Outcome runFilter(const FilterSpec& filter, MeshDocument& document, const ParameterValues& parameters,
-	const std::function<void(const QString&)>& log, vcg::CallBackPos* callback)
+Outcome runFilter(const FilterSpec& filter, MeshDocument& document,
+	const ParameterValues& parameters, const std::function<void(const QString&)>& log,
+	vcg::CallBackPos* callback)
 {
 	Outcome outcome;
 	try {
 		if (!document.mm())
-			throw vcg::tri::mcf::InvalidInput("There is no layer: open a closed triangle mesh first.");
+			throw vcg::tri::mcf::InvalidInput(
+				"There is no layer: open a closed triangle mesh first.");
 		FilterRun run {document, parameters, log, hostProgress(callback)};
 		outcome.results = filter.run(run);
 		log(resultsText(outcome.results));

@@ -128,8 +128,9 @@ struct Outcome
  * Runs a filter. This is the one boundary that no exception crosses: the hosts stop, with the user's
  * work lost, on most of them. After an error the document is as it was.
  */
-Outcome runFilter(const FilterSpec& filter, MeshDocument& document, const ParameterValues& parameters,
-	const std::function<void(const QString&)>& log, vcg::CallBackPos* callback);
+Outcome runFilter(const FilterSpec& filter, MeshDocument& document,
+	const ParameterValues& parameters, const std::function<void(const QString&)>& log,
+	vcg::CallBackPos* callback);
 
 } // namespace mcfskel
 

@@ -88,8 +88,8 @@ void requireWritable(const MeshModel& layer, const char* name)
 {
 	const auto* attribute = findAttribute(layer.cm.vert_attr, name);
 	if (attribute && !isOfType<T>(*attribute))
-		throw mcf::InvalidInput("The layer '" + layer.label().toStdString()
-			+ "' has an attribute '" + name
+		throw mcf::InvalidInput("The layer '" + layer.label().toStdString() + "' has an attribute '"
+			+ name
 			+ "' of another type, made by something else: remove it, or work on a copy of the layer.");
 }
 
@@ -120,8 +120,9 @@ void setState(MeshModel& layer, LayerState state)
 {
 	const auto* attribute = findAttribute(layer.cm.mesh_attr, stateAttribute);
 	if (attribute && !isOfType<StatePointer>(*attribute))
-		throw mcf::InvalidInput("The layer '" + layer.label().toStdString() + "' has a mesh attribute '"
-			+ stateAttribute + "' made by something else: work on a copy of the layer.");
+		throw mcf::InvalidInput("The layer '" + layer.label().toStdString()
+			+ "' has a mesh attribute '" + stateAttribute
+			+ "' made by something else: work on a copy of the layer.");
 	state.fingerprint = fingerprint(layer.cm);
 	Allocator::GetPerMeshAttribute<StatePointer>(layer.cm, stateAttribute)() =
 		std::make_shared<const LayerState>(std::move(state));
@@ -432,7 +433,8 @@ void DocumentEdit::writeNodes(
 {
 	auto attribute = vertexAttribute<Scalarm>(layer, nodeAttribute);
 	for (size_t slot = 0; slot < vertexOfSlot.size(); ++slot)
-		attribute[slot] = vertexOfSlot[slot] < 0 ? Scalarm(-1) : Scalarm(node[size_t(vertexOfSlot[slot])]);
+		attribute[slot] =
+			vertexOfSlot[slot] < 0 ? Scalarm(-1) : Scalarm(node[size_t(vertexOfSlot[slot])]);
 }
 
 void DocumentEdit::writeNodes(const SurfaceLink& surface, const std::vector<int>& node)

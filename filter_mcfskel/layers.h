@@ -97,12 +97,12 @@ public:
 	DocumentEdit& operator=(const DocumentEdit&) = delete;
 
 	/// A new surface layer in the frame of `source`.
-	MeshModel& addSurface(const MeshModel& source, const QString& label,
-		const vcg::tri::mcf::SurfaceMesh& mesh);
+	MeshModel& addSurface(
+		const MeshModel& source, const QString& label, const vcg::tri::mcf::SurfaceMesh& mesh);
 
 	/// A new layer of points without faces in the frame of `source`.
-	MeshModel& addPoints(const MeshModel& source, const QString& label,
-		const std::vector<vcg::Point3d>& points);
+	MeshModel& addPoints(
+		const MeshModel& source, const QString& label, const std::vector<vcg::Point3d>& points);
 
 	/// A new layer of nodes and edges in the frame of `source`; the radius is also the quality.
 	MeshModel& addCurve(const MeshModel& source, const QString& label,
@@ -121,8 +121,8 @@ public:
 		std::shared_ptr<const vcg::tri::mcf::PoleSet> poles);
 
 	/// Writes mcfskel_node: for each vertex of the layer's surface the vertex it has merged into.
-	void writeNodes(MeshModel& layer, const std::vector<int>& vertexOfSlot,
-		const std::vector<int>& node);
+	void writeNodes(
+		MeshModel& layer, const std::vector<int>& vertexOfSlot, const std::vector<int>& node);
 
 	/// As above for a surface known by its link, if that layer is still there and unchanged.
 	void writeNodes(const SurfaceLink& surface, const std::vector<int>& node);

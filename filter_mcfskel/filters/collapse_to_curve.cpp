@@ -26,8 +26,8 @@ Results run(FilterRun& run)
 		mcf::collapseToCurve(*found.stage, run.parameters.fraction("epsilon"), run.progress);
 
 	DocumentEdit edit(run.document);
-	edit.addCurve(run.layer(), baseName(run.layer()) + "_skeleton", skeleton.position, skeleton.edges,
-		skeleton.radius);
+	edit.addCurve(run.layer(), baseName(run.layer()) + "_skeleton", skeleton.position,
+		skeleton.edges, skeleton.radius);
 	edit.writeNodes(found.surface, skeleton.node);
 	edit.commit();
 	return curveResults(skeleton);
@@ -38,12 +38,13 @@ Results run(FilterRun& run)
 FilterSpec collapseToCurveFilter()
 {
 	return {"generate_curve_skeleton_from_meso_mcf", menuName("Collapse to Curve"),
-		helpPage("Turns a stage of the contraction into a curve skeleton, a new layer of nodes and edges: "
-				 "collapses its shortest edges until no face is left, without changing its topology. The "
-				 "vertex quality is the local thickness of the shape, also kept as "
-				 "<i>mcfskel_radius</i>.<br><br>"
-				 "The surface layer, if it is still there, gets <i>mcfskel_node</i>: for each vertex the "
-				 "skeleton vertex that it belongs to. Last stage of the skeletonization."),
+		helpPage(
+			"Turns a stage of the contraction into a curve skeleton, a new layer of nodes and edges: "
+			"collapses its shortest edges until no face is left, without changing its topology. The "
+			"vertex quality is the local thickness of the shape, also kept as "
+			"<i>mcfskel_radius</i>.<br><br>"
+			"The surface layer, if it is still there, gets <i>mcfskel_node</i>: for each vertex the "
+			"skeleton vertex that it belongs to. Last stage of the skeletonization."),
 		FilterCategory::Remeshing, MeshModel::MM_FACENUMBER, {epsilonParameter()}, run};
 }
 

@@ -47,7 +47,8 @@ ParameterSpec resampleIterationsParameter()
 
 ParameterSpec poleMethodParameter()
 {
-	return {ParameterKind::Choice, "pole_method", double(mcf::Parameters().poleMethod), "Pole method",
+	return {ParameterKind::Choice, "pole_method", double(mcf::Parameters().poleMethod),
+		"Pole method",
 		"How the medial pole of each vertex is found. 'voronoi': the farthest corner of its Voronoi "
 		"cell inside the shape, as in the paper. 'balls': the ball that touches the surface at the "
 		"vertex and shrinks until it is empty; much faster on large meshes.",
@@ -73,7 +74,8 @@ std::vector<ParameterSpec> weightParameters()
 
 ParameterSpec epsilonParameter()
 {
-	return {ParameterKind::Length, "epsilon", 100 * mcf::Parameters().epsilon, "Shortest edge epsilon",
+	return {ParameterKind::Length, "epsilon", 100 * mcf::Parameters().epsilon,
+		"Shortest edge epsilon",
 		"Edges shorter than this are collapsed, mesh units or percent of the bounding box diagonal of "
 		"the surface (of each connected component). A larger one gives a coarser skeleton in less "
 		"time; sane are 0.1 to 0.5 %."};
@@ -138,8 +140,9 @@ Results curveResults(const mcf::CurveSkeleton& skeleton)
 
 QString stageLine(const mcf::Stage& stage)
 {
-	return QString("Iteration %1: %2 vertices, %3 % of the area and %4 % of the volume left, %5 % of the "
-				   "vertices fixed%6")
+	return QString(
+		"Iteration %1: %2 vertices, %3 % of the area and %4 % of the volume left, %5 % of the "
+		"vertices fixed%6")
 		.arg(stage.iteration)
 		.arg(stage.mesh.vertexCount())
 		.arg(100 * stage.areaFraction(), 0, 'g', 3)
@@ -178,8 +181,7 @@ SurfaceLayer resampledSurface(
 	return result;
 }
 
-PoledSurface surfaceWithPoles(
-	FilterRun& run, mcf::PoleMethod method, const mcf::Progress& progress)
+PoledSurface surfaceWithPoles(FilterRun& run, mcf::PoleMethod method, const mcf::Progress& progress)
 {
 	PoledSurface result;
 	result.surface = readSurface(run.layer());

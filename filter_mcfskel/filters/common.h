@@ -65,8 +65,8 @@ struct PoledSurface
 };
 
 /// The poles that the current surface layer carries; if it has none, computes them and says so.
-PoledSurface surfaceWithPoles(FilterRun& run, vcg::tri::mcf::PoleMethod method,
-	const vcg::tri::mcf::Progress& progress);
+PoledSurface surfaceWithPoles(
+	FilterRun& run, vcg::tri::mcf::PoleMethod method, const vcg::tri::mcf::Progress& progress);
 
 /// NAME_meso_K.
 QString stageLabel(const QString& name, const vcg::tri::mcf::Stage& stage);

@@ -30,8 +30,9 @@ Start startOf(FilterRun& run)
 		return start;
 	}
 	if (hasStageAttributes(run.layer()))
-		run.log("This layer was a stage of the contraction, but its state is gone or its geometry was "
-				"changed: it is taken as a surface of its own.");
+		run.log(
+			"This layer was a stage of the contraction, but its state is gone or its geometry was "
+			"changed: it is taken as a surface of its own.");
 	start.surface = surfaceWithPoles(run, mcf::Parameters().poleMethod, run.progress.part(0, 0.1));
 	start.stage = std::make_shared<const mcf::Stage>(
 		mcf::initialStage(*start.surface.surface.mesh, *start.surface.poles));
@@ -85,13 +86,14 @@ FilterSpec contractionStepFilter()
 	parameters.push_back({ParameterKind::Integer, "steps", 1, "Steps",
 		"Iterations to make, at least 1; each leaves a layer of its own, NAME_meso_K."});
 	return {"generate_meso_skeleton_mcf", menuName("Contraction Step"),
-		helpPage("Contracts the surface by one or more steps of mean curvature flow that is drawn to the "
-				 "medial poles, and mends its triangles: a surface becomes a meso-skeleton, part volume, "
-				 "part sheet, part curve, and in the end a curve. Each step is a new layer; the vertex "
-				 "quality is the local thickness.<br><br>"
-				 "Starts from a surface, or carries on from the layer of an earlier step: step by step it "
-				 "is the same as Full Skeletonize. Lengths refer to the surface that the steps came from. "
-				 "Third stage of the skeletonization."),
+		helpPage(
+			"Contracts the surface by one or more steps of mean curvature flow that is drawn to the "
+			"medial poles, and mends its triangles: a surface becomes a meso-skeleton, part volume, "
+			"part sheet, part curve, and in the end a curve. Each step is a new layer; the vertex "
+			"quality is the local thickness.<br><br>"
+			"Starts from a surface, or carries on from the layer of an earlier step: step by step it "
+			"is the same as Full Skeletonize. Lengths refer to the surface that the steps came from. "
+			"Third stage of the skeletonization."),
 		FilterCategory::Remeshing, MeshModel::MM_FACENUMBER, parameters, run};
 }
 

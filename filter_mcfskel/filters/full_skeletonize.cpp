@@ -47,7 +47,8 @@ void contractAll(FilterRun& run, const mcf::Parameters& parameters, const mcf::P
 	mcf::Stage end = mcf::contractToSkeleton(
 		mcf::initialStage(*pipeline.surface.mesh, *pipeline.poles), parameters, progress, onStage);
 	if (!end.converged)
-		run.log(QString("The contraction has not converged after %1 iterations.").arg(end.iteration));
+		run.log(
+			QString("The contraction has not converged after %1 iterations.").arg(end.iteration));
 	if (!last || last->iteration != end.iteration)
 		pipeline.kept.push_back(std::make_shared<const mcf::Stage>(std::move(end)));
 }
@@ -86,8 +87,8 @@ Pipeline skeletonize(FilterRun& run, const mcf::Parameters& parameters)
 	contractAll(run, parameters, run.progress.part(0.25, 0.9), pipeline);
 	note("contraction", watch.lap());
 
-	pipeline.skeleton = mcf::collapseToCurve(
-		*pipeline.kept.back(), parameters.epsilon, run.progress.part(0.9, 1));
+	pipeline.skeleton =
+		mcf::collapseToCurve(*pipeline.kept.back(), parameters.epsilon, run.progress.part(0.9, 1));
 	note("collapse", watch.lap());
 	note("refine", 0);
 	return pipeline;
@@ -188,23 +189,23 @@ FilterSpec fullSkeletonizeFilter()
 	parameters.push_back(splitAngleParameter());
 	parameters.push_back({ParameterKind::Integer, "keep_stages", 0, "Keep every k-th stage",
 		"Every k-th meso-skeleton becomes a layer NAME_meso_K; 0 keeps the last one only."});
-	parameters.push_back(
-		ParameterSpec {ParameterKind::Integer, "max_iterations", double(defaults.maxIterations),
-			"Most iterations",
-			"The contraction stops after this many iterations even if it has not converged; it usually "
-			"does after 10 to 40."}
-			.asAdvanced());
+	parameters.push_back(ParameterSpec {ParameterKind::Integer, "max_iterations",
+		double(defaults.maxIterations), "Most iterations",
+		"The contraction stops after this many iterations even if it has not converged; it usually "
+		"does after 10 to 40."}
+							 .asAdvanced());
 	parameters.push_back(poleMethodParameter().asAdvanced());
 	return {"generate_curve_skeleton_mcf", menuName("Full Skeletonize"),
-		helpPage("Computes the curve skeleton of a closed surface: a graph of nodes and edges in the "
-				 "middle of the shape, with one component for each of its components and one cycle for "
-				 "each of its handles. Resamples the surface, finds its medial poles, contracts it until "
-				 "no volume is left and collapses the result to curves; each of these is a filter of its "
-				 "own, too.<br><br>"
-				 "New layers: the resampled surface, the last (or every k-th) stage of the contraction, and "
-				 "the skeleton. The skeleton's vertex quality is the local thickness; the vertex attribute "
-				 "<i>mcfskel_node</i> of the surfaces tells the skeleton vertex of each of their "
-				 "vertices."),
+		helpPage(
+			"Computes the curve skeleton of a closed surface: a graph of nodes and edges in the "
+			"middle of the shape, with one component for each of its components and one cycle for "
+			"each of its handles. Resamples the surface, finds its medial poles, contracts it until "
+			"no volume is left and collapses the result to curves; each of these is a filter of its "
+			"own, too.<br><br>"
+			"New layers: the resampled surface, the last (or every k-th) stage of the contraction, and "
+			"the skeleton. The skeleton's vertex quality is the local thickness; the vertex attribute "
+			"<i>mcfskel_node</i> of the surfaces tells the skeleton vertex of each of their "
+			"vertices."),
 		FilterCategory::Remeshing, MeshModel::MM_FACENUMBER, parameters, run};
 }
 

@@ -40,11 +40,12 @@ Results run(FilterRun& run)
 FilterSpec medialPolesFilter()
 {
 	return {"compute_medial_poles_mcf", menuName("Medial Poles"),
-		helpPage("Finds the medial pole of each vertex: the centre of a largest ball inside the shape that "
-				 "touches the surface there. The contraction is drawn to the poles, which keeps the "
-				 "skeleton in the middle of the shape.<br><br>"
-				 "Writes the vertex attributes <i>mcfskel_pole</i> and <i>mcfskel_pole_radius</i> (-1: no "
-				 "pole) on the layer. Second stage of the skeletonization."),
+		helpPage(
+			"Finds the medial pole of each vertex: the centre of a largest ball inside the shape that "
+			"touches the surface there. The contraction is drawn to the poles, which keeps the "
+			"skeleton in the middle of the shape.<br><br>"
+			"Writes the vertex attributes <i>mcfskel_pole</i> and <i>mcfskel_pole_radius</i> (-1: no "
+			"pole) on the layer. Second stage of the skeletonization."),
 		FilterCategory::Quality, MeshModel::MM_FACENUMBER,
 		{poleMethodParameter(),
 			{ParameterKind::Boolean, "create_layer", 0, "Create a layer of the poles",

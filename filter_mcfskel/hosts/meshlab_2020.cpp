@@ -28,8 +28,8 @@ void addParameter(
 		list.addParam(RichFloat(p.name, float(p.defaultValue), p.label, p.tooltip));
 		break;
 	case ParameterKind::Length:
-		list.addParam(
-			RichAbsPerc(p.name, defaultLength(p, diagonal), 0, float(diagonal), p.label, p.tooltip));
+		list.addParam(RichAbsPerc(
+			p.name, defaultLength(p, diagonal), 0, float(diagonal), p.label, p.tooltip));
 		break;
 	case ParameterKind::Choice:
 		list.addParam(RichEnum(p.name, int(p.defaultValue), p.choices, p.label, p.tooltip));
@@ -40,8 +40,8 @@ void addParameter(
 	}
 }
 
-void readParameter(ParameterValues& values, const ParameterSpec& p, const RichParameterList& list,
-	double diagonal)
+void readParameter(
+	ParameterValues& values, const ParameterSpec& p, const RichParameterList& list, double diagonal)
 {
 	switch (p.kind) {
 	case ParameterKind::Boolean: values.set(p.name, list.getBool(p.name)); break;

@@ -25,7 +25,8 @@ public:
 	FILTER_ARITY filterArity(QAction* action) const override;
 	int getPreConditions(QAction* action) const override;
 	int postCondition(QAction* action) const override;
-	void initParameterSet(QAction* action, MeshDocument& document, RichParameterList& list) override;
+	void initParameterSet(
+		QAction* action, MeshDocument& document, RichParameterList& list) override;
 	bool applyFilter(QAction* action, MeshDocument& document, const RichParameterList& parameters,
 		vcg::CallBackPos* callback) override;
 };

@@ -30,8 +30,8 @@ void addParameter(
 		list.addParam(RichFloat(p.name, Scalarm(p.defaultValue), p.label, p.tooltip, p.advanced));
 		break;
 	case ParameterKind::Length:
-		list.addParam(RichPercentage(p.name, defaultLength(p, diagonal), 0, Scalarm(diagonal), p.label,
-			p.tooltip, p.advanced));
+		list.addParam(RichPercentage(p.name, defaultLength(p, diagonal), 0, Scalarm(diagonal),
+			p.label, p.tooltip, p.advanced));
 		break;
 	case ParameterKind::Choice:
 		list.addParam(
@@ -44,8 +44,8 @@ void addParameter(
 	}
 }
 
-void readParameter(ParameterValues& values, const ParameterSpec& p, const RichParameterList& list,
-	double diagonal)
+void readParameter(
+	ParameterValues& values, const ParameterSpec& p, const RichParameterList& list, double diagonal)
 {
 	switch (p.kind) {
 	case ParameterKind::Boolean: values.set(p.name, list.getBool(p.name)); break;
@@ -137,7 +137,8 @@ std::map<std::string, QVariant> FilterMcfskelPlugin::applyFilter(const QAction* 
 	for (const ParameterSpec& p : filter.parameters)
 		readParameter(values, p, parameters, diagonal);
 	const Outcome outcome = runFilter(
-		filter, document, values, [this](const QString& line) { log(line.toStdString()); }, callback);
+		filter, document, values, [this](const QString& line) { log(line.toStdString()); },
+		callback);
 	if (!outcome.error.isEmpty())
 		throw MLException(outcome.error);
 	return outcome.results;

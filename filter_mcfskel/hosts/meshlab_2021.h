@@ -26,10 +26,11 @@ public:
 	FilterArity filterArity(const QAction* action) const override;
 	int getPreConditions(const QAction* action) const override;
 	int postCondition(const QAction* action) const override;
-	RichParameterList initParameterList(const QAction* action, const MeshDocument& document) override;
+	RichParameterList initParameterList(
+		const QAction* action, const MeshDocument& document) override;
 	std::map<std::string, QVariant> applyFilter(const QAction* action,
-		const RichParameterList& parameters, MeshDocument& document, unsigned int& postConditionMask,
-		vcg::CallBackPos* callback) override;
+		const RichParameterList& parameters, MeshDocument& document,
+		unsigned int& postConditionMask, vcg::CallBackPos* callback) override;
 };
 
 #endif

@@ -1,0 +1,247 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Computes the curve skeleton of a mesh and draws it."""
+
+import argparse
+import os
+import sys
+from pathlib import Path
+from typing import Any
+
+DEFAULT_MESH = Path(__file__).resolve().parent.parent / "meshes" / "animal.off"
+FILTER = "generate_curve_skeleton_mcf"
+
+
+class UserError(Exception):
+    """What went wrong, in one line for the user."""
+
+
+def length(text: str) -> tuple[str, float]:
+    """A length as the command line takes it: "0.2%" of the bounding box diagonal, or mesh units."""
+    kind, number = ("percent", text[:-1]) if text.endswith("%") else ("units", text)
+    try:
+        value = float(number)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"'{text}' is neither a percentage nor a number") from None
+    if not 0 <= value < float("inf"):
+        raise argparse.ArgumentTypeError(f"'{text}' is not a length")
+    return kind, value
+
+
+def parse_arguments(arguments: list[str] | None = None) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        prog="scripts/skeletonize.sh", description=__doc__, allow_abbrev=False,
+        epilog="Lengths are mesh units, or with a % sign percent of the bounding box diagonal. "
+               "What is not given takes the plugin's own default.")
+    parser.add_argument("mesh", nargs="?", type=Path, default=DEFAULT_MESH, metavar="MESH",
+                        help="closed triangle mesh, any format that MeshLab opens "
+                             f"(default: meshes/{DEFAULT_MESH.name})")
+    parser.add_argument("output", nargs="?", type=Path, default=Path("out"), metavar="OUTPUT_FOLDER",
+                        help="where the results go (default: out)")
+    flow = parser.add_argument_group("the skeletonization")
+    flow.add_argument("--w-l", type=float, metavar="W", help="smoothness weight (1)")
+    flow.add_argument("--w-h", type=float, metavar="W", help="velocity weight (20)")
+    flow.add_argument("--w-m", type=float, metavar="W", help="medial weight (40)")
+    flow.add_argument("--epsilon", type=length, metavar="LENGTH",
+                      help="edges shorter than this are collapsed (0.2%%)")
+    flow.add_argument("--split-angle", type=float, metavar="DEGREES",
+                      help="edges opposite wider angles are split (110)")
+    flow.add_argument("--no-resample", dest="resample", action="store_const", const=False,
+                      help="contract the mesh as it is")
+    flow.add_argument("--target-length", type=length, metavar="LENGTH",
+                      help="edge length of the resampling (chosen from the mesh)")
+    flow.add_argument("--resample-iterations", type=int, metavar="N", help="rounds of it (5)")
+    flow.add_argument("--pole-method", choices=["voronoi", "balls"], help="how poles are found")
+    flow.add_argument("--max-iterations", type=int, metavar="N", help="cap of the contraction (500)")
+    results = parser.add_argument_group("the results")
+    results.add_argument("--keep-stages", type=int, metavar="K",
+                         help="also write every K-th stage of the contraction, NAME_meso_K.ply")
+    results.add_argument("--formats", nargs="+", choices=["ply", "obj"], default=["ply"],
+                         metavar="FORMAT", help="formats of the skeleton: ply, obj (lines)")
+    results.add_argument("--no-picture", dest="picture", action="store_false", help="draw nothing")
+    results.add_argument("--colour", choices=["radius", "branch"], default="radius",
+                         help="what the skeleton's colour means in the picture")
+    results.add_argument("--up", choices=["auto", "x", "y", "z"], default="auto",
+                         help="the axis that points upwards in the picture")
+    results.add_argument("--verbose", action="store_true", help="print the plugin's log")
+    parser.add_argument("--plugin", type=Path, help=argparse.SUPPRESS)
+    options = parser.parse_args(arguments)
+    if options.keep_stages is not None and options.keep_stages < 1:
+        parser.error("argument --keep-stages: must be at least 1")
+    return options
+
+
+def filter_parameters(options: argparse.Namespace) -> dict[str, Any]:
+    """The filter's parameters that were given, as pymeshlab takes them."""
+    import pymeshlab
+    kinds = {"percent": pymeshlab.PercentageValue, "units": pymeshlab.PureValue}
+    parameters = {}
+    for name in ["w_l", "w_h", "w_m", "epsilon", "split_angle", "resample", "target_length",
+                 "resample_iterations", "pole_method", "max_iterations", "keep_stages"]:
+        value = getattr(options, name)
+        if isinstance(value, tuple):
+            value = kinds[value[0]](value[1])
+        if value is not None:
+            parameters[name] = value
+    return parameters
+
+
+def run_filter(options: argparse.Namespace) -> tuple[Any, dict[str, float]]:
+    """Loads the mesh and runs the filter with a progress bar; returns the layers and the numbers."""
+    import pymeshlab
+    from tqdm import tqdm
+
+    from host_progress import host_output, terminal
+
+    if not options.mesh.is_file():
+        raise UserError(f"there is no file '{options.mesh}'")
+    pymeshlab.load_plugin(str(options.plugin))
+    layers = pymeshlab.MeshSet(verbose=True)
+    messages: list[str] = []
+    error: Exception | None = None
+    results: dict[str, float] = {}
+    parameters = filter_parameters(options)
+    with terminal() as stream, tqdm(
+            total=100, file=stream, leave=False, desc="Reading", mininterval=0,
+            bar_format="{desc:<32.32} {bar} {percentage:3.0f} % {elapsed}") as bar:
+
+        def on_progress(percent: int, what: str) -> None:
+            bar.set_description_str(what, refresh=False)
+            bar.update(max(0, percent - bar.n))
+
+        with host_output(on_progress, messages.append):
+            try:
+                layers.load_new_mesh(str(options.mesh.resolve()))
+                if layers.mesh_number() > 1:
+                    layers.generate_by_merging_visible_meshes()
+                bar.reset()
+                messages.clear()
+                results = layers.apply_filter(FILTER, **parameters)
+            except pymeshlab.PyMeshLabException as exception:
+                error = exception
+    if options.verbose or error is None and not results["converged"]:
+        print("\n".join(messages), file=sys.stderr)
+    if error is not None:
+        raise UserError(f"{options.mesh}: {reason(str(error))}")
+    return layers, results
+
+
+def reason(text: str) -> str:
+    """The plugin's own words in pymeshlab's error, on one line."""
+    lines = [line.strip() for line in text.splitlines() if line.strip()]
+    if len(lines) > 1 and lines[0].startswith("Failed to apply filter"):
+        lines = [line.removeprefix("Details: ") for line in lines[1:]]
+    return " ".join(lines)
+
+
+def layer_named(layers: Any, ending: str) -> Any:
+    """The newest layer whose name ends so, or None."""
+    found = [mesh for mesh in layers if mesh.label().endswith(ending)]
+    return found[-1] if found else None
+
+
+def vertex_attribute(mesh: Any, name: str, kind: str = "scalar") -> Any:
+    """A custom attribute as an array, or None; pymeshlab has no way to ask."""
+    import pymeshlab
+    reader = {"scalar": mesh.vertex_custom_scalar_attribute_array,
+              "point": mesh.vertex_custom_point_attribute_matrix}[kind]
+    try:
+        return reader(name)
+    except pymeshlab.PyMeshLabException:
+        return None
+
+
+def surface_attributes(mesh: Any) -> dict[str, Any]:
+    """The attributes of a surface or stage as columns of a PLY file."""
+    import numpy as np
+    types = {"mcfskel_node": np.int32, "mcfskel_fixed": np.int32, "mcfskel_radius": np.float32,
+             "mcfskel_pole_radius": np.float64}
+    found = {name: vertex_attribute(mesh, name) for name in types}
+    columns = {name: values.astype(types[name]) for name, values in found.items() if values is not None}
+    pole = vertex_attribute(mesh, "mcfskel_pole", "point")
+    if pole is not None:
+        columns |= {f"mcfskel_pole_{axis}": pole[:, k] for k, axis in enumerate("xyz")}
+    return columns
+
+
+def write_obj(path: Path, nodes: Any, edges: Any) -> None:
+    """Two-index lines, the only edges that survive MeshLab's own reading and writing."""
+    part = path.with_name(path.name + ".part")
+    with open(part, "w") as out:
+        for x, y, z in nodes:
+            out.write(f"v {x!r} {y!r} {z!r}\n")
+        for a, b in edges + 1:
+            out.write(f"l {a} {b}\n")
+    os.replace(part, path)
+
+
+def write_results(options: argparse.Namespace, layers: Any) -> list[Path]:
+    """Writes every file and returns their names."""
+    from picture import draw
+    from ply_files import write_skeleton, write_surface
+
+    folder, name = options.output, options.mesh.stem
+    folder.mkdir(parents=True, exist_ok=True)
+    written = []
+
+    skeleton = layer_named(layers, "_skeleton")
+    nodes, edges = skeleton.vertex_matrix(), skeleton.edge_matrix()
+    radius = vertex_attribute(skeleton, "mcfskel_radius")
+    surface = layer_named(layers, "_resampled") or next(
+        mesh for mesh in layers if vertex_attribute(mesh, "mcfskel_node") is not None)
+    vertices, faces = surface.vertex_matrix(), surface.face_matrix()
+
+    path = folder / f"{name}_skeleton.ply"
+    write_skeleton(path, nodes, edges, radius)
+    written.append(path)
+    if "obj" in options.formats:
+        path = folder / f"{name}_skeleton.obj"
+        write_obj(path, nodes.tolist(), edges)
+        written.append(path)
+    path = folder / f"{name}_surface.ply"
+    write_surface(path, vertices, faces, surface_attributes(surface))
+    written.append(path)
+    if options.keep_stages:
+        for mesh in layers:
+            base, _, iteration = mesh.label().rpartition("_meso_")
+            if base:
+                path = folder / f"{name}_meso_{iteration}.ply"
+                write_surface(path, mesh.vertex_matrix(), mesh.face_matrix(), surface_attributes(mesh))
+                written.append(path)
+    if options.picture:
+        path = folder / f"{name}.png"
+        draw(vertices, faces, nodes, edges, radius, path, options.colour, options.up)
+        written.append(path)
+    return written
+
+
+def summary(results: dict[str, float], written: list[Path]) -> str:
+    seconds = sum(value for key, value in results.items() if key.startswith("seconds_"))
+    ending = "converged" if results["converged"] else "did NOT converge"
+    lines = [
+        f"skeleton: {results['skeleton_vertices']} nodes, {results['branches']} branches, "
+        f"{results['terminals']} tips, {results['junctions']} junctions, "
+        f"{results['components']} components, {results['cycles']} cycles",
+        f"contraction: {ending} after {results['iterations']} iterations; {seconds:.2f} s in all",
+    ]
+    return "\n".join(lines + [f"wrote {path}" for path in written])
+
+
+def main() -> int:
+    options = parse_arguments()
+    try:
+        layers, results = run_filter(options)
+        written = write_results(options, layers)
+    except UserError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 1
+    except OSError as error:
+        print(f"error: {error.filename or options.output}: {error.strerror or error}", file=sys.stderr)
+        return 1
+    print(summary(results, written))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
