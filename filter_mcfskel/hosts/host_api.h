@@ -11,11 +11,37 @@
 #include <common/interfaces.h>
 #else
 #include <common/plugins/interfaces/filter_plugin.h>
+
+#include <common/parameters/rich_parameter_list.h>
 #endif
+
+#include <utility>
 
 namespace mcfskel::host {
 
 #if MCFSKEL_HOST_API == 2020
+
+using FilterBase = MeshFilterInterface;
+using RichPercentage = ::RichAbsPerc;
+/// The document as a filter's parameters may see it.
+using ParameterDocument = MeshDocument;
+
+/// A parameter of MeshLab's; this age cannot mark one as advanced.
+template <class Rich, class... Arguments>
+Rich makeParameter(bool /*advanced*/, Arguments&&... arguments)
+{
+	return Rich(std::forward<Arguments>(arguments)...);
+}
+
+inline MeshModel* currentLayer(ParameterDocument& document)
+{
+	return document.mm();
+}
+
+inline int layerId(const RichParameterList& list, const QString& name)
+{
+	return list.getMesh(name)->id();
+}
 
 inline void updateBoxAndNormals(MeshModel& layer)
 {
@@ -28,6 +54,27 @@ inline void removeLayer(MeshDocument& document, int id)
 }
 
 #else
+
+using FilterBase = FilterPlugin;
+using RichPercentage = ::RichPercentage;
+using ParameterDocument = const MeshDocument;
+
+template <class Rich, class... Arguments>
+Rich makeParameter(bool advanced, Arguments&&... arguments)
+{
+	return Rich(std::forward<Arguments>(arguments)..., advanced);
+}
+
+/// The current layer as a RichMesh takes it.
+inline unsigned currentLayer(ParameterDocument& document)
+{
+	return document.mm() ? unsigned(document.mm()->id()) : 0;
+}
+
+inline int layerId(const RichParameterList& list, const QString& name)
+{
+	return int(list.getMeshId(name));
+}
 
 inline void updateBoxAndNormals(MeshModel& layer)
 {

@@ -3,57 +3,9 @@
 
 #include "meshlab_2020.h"
 
-#include "../layers.h"
+#include "translate.h"
 
 using namespace mcfskel;
-
-namespace {
-
-const FilterSpec& spec(int id)
-{
-	return catalogue().at(size_t(id));
-}
-
-void addParameter(
-	RichParameterList& list, const ParameterSpec& p, MeshDocument& document, double diagonal)
-{
-	switch (p.kind) {
-	case ParameterKind::Boolean:
-		list.addParam(RichBool(p.name, p.defaultValue != 0, p.label, p.tooltip));
-		break;
-	case ParameterKind::Integer:
-		list.addParam(RichInt(p.name, int(p.defaultValue), p.label, p.tooltip));
-		break;
-	case ParameterKind::Real:
-		list.addParam(RichFloat(p.name, float(p.defaultValue), p.label, p.tooltip));
-		break;
-	case ParameterKind::Length:
-		list.addParam(RichAbsPerc(
-			p.name, defaultLength(p, diagonal), 0, float(diagonal), p.label, p.tooltip));
-		break;
-	case ParameterKind::Choice:
-		list.addParam(RichEnum(p.name, int(p.defaultValue), p.choices, p.label, p.tooltip));
-		break;
-	case ParameterKind::Layer:
-		list.addParam(RichMesh(p.name, document.mm(), &document, p.label, p.tooltip));
-		break;
-	}
-}
-
-void readParameter(
-	ParameterValues& values, const ParameterSpec& p, const RichParameterList& list, double diagonal)
-{
-	switch (p.kind) {
-	case ParameterKind::Boolean: values.set(p.name, list.getBool(p.name)); break;
-	case ParameterKind::Integer: values.set(p.name, list.getInt(p.name)); break;
-	case ParameterKind::Real: values.set(p.name, double(list.getFloat(p.name))); break;
-	case ParameterKind::Length: values.setLength(p, list.getAbsPerc(p.name), diagonal); break;
-	case ParameterKind::Choice: values.set(p.name, list.getEnum(p.name)); break;
-	case ParameterKind::Layer: values.set(p.name, list.getMesh(p.name)->id()); break;
-	}
-}
-
-} // namespace
 
 FilterMcfskelPlugin::FilterMcfskelPlugin()
 {
@@ -70,21 +22,17 @@ QString FilterMcfskelPlugin::pluginName() const
 
 QString FilterMcfskelPlugin::filterName(FilterIDType id) const
 {
-	return spec(id).menuName;
+	return host::filterOf(id).menuName;
 }
 
 QString FilterMcfskelPlugin::filterInfo(FilterIDType id) const
 {
-	return spec(id).help;
+	return host::filterOf(id).help;
 }
 
 MeshFilterInterface::FilterClass FilterMcfskelPlugin::getClass(QAction* action)
 {
-	switch (spec(ID(action)).category) {
-	case FilterCategory::Quality: return MeshFilterInterface::Quality;
-	case FilterCategory::Remeshing: break;
-	}
-	return MeshFilterInterface::Remeshing;
+	return host::filterClass(host::filterOf(ID(action)));
 }
 
 MeshFilterInterface::FILTER_ARITY FilterMcfskelPlugin::filterArity(QAction*) const
@@ -94,31 +42,25 @@ MeshFilterInterface::FILTER_ARITY FilterMcfskelPlugin::filterArity(QAction*) con
 
 int FilterMcfskelPlugin::getPreConditions(QAction* action) const
 {
-	return spec(ID(action)).preConditions;
+	return host::filterOf(ID(action)).preConditions;
 }
 
 int FilterMcfskelPlugin::postCondition(QAction*) const
 {
-	// Results are new layers and custom attributes; the layer that was there keeps what it had.
-	return MeshModel::MM_NONE;
+	return host::changedElements;
 }
 
 void FilterMcfskelPlugin::initParameterSet(
 	QAction* action, MeshDocument& document, RichParameterList& list)
 {
-	const double diagonal = document.mm() ? referenceDiagonal(*document.mm()) : 0;
-	for (const ParameterSpec& p : spec(ID(action)).parameters)
-		addParameter(list, p, document, diagonal);
+	host::addParameters(list, host::filterOf(ID(action)), document);
 }
 
 bool FilterMcfskelPlugin::applyFilter(QAction* action, MeshDocument& document,
 	const RichParameterList& parameters, vcg::CallBackPos* callback)
 {
-	const FilterSpec& filter = spec(ID(action));
-	const double diagonal = document.mm() ? referenceDiagonal(*document.mm()) : 0;
-	ParameterValues values;
-	for (const ParameterSpec& p : filter.parameters)
-		readParameter(values, p, parameters, diagonal);
+	const FilterSpec& filter = host::filterOf(ID(action));
+	const ParameterValues values = host::readParameters(parameters, filter, document);
 	const auto writeLog = [this](const QString& line) { Log(line.toStdString()); };
 	const Outcome outcome = runFilter(filter, document, values, writeLog, callback);
 	if (outcome.error.isEmpty())

@@ -3,61 +3,9 @@
 
 #include "meshlab_2021.h"
 
-#include "../layers.h"
-
-#include <common/parameters/rich_parameter_list.h>
+#include "translate.h"
 
 using namespace mcfskel;
-
-namespace {
-
-const FilterSpec& spec(int id)
-{
-	return catalogue().at(size_t(id));
-}
-
-void addParameter(
-	RichParameterList& list, const ParameterSpec& p, const MeshDocument& document, double diagonal)
-{
-	switch (p.kind) {
-	case ParameterKind::Boolean:
-		list.addParam(RichBool(p.name, p.defaultValue != 0, p.label, p.tooltip, p.advanced));
-		break;
-	case ParameterKind::Integer:
-		list.addParam(RichInt(p.name, int(p.defaultValue), p.label, p.tooltip, p.advanced));
-		break;
-	case ParameterKind::Real:
-		list.addParam(RichFloat(p.name, Scalarm(p.defaultValue), p.label, p.tooltip, p.advanced));
-		break;
-	case ParameterKind::Length:
-		list.addParam(RichPercentage(p.name, defaultLength(p, diagonal), 0, Scalarm(diagonal),
-			p.label, p.tooltip, p.advanced));
-		break;
-	case ParameterKind::Choice:
-		list.addParam(
-			RichEnum(p.name, int(p.defaultValue), p.choices, p.label, p.tooltip, p.advanced));
-		break;
-	case ParameterKind::Layer:
-		list.addParam(RichMesh(p.name, document.mm() ? unsigned(document.mm()->id()) : 0, &document,
-			p.label, p.tooltip, p.advanced));
-		break;
-	}
-}
-
-void readParameter(
-	ParameterValues& values, const ParameterSpec& p, const RichParameterList& list, double diagonal)
-{
-	switch (p.kind) {
-	case ParameterKind::Boolean: values.set(p.name, list.getBool(p.name)); break;
-	case ParameterKind::Integer: values.set(p.name, list.getInt(p.name)); break;
-	case ParameterKind::Real: values.set(p.name, double(list.getFloat(p.name))); break;
-	case ParameterKind::Length: values.setLength(p, list.getAbsPerc(p.name), diagonal); break;
-	case ParameterKind::Choice: values.set(p.name, list.getEnum(p.name)); break;
-	case ParameterKind::Layer: values.set(p.name, list.getMeshId(p.name)); break;
-	}
-}
-
-} // namespace
 
 FilterMcfskelPlugin::FilterMcfskelPlugin()
 {
@@ -79,26 +27,22 @@ QString FilterMcfskelPlugin::vendor() const
 
 QString FilterMcfskelPlugin::filterName(ActionIDType id) const
 {
-	return spec(id).menuName;
+	return host::filterOf(id).menuName;
 }
 
 QString FilterMcfskelPlugin::pythonFilterName(ActionIDType id) const
 {
-	return spec(id).pythonName;
+	return host::filterOf(id).pythonName;
 }
 
 QString FilterMcfskelPlugin::filterInfo(ActionIDType id) const
 {
-	return spec(id).help;
+	return host::filterOf(id).help;
 }
 
 FilterPlugin::FilterClass FilterMcfskelPlugin::getClass(const QAction* action) const
 {
-	switch (spec(ID(action)).category) {
-	case FilterCategory::Quality: return FilterPlugin::Quality;
-	case FilterCategory::Remeshing: break;
-	}
-	return FilterPlugin::Remeshing;
+	return host::filterClass(host::filterOf(ID(action)));
 }
 
 FilterPlugin::FilterArity FilterMcfskelPlugin::filterArity(const QAction*) const
@@ -108,22 +52,19 @@ FilterPlugin::FilterArity FilterMcfskelPlugin::filterArity(const QAction*) const
 
 int FilterMcfskelPlugin::getPreConditions(const QAction* action) const
 {
-	return spec(ID(action)).preConditions;
+	return host::filterOf(ID(action)).preConditions;
 }
 
 int FilterMcfskelPlugin::postCondition(const QAction*) const
 {
-	// Results are new layers and custom attributes; the layer that was there keeps what it had.
-	return MeshModel::MM_NONE;
+	return host::changedElements;
 }
 
 RichParameterList FilterMcfskelPlugin::initParameterList(
 	const QAction* action, const MeshDocument& document)
 {
 	RichParameterList list;
-	const double diagonal = document.mm() ? referenceDiagonal(*document.mm()) : 0;
-	for (const ParameterSpec& p : spec(ID(action)).parameters)
-		addParameter(list, p, document, diagonal);
+	host::addParameters(list, host::filterOf(ID(action)), document);
 	return list;
 }
 
@@ -131,11 +72,8 @@ std::map<std::string, QVariant> FilterMcfskelPlugin::applyFilter(const QAction* 
 	const RichParameterList& parameters, MeshDocument& document, unsigned int&,
 	vcg::CallBackPos* callback)
 {
-	const FilterSpec& filter = spec(ID(action));
-	const double diagonal = document.mm() ? referenceDiagonal(*document.mm()) : 0;
-	ParameterValues values;
-	for (const ParameterSpec& p : filter.parameters)
-		readParameter(values, p, parameters, diagonal);
+	const FilterSpec& filter = host::filterOf(ID(action));
+	const ParameterValues values = host::readParameters(parameters, filter, document);
 	const Outcome outcome = runFilter(
 		filter, document, values, [this](const QString& line) { log(line.toStdString()); },
 		callback);

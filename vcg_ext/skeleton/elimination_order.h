@@ -24,17 +24,20 @@ inline void rankByMinimumDegree(Stage& stage)
 {
 	const SurfaceMesh& mesh = stage.mesh;
 	const int n = mesh.vertexSlots();
+	// The adjacency with its diagonal, without which the ordering comes out as the identity.
 	Eigen::SparseMatrix<char> pattern(n, n);
-	pattern.reserve(Eigen::VectorXi::Constant(n, 8));
-	std::vector<int> row;
+	pattern.resizeNonZeros(n + mesh.halfEdgeSlots());
+	std::fill(pattern.valuePtr(), pattern.valuePtr() + pattern.nonZeros(), char(1));
+	int* const start = pattern.outerIndexPtr();
+	int* const row = pattern.innerIndexPtr();
+	start[0] = 0;
 	for (int v = 0; v < n; ++v) {
-		row.assign(1, v); // without a diagonal the ordering comes out as the identity
-		mesh.forEachOutgoing(v, [&](int h) { row.push_back(mesh.target(h)); });
-		std::sort(row.begin(), row.end());
-		for (int w : row)
-			pattern.insert(w, v) = 1;
+		int end = start[v];
+		row[end++] = v;
+		mesh.forEachOutgoing(v, [&](int h) { row[end++] = mesh.target(h); });
+		std::sort(row + start[v], row + end);
+		start[v + 1] = end;
 	}
-	pattern.makeCompressed();
 	Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
 	Eigen::internal::minimum_degree_ordering(pattern, order);
 	stage.rank.resize(n);

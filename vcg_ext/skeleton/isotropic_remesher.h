@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -389,12 +390,26 @@ private:
 		}
 		if (!inputFace.empty() && inputFace[mesh.outgoing(m) / 3] >= 0)
 			return 3 * inputFace[mesh.outgoing(m) / 3];
-		// At a fold the walk from one end may be stopped where that from the other is not.
-		int faceA = track[a] / 3, faceB = track[b] / 3;
+		// A walk may be stopped at a fold, or start on the wrong side of a crease: try all sides.
 		const Point3d& middle = mesh.position[m];
-		const Point3d fromA = trackSurface(surface, middle, faceA);
-		const Point3d fromB = trackSurface(surface, middle, faceB);
-		return 3 * (SquaredDistance(fromA, middle) <= SquaredDistance(fromB, middle) ? faceA : faceB);
+		int best = -1;
+		double bestDistance = std::numeric_limits<double>::max();
+		const auto consider = [&](int face) {
+			const double distance = SquaredDistance(trackSurface(surface, middle, face), middle);
+			if (distance < bestDistance) {
+				bestDistance = distance;
+				best = face;
+			}
+		};
+		for (const int end : {a, b}) {
+			if (roleOf(end) == CreaseRole::Corner)
+				surface.forEachOutgoing(surface.origin(track[end]), [&](int h) { consider(h / 3); });
+			else
+				consider(track[end] / 3);
+			if (roleOf(end) == CreaseRole::Crease)
+				consider(surface.twin(track[end]) / 3);
+		}
+		return 3 * best;
 	}
 
 	/// A crease edge of the input on the crease that joins two corners, by its direction at a.

@@ -1,15 +1,17 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-/// @file A kd-tree over a fixed set of points, for searches whose region shrinks while they run.
+/// @file A kd-tree over a fixed set of points, for searches in a ball that shrinks while they run.
 
 #ifndef VCG_MCF_POINT_TREE_H
 #define VCG_MCF_POINT_TREE_H
 
+#include <vcg/space/box3.h>
 #include <vcg/space/point3.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -17,49 +19,45 @@
 namespace vcg::tri::mcf {
 
 /**
- * A balanced kd-tree with tight boxes, split at the median of the longest side.
+ * A balanced kd-tree with four children a node and tight boxes, split at medians of the longest side.
  *
  * A library's nearest-neighbour query has a fixed centre; a shrinking ball moves its centre with
- * every contact it finds. search() lets the region change during one descent, which saves the
- * repeated queries of the classical algorithm (four to six a ball).
+ * every contact it finds. search() lets the ball change during one descent, which saves the
+ * repeated queries of the classical algorithm. Boxes and points are tested in single precision,
+ * four side by side as vector instructions like it, with room for the rounding; what passes is
+ * decided in double precision by the ball itself.
  */
 class PointTree
 {
 public:
-	struct Box
+	/// @pre the points are finite. Complexity: O(n log n).
+	explicit PointTree(const std::vector<Point3d>& points) : ids(points.size()), sorted(points.size())
 	{
-		Point3d low, high;
-
-		/// Squared distance from x to the box; 0 inside.
-		double squaredDistance(const Point3d& x) const
-		{
-			double sum = 0;
-			for (int k = 0; k < 3; ++k) {
-				const double outside = std::max({low[k] - x[k], x[k] - high[k], 0.0});
-				sum += outside * outside;
-			}
-			return sum;
-		}
-	};
-
-	PointTree() = default;
-
-	/// Complexity: O(n log n).
-	explicit PointTree(const std::vector<Point3d>& points) : ids(points.size()), sorted(points)
-	{
-		if (points.empty())
-			return;
-		for (size_t i = 0; i < ids.size(); ++i)
+		Box3d box;
+		for (size_t i = 0; i < ids.size(); ++i) {
 			ids[i] = int(i);
-		int depth = 0;
-		while ((points.size() >> depth) > LeafSize)
-			++depth;
-		leafLevelStart = (1 << depth) - 1;
-		boxes.resize(2 * size_t(leafLevelStart) + 1);
+			box.Add(points[i]);
+		}
+		if (!points.empty())
+			origin = box.Center();
+		slack = 8 * std::numeric_limits<float>::epsilon() * (points.empty() ? 0 : box.Diag());
+		size_t inner = 0, width = 1;
+		while (points.size() > LeafSize * width) {
+			inner += width;
+			width *= 4;
+		}
+		nodes.resize(inner);
 		build(points, 0, 0, int(points.size()));
 		for (size_t i = 0; i < ids.size(); ++i)
 			sorted[i] = points[ids[i]];
+		for (int axis = 0; axis < 3; ++axis) {
+			coordinate[axis].assign(ids.size() + Lanes, std::numeric_limits<float>::infinity());
+			for (size_t i = 0; i < ids.size(); ++i)
+				coordinate[axis][i] = float(sorted[i][axis] - origin[axis]);
+		}
 	}
+
+	int size() const { return int(ids.size()); }
 
 	/// The ids of the points, leaf by leaf: neighbours in this order are near each other.
 	const std::vector<int>& order() const { return ids; }
@@ -68,79 +66,176 @@ public:
 	const Point3d& point(int slot) const { return sorted[slot]; }
 
 	/**
-	 * Visits all points whose box the region reaches, nearer boxes first.
+	 * Visits every point of the ball, and some outside it.
 	 *
-	 * Region: `double reach(const Box&)`, where negative means out of reach, and else a smaller
-	 * value is visited first; `void visit(int slot, const Point3d& point)`, which may shrink the
-	 * region. `order()[slot]` is the point's id.
-	 * Complexity: O(log n) for a region that holds few points.
+	 * Ball: `Point3d centre()`, `double reach()`, its radius, and `void visit(int slot, const Point3d&)`,
+	 * which may replace the ball by one inside it. `order()[slot]` is the point's id.
+	 * Complexity: O(log n) for a ball that holds few points.
 	 */
-	template <class Region>
-	void search(Region& region) const
+	template <class Ball>
+	void search(Ball& ball) const
 	{
-		if (boxes.empty())
-			return;
-		struct Range
-		{
-			int node, begin, end;
-		};
-		std::array<Range, 64> stack;
+		std::array<Range, 64> stack; // three a level; 4^16 leaves fill it
 		int top = 0;
-		stack[top++] = {0, 0, int(ids.size())};
+		if (!ids.empty())
+			stack[top++] = {0, 0, int(ids.size())};
 		while (top > 0) {
-			Range range = stack[--top];
-			if (region.reach(boxes[range.node]) < 0)
+			const Range range = stack[--top];
+			const SingleBall single = toSingle(ball.centre(), ball.reach());
+			if (range.node >= int(nodes.size())) {
+				visitLeaf(range, single, ball);
 				continue;
-			while (range.node < leafLevelStart) {
-				const int middle = (range.begin + range.end) / 2;
-				Range left = {2 * range.node + 1, range.begin, middle};
-				Range right = {2 * range.node + 2, middle, range.end};
-				double leftReach = region.reach(boxes[left.node]);
-				double rightReach = region.reach(boxes[right.node]);
-				if (rightReach >= 0 && (leftReach < 0 || rightReach < leftReach)) {
-					std::swap(left, right);
-					std::swap(leftReach, rightReach);
-				}
-				if (rightReach >= 0)
-					stack[top++] = right;
-				range = left;
-				if (leftReach < 0) {
-					range.begin = range.end;
-					break;
-				}
 			}
-			for (int i = range.begin; i < range.end; ++i)
-				region.visit(i, sorted[i]);
+			float squaredDistance[4];
+			nodes[range.node].squaredDistances(single, squaredDistance);
+			const std::array<int, 5> cuts = quarters(range.begin, range.end);
+			for (int k = 0; k < 4; ++k)
+				if (squaredDistance[k] <= single.squaredReach)
+					stack[top++] = {4 * range.node + 1 + k, cuts[k], cuts[k + 1]};
 		}
 	}
 
+	/// The id of the point nearest to x, the lowest of several; -1 if there are no points.
+	int nearest(const Point3d& x) const
+	{
+		Nearest ball {*this, x, std::numeric_limits<double>::max(), -1};
+		search(ball);
+		return ball.id;
+	}
+
 private:
-	static constexpr size_t LeafSize = 8;
+	static constexpr size_t LeafSize = 32;
+	static constexpr int Lanes = 4;
+
+	struct Range
+	{
+		int node, begin, end;
+	};
+
+	/// A ball about the tree's origin in single precision, enlarged by what rounding may lose.
+	struct SingleBall
+	{
+		float centre[3];
+		float squaredReach;
+	};
+
+	struct Node
+	{
+		float low[3][4], high[3][4];
+
+		/// Squared distances from the centre to the four boxes; 0 inside.
+		void squaredDistances(const SingleBall& ball, float (&result)[4]) const
+		{
+			for (int k = 0; k < 4; ++k)
+				result[k] = 0;
+			for (int axis = 0; axis < 3; ++axis) {
+				const float x = ball.centre[axis];
+				for (int k = 0; k < 4; ++k) {
+					const float below = low[axis][k] - x, above = x - high[axis][k];
+					float outside = below > above ? below : above;
+					outside = outside > 0 ? outside : 0;
+					result[k] += outside * outside;
+				}
+			}
+		}
+	};
+
+	struct Nearest
+	{
+		const PointTree& tree;
+		Point3d x;
+		double distance;
+		int id;
+
+		const Point3d& centre() const { return x; }
+		double reach() const { return distance; }
+		void visit(int slot, const Point3d& p)
+		{
+			const double d = Distance(p, x);
+			const int candidate = tree.ids[slot];
+			if (d < distance || (d == distance && candidate < id)) {
+				distance = d;
+				id = candidate;
+			}
+		}
+	};
 
 	std::vector<int> ids;
 	std::vector<Point3d> sorted;
-	std::vector<Box> boxes; ///< a complete binary tree, children of i at 2 i + 1 and 2 i + 2
-	int leafLevelStart = 0;
+	std::array<std::vector<float>, 3> coordinate; ///< of sorted, from the origin, padded by infinities
+	std::vector<Node> nodes; ///< the inner nodes of a complete tree, children of i from 4 i + 1 on
+	Point3d origin = Point3d(0, 0, 0);
+	double slack;
+
+	SingleBall toSingle(const Point3d& centre, double reach) const
+	{
+		const Point3d c = centre - origin;
+		const double enlarged = reach * (1 + 8 * std::numeric_limits<float>::epsilon()) + slack;
+		constexpr double largest = std::numeric_limits<float>::max();
+		return {{float(c[0]), float(c[1]), float(c[2])}, float(std::min(enlarged * enlarged, largest))};
+	}
+
+	template <class Ball>
+	void visitLeaf(const Range& range, const SingleBall& single, Ball& ball) const
+	{
+		// The last group may hold points of the next leaf: they are points as good as any.
+		for (int first = range.begin; first < range.end; first += Lanes) {
+			float squaredDistance[Lanes];
+			int within = 0;
+			for (int k = 0; k < Lanes; ++k) {
+				const float dx = coordinate[0][first + k] - single.centre[0];
+				const float dy = coordinate[1][first + k] - single.centre[1];
+				const float dz = coordinate[2][first + k] - single.centre[2];
+				squaredDistance[k] = dx * dx + dy * dy + dz * dz;
+				within += squaredDistance[k] <= single.squaredReach;
+			}
+			if (within == 0)
+				continue;
+			for (int k = 0; k < Lanes; ++k)
+				if (squaredDistance[k] <= single.squaredReach)
+					ball.visit(first + k, sorted[first + k]);
+		}
+	}
+
+	static std::array<int, 5> quarters(int begin, int end)
+	{
+		const int middle = begin + (end - begin) / 2;
+		return {begin, begin + (middle - begin) / 2, middle, middle + (end - middle) / 2, end};
+	}
+
+	Box3d bounds(const std::vector<Point3d>& points, int begin, int end) const
+	{
+		Box3d box;
+		for (int i = begin; i < end; ++i)
+			box.Add(points[ids[i]]);
+		return box;
+	}
+
+	void split(const std::vector<Point3d>& points, int begin, int middle, int end)
+	{
+		const int axis = bounds(points, begin, end).MaxDim();
+		std::nth_element(ids.begin() + begin, ids.begin() + middle, ids.begin() + end, [&](int a, int b) {
+			const double x = points[a][axis], y = points[b][axis];
+			return x != y ? x < y : a < b;
+		});
+	}
 
 	void build(const std::vector<Point3d>& points, int node, int begin, int end)
 	{
-		constexpr double inf = std::numeric_limits<double>::infinity();
-		Box box = {Point3d(inf, inf, inf), Point3d(-inf, -inf, -inf)};
-		for (int i = begin; i < end; ++i)
-			for (int k = 0; k < 3; ++k) {
-				box.low[k] = std::min(box.low[k], points[ids[i]][k]);
-				box.high[k] = std::max(box.high[k], points[ids[i]][k]);
-			}
-		boxes[node] = box;
-		if (node >= leafLevelStart)
+		if (node >= int(nodes.size()))
 			return;
-		const Point3d side = box.high - box.low;
-		const int axis = side[0] >= side[1] && side[0] >= side[2] ? 0 : (side[1] >= side[2] ? 1 : 2);
-		const int middle = (begin + end) / 2;
-		std::nth_element(ids.begin() + begin, ids.begin() + middle, ids.begin() + end,
-			[&](int a, int b) { return std::make_pair(points[a][axis], a) < std::make_pair(points[b][axis], b); });
-		build(points, 2 * node + 1, begin, middle);
-		build(points, 2 * node + 2, middle, end);
+		const std::array<int, 5> cuts = quarters(begin, end);
+		split(points, begin, cuts[2], end);
+		split(points, begin, cuts[1], cuts[2]);
+		split(points, cuts[2], cuts[3], end);
+		for (int k = 0; k < 4; ++k) {
+			const Box3d box = bounds(points, cuts[k], cuts[k + 1]);
+			for (int axis = 0; axis < 3; ++axis) {
+				nodes[node].low[axis][k] = float(box.min[axis] - origin[axis]);
+				nodes[node].high[axis][k] = float(box.max[axis] - origin[axis]);
+			}
+			build(points, 4 * node + 1 + k, cuts[k], cuts[k + 1]);
+		}
 	}
 };
 

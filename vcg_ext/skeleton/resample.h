@@ -12,6 +12,7 @@
 #include "progress.h"
 #include "surface_mesh.h"
 #include "target_length.h"
+#include "thin_triangles.h"
 
 #include <algorithm>
 #include <cmath>
@@ -72,7 +73,15 @@ inline SurfaceMesh resample(const SurfaceMesh& surface,
 		same.compact();
 		return same;
 	}
-	detail::IsotropicRemesher remesher(surface, component, targetLengthOfComponent);
+	const auto lengthAt = [&](int v) { return targetLengthOfComponent[component[v]]; };
+	SurfaceMesh withoutThin;
+	const bool hasThin = hasThinTriangles(surface, lengthAt);
+	if (hasThin) {
+		withoutThin = surface;
+		removeThinTriangles(withoutThin, lengthAt);
+	}
+	detail::IsotropicRemesher remesher(
+		hasThin ? withoutThin : surface, component, targetLengthOfComponent);
 	remesher.coarsen(progress.part(0, 0.35));
 	remesher.refine(progress.part(0.35, 0.4));
 	for (int i = 0; i < iterations; ++i) {

@@ -7,13 +7,17 @@
 #ifndef VCG_MCF_SHRINKING_BALLS_H
 #define VCG_MCF_SHRINKING_BALLS_H
 
+#include "inner_segments.h"
+#include "parallel_blocks.h"
 #include "point_tree.h"
 #include "pole_set.h"
 #include "progress.h"
 #include "surface_mesh.h"
+#include "unit_frame.h"
 
+#include <algorithm>
 #include <array>
-#include <cmath>
+#include <numeric>
 #include <vector>
 
 namespace vcg::tri::mcf {
@@ -27,64 +31,105 @@ namespace detail {
  * delta deep where |c - q| = r - delta, that is at
  *     r(q) = (|e|^2 - delta^2) / (2 (e.n - delta)),   e.n > delta,
  * and the balls grow monotonically with r, so the answer is the least r(q) over all q. It does
- * not depend on the order of the visits, to the last bit: the tests that skip a sample leave room
- * for rounding, and what they let through is compared by r(q) itself.
+ * not depend on the order of the visits, to the last bit: the test that skips a sample leaves room
+ * for rounding, and what passes is compared by r(q) itself.
  */
 class MaximalBall
 {
 public:
 	MaximalBall(const Point3d& p, const Point3d& n, double delta, double largest) :
-			p(p), n(n), delta(delta)
-	{
-		shrinkTo(largest);
-	}
+			p(p), n(n), c(p - n * largest), delta(delta), r(largest)
+	{}
 
 	double radius() const { return r; }
-	Point3d centre() const { return c; }
+	/// The place in the tree of the sample that holds the ball, -1 if none does.
 	int contact() const { return contactSlot; }
 
-	double reach(const PointTree::Box& box) const
-	{
-		const double d2 = box.squaredDistance(c);
-		return d2 <= limit ? d2 : -1;
-	}
-
+	const Point3d& centre() const { return c; }
+	double reach() const { return std::max(r - delta, 0.0); }
 	void visit(int slot, const Point3d& q)
 	{
+		constexpr double rounding = 1e-12;
 		const Point3d e = p - q;
 		const double depth = e * n - delta;
 		const double span = e.SquaredNorm() - delta * delta;
-		if (!(depth > 0) || span > 2 * r * depth * (1 + Rounding))
+		if (!(depth > 0) || span > 2 * r * depth * (1 + rounding))
 			return;
 		const double rq = span / (2 * depth);
 		if (rq < r) {
-			shrinkTo(rq);
+			r = rq;
+			c = p - n * r;
 			contactSlot = slot;
 		}
 	}
 
 private:
-	static constexpr double Rounding = 1e-12;
-
 	Point3d p, n, c;
-	double delta, r, limit;
+	double delta, r;
 	int contactSlot = -1;
-
-	void shrinkTo(double radius)
-	{
-		r = radius;
-		c = p - n * r;
-		const double inner = std::max(r - delta, 0.0);
-		limit = inner * inner * (1 + Rounding) + Rounding * r * r;
-	}
 };
+
+/// Coincident samples, and the steps of rounding in flat regions, are no contacts.
+constexpr double leastTolerance = 1e-9; // of the diagonal
+
+/**
+ * Maximal balls at `points` (in the frame of the tree); vertex v of the result is points[v].
+ * @param onSamples  whether the tree is of these same points, so that neighbours in its order are
+ *                   neighbours on the surface and nearly hold the ball.
+ */
+inline PoleSet maximalBalls(const std::vector<Point3d>& points, const std::vector<Point3d>& normals,
+	const PointTree& tree, bool onSamples, double delta, double largest, const Progress& progress)
+{
+	constexpr int neighbours = 8;
+	PoleSet poles;
+	poles.centre.assign(points.size(), Point3d(0, 0, 0));
+	poles.radius.assign(points.size(), -1);
+	const std::vector<int> order = onSamples ? tree.order() : PointTree(points).order();
+	forEachBlock(int(points.size()), progress, "Poles: shrinking balls", [&](int begin, int end) {
+		// What held the balls of the last points will nearly hold the next one.
+		std::array<int, 4> recent = {-1, -1, -1, -1};
+		int oldest = 0;
+		for (int i = begin; i < end; ++i) {
+			const int v = order[i];
+			if (!(normals[v].SquaredNorm() > 0))
+				continue;
+			MaximalBall ball(points[v], normals[v], delta, largest);
+			for (int slot : recent)
+				if (slot >= 0)
+					ball.visit(slot, tree.point(slot));
+			if (onSamples)
+				for (int j = std::max(i - neighbours, 0); j <= std::min(i + neighbours, tree.size() - 1); ++j)
+					ball.visit(j, tree.point(j));
+			tree.search(ball);
+			if (ball.contact() < 0)
+				continue;
+			poles.centre[v] = ball.centre();
+			poles.radius[v] = ball.radius();
+			recent[oldest] = ball.contact();
+			oldest = (oldest + 1) % int(recent.size());
+		}
+	});
+	return poles;
+}
+
+inline void leaveFrame(PoleSet& poles, const UnitFrame& frame)
+{
+	for (size_t v = 0; v < poles.radius.size(); ++v)
+		if (poles.radius[v] >= 0) {
+			poles.centre[v] = frame.out(poles.centre[v]);
+			poles.radius[v] = frame.lengthOut(poles.radius[v]);
+		}
+}
 
 } // namespace detail
 
 /**
- * Maximal inner balls of oriented points against a set of samples of the same surface.
+ * Maximal inner balls of oriented points against samples of the same surface.
  *
- * @param points   where the balls touch, #P, mesh units; normals their outward unit normals, #P.
+ * Without faces a ball that reaches out between two samples cannot be told from one that does not:
+ * see shrinkingBallPoles() for poles that are inside for certain.
+ * @param points   where the balls touch, #P, mesh units.
+ * @param normals  outward unit normals of the points, #P.
  * @param against  the samples that bound the balls, #Q; `points` need not be among them.
  * @param delta    how deep a sample may lie inside a ball, mesh units, >= 0: the tolerance to noise.
  * @return poles, #P; radius -1 for a zero normal and for a ball that nothing bounds.
@@ -92,72 +137,62 @@ private:
  * Complexity: O((P + Q) log Q) for samples of a surface. Same bits on any number of threads.
  */
 inline PoleSet shrinkingBalls(const std::vector<Point3d>& points, const std::vector<Point3d>& normals,
-	const std::vector<Point3d>& against, double delta, const Progress& progress)
+	const std::vector<Point3d>& against, double delta = 0, const Progress& progress = Progress())
 {
-	const char* what = "Poles: shrinking balls";
-	progress.report(0, what);
-	const int count = int(points.size());
-	PoleSet poles;
-	poles.centre.assign(count, Point3d(0, 0, 0));
-	poles.radius.assign(count, -1);
-	Box3d box;
-	for (const Point3d& q : against)
-		box.Add(q);
-	if (count == 0 || against.empty())
-		return poles;
-	// Relative to the middle of the samples the squares keep their digits, however far away the mesh is.
-	const Point3d origin = box.Center();
-	std::vector<Point3d> samples(against);
-	for (Point3d& q : samples)
-		q -= origin;
-	const PointTree tree(samples);
-	const double largest = box.Diag();
-	// Coincident samples, and steps of rounding in flat regions, are no contacts.
-	const double tolerance = std::max(delta, 1e-9 * largest);
-	const std::vector<int> order = points.size() == against.size() ? tree.order() : PointTree(points).order();
-
-	constexpr int BlockSize = 64, BlocksPerReport = 128;
-	const int blocks = (count + BlockSize - 1) / BlockSize;
-	for (int first = 0; first < blocks; first += BlocksPerReport) {
-		const int last = std::min(first + BlocksPerReport, blocks);
-#pragma omp parallel for schedule(dynamic)
-		for (int block = first; block < last; ++block) {
-			// What held the balls of the last points will nearly hold the next one.
-			std::array<int, 4> recent = {-1, -1, -1, -1};
-			int oldest = 0;
-			for (int i = block * BlockSize; i < std::min((block + 1) * BlockSize, count); ++i) {
-				const int v = order[i];
-				const Point3d& n = normals[v];
-				if (!(n.SquaredNorm() > 0))
-					continue;
-				detail::MaximalBall ball(points[v] - origin, n, tolerance, largest);
-				for (int slot : recent)
-					if (slot >= 0)
-						ball.visit(slot, tree.point(slot));
-				tree.search(ball);
-				if (ball.contact() < 0)
-					continue;
-				poles.centre[v] = ball.centre() + origin;
-				poles.radius[v] = ball.radius();
-				recent[oldest] = ball.contact();
-				oldest = (oldest + 1) % 4;
-			}
-		}
-		progress.report(double(last) / blocks, what);
-	}
+	const UnitFrame frame(against);
+	const double tolerance = std::max(frame.lengthIn(delta), detail::leastTolerance * frame.diagonal());
+	PoleSet poles = detail::maximalBalls(frame.in(points), normals, PointTree(frame.in(against)), false,
+		tolerance, frame.diagonal(), progress);
+	detail::leaveFrame(poles, frame);
 	return poles;
 }
 
 /**
- * The inner medial pole of each vertex by shrinking balls against all vertices.
+ * The inner medial poles of some vertices of a mesh by shrinking balls against all its vertices.
+ *
+ * A ball whose centre cannot be seen from its vertex through the inside reached out through a coarse
+ * triangle: it gives no pole.
+ * @param vertices  ids, #P.
+ * @param delta     as in shrinkingBalls().
  * @pre mesh is compact.
- * @return poles, #V; radius -1 where the normal is not defined or nothing bounds the ball.
+ * @return poles, #P, in the order of `vertices`; radius -1 where there is none.
  * @throws Cancelled
- * Complexity: O(V log V).
+ * Complexity: O((P + V) log V). Same bits on any number of threads.
  */
+inline PoleSet shrinkingBallPoles(const SurfaceMesh& mesh, const std::vector<int>& vertices,
+	double delta = 0, const Progress& progress = Progress())
+{
+	const UnitFrame frame(mesh.position);
+	const double tolerance = std::max(frame.lengthIn(delta), detail::leastTolerance * frame.diagonal());
+	const std::vector<Point3d> samples = frame.in(mesh.position);
+	const PointTree tree(samples);
+	const std::vector<Point3d> allNormals = mesh.vertexNormals();
+	std::vector<Point3d> points, normals;
+	bool all = vertices.size() == samples.size();
+	for (size_t i = 0; i < vertices.size(); ++i) {
+		points.push_back(samples[vertices[i]]);
+		normals.push_back(allNormals[vertices[i]]);
+		all = all && vertices[i] == int(i);
+	}
+	PoleSet poles = detail::maximalBalls(
+		points, normals, tree, all, tolerance, frame.diagonal(), progress.part(0, 0.8));
+	detail::leaveFrame(poles, frame);
+	const InnerSegments segments(mesh, tree);
+	const double depth = frame.lengthOut(tolerance);
+	forEachBlock(int(vertices.size()), progress.part(0.8, 1), "Poles: inside test", [&](int begin, int end) {
+		for (int i = begin; i < end; ++i)
+			if (poles.has(i) && !segments.staysInside(vertices[i], poles.centre[i], depth))
+				poles.radius[i] = -1;
+	});
+	return poles;
+}
+
+/// The poles of all vertices: shrinkingBallPoles() of each, without tolerance to noise.
 inline PoleSet shrinkingBallPoles(const SurfaceMesh& mesh, const Progress& progress = Progress())
 {
-	return shrinkingBalls(mesh.position, mesh.vertexNormals(), mesh.position, 0, progress);
+	std::vector<int> all(mesh.vertexSlots());
+	std::iota(all.begin(), all.end(), 0);
+	return shrinkingBallPoles(mesh, all, 0, progress);
 }
 
 } // namespace vcg::tri::mcf

@@ -24,11 +24,12 @@ constexpr double collapseCosineSquared = 0.117;
 /**
  * Whether the triangles around v, but for the two that disappear with half-edge `gone`, turn by
  * less than 70 degrees and get no edge longer than `longest` when v moves to `point`. An edge that
- * was longer already may stay as long as it is.
+ * was longer already may grow a little: else a fan of needles could not lose its short edges.
  */
 inline bool ringAllowsMove(
 	const SurfaceMesh& mesh, int v, const Point3d& point, int gone, double squaredLongest)
 {
+	constexpr double stretch = 1.1;
 	const int goneFace = gone / 3, goneTwin = mesh.twin(gone) / 3;
 	const Point3d& old = mesh.position[v];
 	const int first = mesh.outgoing(v);
@@ -36,7 +37,7 @@ inline bool ringAllowsMove(
 	do {
 		const Point3d& p = mesh.position[mesh.target(h)];
 		const double squared = SquaredDistance(p, point);
-		if (squared > squaredLongest && squared > SquaredDistance(p, old))
+		if (squared > squaredLongest && squared > stretch * SquaredDistance(p, old))
 			return false;
 		const int f = h / 3;
 		if (f != goneFace && f != goneTwin) {
