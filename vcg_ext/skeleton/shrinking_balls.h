@@ -69,16 +69,17 @@ private:
 	int contactSlot = -1;
 };
 
-/// Coincident samples, and the steps of rounding in flat regions, are no contacts.
-constexpr double leastTolerance = 1e-9; // of the diagonal
-
 /**
- * Maximal balls at `points` (in the frame of the tree); vertex v of the result is points[v].
+ * Maximal balls at `points`, in the unit frame that the tree's points are in.
  * @param onSamples  whether the tree is of these same points, so that neighbours in its order are
  *                   neighbours on the surface and nearly hold the ball.
+ * @param isPole     (place in points, centre in mesh units): whether the ball counts.
+ * @return poles in mesh units.
  */
-inline PoleSet maximalBalls(const std::vector<Point3d>& points, const std::vector<Point3d>& normals,
-	const PointTree& tree, bool onSamples, double delta, double largest, const Progress& progress)
+template <class IsPole>
+PoleSet maximalBalls(const std::vector<Point3d>& points, const std::vector<Point3d>& normals,
+	const UnitFrame& frame, const PointTree& tree, bool onSamples, double delta,
+	const Progress& progress, const IsPole& isPole)
 {
 	constexpr int neighbours = 8;
 	PoleSet poles;
@@ -93,7 +94,7 @@ inline PoleSet maximalBalls(const std::vector<Point3d>& points, const std::vecto
 			const int v = order[i];
 			if (!(normals[v].SquaredNorm() > 0))
 				continue;
-			MaximalBall ball(points[v], normals[v], delta, largest);
+			MaximalBall ball(points[v], normals[v], delta, frame.diagonal());
 			for (int slot : recent)
 				if (slot >= 0)
 					ball.visit(slot, tree.point(slot));
@@ -103,22 +104,21 @@ inline PoleSet maximalBalls(const std::vector<Point3d>& points, const std::vecto
 			tree.search(ball);
 			if (ball.contact() < 0)
 				continue;
-			poles.centre[v] = ball.centre();
-			poles.radius[v] = ball.radius();
 			recent[oldest] = ball.contact();
 			oldest = (oldest + 1) % int(recent.size());
+			poles.centre[v] = frame.out(ball.centre());
+			if (isPole(v, poles.centre[v]))
+				poles.radius[v] = frame.lengthOut(ball.radius());
 		}
 	});
 	return poles;
 }
 
-inline void leaveFrame(PoleSet& poles, const UnitFrame& frame)
+inline double ballTolerance(const UnitFrame& frame, double delta)
 {
-	for (size_t v = 0; v < poles.radius.size(); ++v)
-		if (poles.radius[v] >= 0) {
-			poles.centre[v] = frame.out(poles.centre[v]);
-			poles.radius[v] = frame.lengthOut(poles.radius[v]);
-		}
+	// Coincident samples, and the steps of rounding in flat regions, are no contacts.
+	constexpr double least = 1e-9; // of the diagonal
+	return std::max(frame.lengthIn(delta), least * frame.diagonal());
 }
 
 } // namespace detail
@@ -140,11 +140,8 @@ inline PoleSet shrinkingBalls(const std::vector<Point3d>& points, const std::vec
 	const std::vector<Point3d>& against, double delta = 0, const Progress& progress = Progress())
 {
 	const UnitFrame frame(against);
-	const double tolerance = std::max(frame.lengthIn(delta), detail::leastTolerance * frame.diagonal());
-	PoleSet poles = detail::maximalBalls(frame.in(points), normals, PointTree(frame.in(against)), false,
-		tolerance, frame.diagonal(), progress);
-	detail::leaveFrame(poles, frame);
-	return poles;
+	return detail::maximalBalls(frame.in(points), normals, frame, PointTree(frame.in(against)), false,
+		detail::ballTolerance(frame, delta), progress, [](int, const Point3d&) { return true; });
 }
 
 /**
@@ -163,9 +160,8 @@ inline PoleSet shrinkingBallPoles(const SurfaceMesh& mesh, const std::vector<int
 	double delta = 0, const Progress& progress = Progress())
 {
 	const UnitFrame frame(mesh.position);
-	const double tolerance = std::max(frame.lengthIn(delta), detail::leastTolerance * frame.diagonal());
+	const double tolerance = detail::ballTolerance(frame, delta);
 	const std::vector<Point3d> samples = frame.in(mesh.position);
-	const PointTree tree(samples);
 	const std::vector<Point3d> allNormals = mesh.vertexNormals();
 	std::vector<Point3d> points, normals;
 	bool all = vertices.size() == samples.size();
@@ -174,17 +170,12 @@ inline PoleSet shrinkingBallPoles(const SurfaceMesh& mesh, const std::vector<int
 		normals.push_back(allNormals[vertices[i]]);
 		all = all && vertices[i] == int(i);
 	}
-	PoleSet poles = detail::maximalBalls(
-		points, normals, tree, all, tolerance, frame.diagonal(), progress.part(0, 0.8));
-	detail::leaveFrame(poles, frame);
+	const PointTree tree(samples);
 	const InnerSegments segments(mesh, tree);
-	const double depth = frame.lengthOut(tolerance);
-	forEachBlock(int(vertices.size()), progress.part(0.8, 1), "Poles: inside test", [&](int begin, int end) {
-		for (int i = begin; i < end; ++i)
-			if (poles.has(i) && !segments.staysInside(vertices[i], poles.centre[i], depth))
-				poles.radius[i] = -1;
-	});
-	return poles;
+	return detail::maximalBalls(
+		points, normals, frame, tree, all, tolerance, progress, [&](int i, const Point3d& centre) {
+			return segments.staysInside(vertices[i], centre, frame.lengthOut(tolerance));
+		});
 }
 
 /// The poles of all vertices: shrinkingBallPoles() of each, without tolerance to noise.

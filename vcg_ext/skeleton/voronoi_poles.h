@@ -8,10 +8,12 @@
 #define VCG_MCF_VORONOI_POLES_H
 
 #include "errors.h"
+#include "inner_segments.h"
 #include "point_tree.h"
 #include "pole_set.h"
 #include "progress.h"
 #include "surface_mesh.h"
+#include "unit_frame.h"
 
 extern "C" {
 #include <libqhull_r/qhull_ra.h>
@@ -27,11 +29,12 @@ namespace vcg::tri::mcf {
 
 namespace detail {
 
-/// A Delaunay cell: its circumcentre, which is a Voronoi vertex, and the samples on its sphere.
-struct DelaunayCell
+/// Delaunay cells: their circumcentres, which are the Voronoi vertices, and the samples on each sphere.
+struct DelaunayCells
 {
-	Point3d centre;
-	std::vector<int> samples;
+	std::vector<Point3d> centre; ///< #C
+	std::vector<int> start;      ///< #C + 1, into samples
+	std::vector<int> samples;    ///< four a cell, more where cells are cospherical
 };
 
 /// Qhull's state; frees its memory, also when an exception passes.
@@ -56,14 +59,16 @@ private:
 };
 
 /**
- * The Delaunay cells of the points and of the corners of a cube around them, which bound the cells
- * of the outermost points and give cospherical points (a sphere's) a fourth dimension.
- * Cells that touch a corner of the cube are left out.
- * @pre the points lie within a distance of 1 of the origin.
+ * The Delaunay cells of the points, without those that reach out to a cube put around them.
+ *
+ * The corners of the cube bound the cells of the outermost points, and lend cospherical points,
+ * which a sphere's are, the fourth dimension that the lifted points need.
+ * @pre the points lie in the cube of half side 1 around the origin.
  * @throws SolverError with Qhull's own words.
  */
-inline std::vector<DelaunayCell> delaunayCells(const std::vector<Point3d>& points, const char* command)
+inline DelaunayCells delaunayCells(const std::vector<Point3d>& points, const char* command = "qhull d Q12")
 {
+	constexpr double halfSide = 3;
 	const int count = int(points.size());
 	std::vector<coordT> coordinates;
 	coordinates.reserve(3 * (points.size() + 8));
@@ -71,8 +76,8 @@ inline std::vector<DelaunayCell> delaunayCells(const std::vector<Point3d>& point
 		coordinates.insert(coordinates.end(), {p[0], p[1], p[2]});
 	for (int corner = 0; corner < 8; ++corner)
 		for (int k = 0; k < 3; ++k)
-			coordinates.push_back(corner >> k & 1 ? 1.5 : -1.5);
-	// Qhull only writes to C files; a library must not write to the terminal.
+			coordinates.push_back(corner >> k & 1 ? halfSide : -halfSide);
+	// Qhull writes to C files only, and a library must not write to its user's terminal.
 	const std::unique_ptr<FILE, int (*)(FILE*)> log(std::tmpfile(), std::fclose);
 	if (!log)
 		throw SolverError("The Voronoi diagram needs a temporary file for Qhull's messages and got none.");
@@ -88,70 +93,66 @@ inline std::vector<DelaunayCell> delaunayCells(const std::vector<Point3d>& point
 		throw SolverError("Qhull could not compute the Voronoi diagram (code " + std::to_string(status) +
 			"): " + message);
 	}
-	std::vector<DelaunayCell> cells;
+	DelaunayCells cells;
+	cells.start.push_back(0);
 	facetT* facet;
 	vertexT *vertex, **vertexp;
 	FORALLfacets {
 		if (facet->upperdelaunay)
 			continue;
-		DelaunayCell cell;
-		bool bounded = true;
+		bool reachesOut = false;
 		FOREACHvertex_(facet->vertices) {
 			const int id = qh_pointid(qh, vertex->point);
-			bounded = bounded && id < count;
-			cell.samples.push_back(id);
+			reachesOut = reachesOut || id >= count;
+			cells.samples.push_back(id);
 		}
-		if (!bounded)
+		if (reachesOut) {
+			cells.samples.resize(cells.start.back());
 			continue;
-		// The facet is the hyperplane n.(x, |x|^2) + o = 0 of the lifted points: a sphere about -n / (2 n3).
+		}
+		// The facet is the hyperplane n.(x, |x|^2) + o = 0 of the lifted points, a sphere around -n / (2 n3).
 		const coordT* n = facet->normal;
-		cell.centre = Point3d(n[0], n[1], n[2]) * (-0.5 / n[3]);
-		cells.push_back(std::move(cell));
+		cells.centre.push_back(Point3d(n[0], n[1], n[2]) * (-0.5 / n[3]));
+		cells.start.push_back(int(cells.samples.size()));
 	}
 	return cells;
 }
 
-/// The nearest sample to a fixed centre.
-class NearestSample
+/// A ball that is gone as soon as a sample is found in it.
+class EmptyBall
 {
 public:
-	explicit NearestSample(const Point3d& centre) : centre(centre) {}
+	EmptyBall(const Point3d& c, double radius) : c(c), radius(radius) {}
 
-	double squaredDistance() const { return best; }
-
-	double reach(const PointTree::Box& box) const
-	{
-		const double d2 = box.squaredDistance(centre);
-		return d2 < best ? d2 : -1;
-	}
-
-	void visit(int, const Point3d& q) { best = std::min(best, SquaredDistance(centre, q)); }
+	bool isEmpty() const { return empty; }
+	const Point3d& centre() const { return c; }
+	double reach() const { return empty ? radius : 0; }
+	void visit(int, const Point3d& q) { empty = empty && !(SquaredDistance(c, q) < radius * radius); }
 
 private:
-	Point3d centre;
-	double best = std::numeric_limits<double>::infinity();
+	Point3d c;
+	double radius;
+	bool empty = true;
 };
 
 /**
- * Whether a cell's sphere is what it claims to be: through its samples, empty, and inside the shape.
- * Nearly co-circular neighbourhoods yield centres up to 1e16 diagonals away, and the space around the
- * shape has cells as well; in both the surface does not face away from the centre all round.
+ * Whether a cell's ball is what it claims to be: within the cube, through its samples, and empty.
+ * Nearly co-circular neighbourhoods yield centres up to 1e16 diagonals away, and smaller errors.
  */
-inline bool isInnerCell(const DelaunayCell& cell, const std::vector<Point3d>& samples,
-	const std::vector<Point3d>& normals, const PointTree& tree)
+inline bool isDelaunayCell(const DelaunayCells& cells, size_t cell, const std::vector<Point3d>& samples,
+	const PointTree& tree, double tolerance)
 {
-	constexpr double Tolerance = 1e-6; // of the diagonal
-	const double radius = Distance(cell.centre, samples[cell.samples[0]]);
-	if (!(radius < 1))
-		return false;
-	for (int q : cell.samples) {
-		const Point3d spoke = samples[q] - cell.centre;
-		if (std::abs(spoke.Norm() - radius) > Tolerance || spoke * normals[q] < 0)
+	const Point3d& c = cells.centre[cell];
+	for (int k = 0; k < 3; ++k)
+		if (!(std::abs(c[k]) <= 1))
 			return false;
-	}
-	NearestSample nearest(cell.centre);
-	tree.search(nearest);
-	return std::sqrt(nearest.squaredDistance()) > radius - Tolerance;
+	const double radius = Distance(c, samples[cells.samples[cells.start[cell]]]);
+	for (int i = cells.start[cell]; i < cells.start[cell + 1]; ++i)
+		if (std::abs(Distance(c, samples[cells.samples[i]]) - radius) > tolerance)
+			return false;
+	EmptyBall ball(c, radius - tolerance);
+	tree.search(ball);
+	return ball.isEmpty();
 }
 
 } // namespace detail
@@ -159,43 +160,41 @@ inline bool isInnerCell(const DelaunayCell& cell, const std::vector<Point3d>& sa
 /**
  * The inner Voronoi pole of each vertex: the farthest Voronoi vertex of its cell on the inner side.
  *
- * A Voronoi vertex counts if its ball is empty, touches its samples and lies inside the shape; the
- * pole is the farthest that does, so one bad vertex costs its cell no more than the next best.
+ * A Voronoi vertex counts if its ball is empty and touches its samples, and for those samples from
+ * which it can be seen through the inside of the shape; one that does not count makes way for the
+ * next farthest of the cell.
  * @pre mesh is compact.
  * @return poles, #V; radius -1 where no Voronoi vertex of the cell counts.
- * @throws SolverError, Cancelled (before, after, but not while Qhull runs: it cannot be stopped).
+ * @throws SolverError, Cancelled (before and after, but not while Qhull runs: it cannot be stopped).
  * Complexity: O(V log V) for samples of a surface.
  */
 inline PoleSet voronoiPoles(const SurfaceMesh& mesh, const Progress& progress = Progress())
 {
+	constexpr double tolerance = 1e-7; // of about the diagonal
 	const char* what = "Poles: Voronoi diagram";
 	progress.report(0, what);
-	const int count = mesh.vertexSlots();
 	PoleSet poles;
-	poles.centre.assign(count, Point3d(0, 0, 0));
-	poles.radius.assign(count, -1);
-	const Box3d box = mesh.bounds();
-	if (count < 4 || !(box.Diag() > 0))
+	poles.centre.assign(mesh.vertexSlots(), Point3d(0, 0, 0));
+	poles.radius.assign(mesh.vertexSlots(), -1);
+	const UnitFrame frame(mesh.position);
+	if (!(frame.diagonal() > 0))
 		return poles;
-	const Point3d origin = box.Center();
-	const double scale = box.Diag();
-	std::vector<Point3d> samples(mesh.position);
-	for (Point3d& q : samples)
-		q = (q - origin) / scale;
+	const std::vector<Point3d> samples = frame.in(mesh.position);
 	const std::vector<Point3d> normals = mesh.vertexNormals();
 	const PointTree tree(samples);
-	const std::vector<detail::DelaunayCell> cells = detail::delaunayCells(samples, "qhull d Q12");
-	progress.report(0.9, what);
-	for (size_t i = 0; i < cells.size(); ++i) {
-		if (i % 65536 == 0)
-			progress.report(0.9 + 0.1 * double(i) / double(cells.size()), what);
-		const detail::DelaunayCell& cell = cells[i];
-		if (!detail::isInnerCell(cell, samples, normals, tree))
+	const InnerSegments segments(mesh, tree);
+	const detail::DelaunayCells cells = detail::delaunayCells(samples);
+	for (size_t cell = 0; cell < cells.centre.size(); ++cell) {
+		if (cell % 16384 == 0)
+			progress.report(0.8 + 0.2 * double(cell) / double(cells.centre.size()), what);
+		if (!detail::isDelaunayCell(cells, cell, samples, tree, tolerance))
 			continue;
-		const Point3d centre = origin + cell.centre * scale;
-		for (int v : cell.samples) {
+		const Point3d centre = frame.out(cells.centre[cell]);
+		for (int i = cells.start[cell]; i < cells.start[cell + 1]; ++i) {
+			const int v = cells.samples[i];
 			const double radius = Distance(centre, mesh.position[v]);
-			if (normals[v].SquaredNorm() > 0 && radius > poles.radius[v]) {
+			if (radius > poles.radius[v] && (centre - mesh.position[v]) * normals[v] < 0 &&
+				segments.staysInside(v, centre, frame.lengthOut(tolerance))) {
 				poles.centre[v] = centre;
 				poles.radius[v] = radius;
 			}

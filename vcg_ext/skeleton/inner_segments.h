@@ -1,0 +1,200 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file Whether a pole can be seen from its vertex through the inside of the shape.
+
+#ifndef VCG_MCF_INNER_SEGMENTS_H
+#define VCG_MCF_INNER_SEGMENTS_H
+
+#include "point_tree.h"
+#include "surface_mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/**
+ * Tests segments that start at a vertex and end in the middle of a ball without vertices in it.
+ *
+ * A ball may be empty of vertices and still reach through a triangle, its centre outside. The
+ * segment [p, c] then crosses a triangle at a depth t from p, and the corners of this triangle are
+ * no nearer to the crossing than t, since the ball of radius t around it lies in the empty one. In
+ * a triangle of longest edge L no point is farther than L / sqrt(3) from all corners, so t is no
+ * larger, and only the first piece of the segment has to be tested: about half an edge.
+ */
+class InnerSegments
+{
+public:
+	/**
+	 * @param mesh   kept by reference.
+	 * @param tree   of its vertices; gives the triangles an order in space.
+	 * @pre mesh is compact.
+	 * Complexity: O(F).
+	 */
+	InnerSegments(const SurfaceMesh& mesh, const PointTree& tree) : mesh(mesh)
+	{
+		sortFaces(tree.order());
+		std::vector<Box3d> boxes((faces.size() + Fan - 1) / Fan);
+		double longest = 0;
+		for (size_t i = 0; i < faces.size(); ++i)
+			for (int k = 0; k < 3; ++k) {
+				const int h = 3 * faces[i] + k;
+				boxes[i / Fan].Add(mesh.position[mesh.origin(h)]);
+				longest = std::max(longest, mesh.squaredLength(h));
+			}
+		farthestCrossing = std::sqrt(longest / 3);
+		while (boxes.size() > 1) {
+			std::vector<Box3d> above((boxes.size() + Fan - 1) / Fan);
+			for (size_t i = 0; i < boxes.size(); ++i)
+				above[i / Fan].Add(boxes[i]);
+			levels.push_back(std::move(boxes));
+			boxes = std::move(above);
+		}
+		levels.push_back(std::move(boxes));
+	}
+
+	/**
+	 * Whether the segment from vertex v to c leaves v into the inside and crosses no triangle.
+	 * @pre no vertex lies deeper than `depth` in the ball around c through v.
+	 * Complexity: O(log F).
+	 */
+	bool staysInside(int v, const Point3d& c, double depth) const
+	{
+		const Point3d& p = mesh.position[v];
+		const Point3d direction = c - p;
+		const double length = direction.Norm();
+		if (!(length > 0) || !leavesInwards(v, direction))
+			return false;
+		const double piece = std::min(1.0, (farthestCrossing + depth) / length);
+		return !crosses(v, direction * piece);
+	}
+
+private:
+	static constexpr size_t Fan = 4;
+
+	const SurfaceMesh& mesh;
+	std::vector<int> faces;                 ///< neighbours in this order are near each other
+	std::vector<std::vector<Box3d>> levels; ///< around 4 faces, 16 faces, 64 faces, ...
+	double farthestCrossing;
+
+	/// Orders the faces by the lowest place of a corner in the order of the vertices.
+	void sortFaces(const std::vector<int>& order)
+	{
+		std::vector<int> place(order.size());
+		for (size_t i = 0; i < order.size(); ++i)
+			place[order[i]] = int(i);
+		const auto key = [&](int f) {
+			const Triangle t = mesh.triangle(f);
+			return std::min({place[t[0]], place[t[1]], place[t[2]]});
+		};
+		std::vector<int> start(order.size() + 1, 0);
+		for (int f = 0; f < mesh.faceSlots(); ++f)
+			++start[key(f) + 1];
+		for (size_t i = 1; i < start.size(); ++i)
+			start[i] += start[i - 1];
+		faces.resize(mesh.faceSlots());
+		for (int f = 0; f < mesh.faceSlots(); ++f)
+			faces[start[key(f)]++] = f;
+	}
+
+	/// Whether the surface around v, seen as a cone of endless triangles, has the direction inside.
+	bool leavesInwards(int v, const Point3d& direction) const
+	{
+		bool behindAll = true;
+		mesh.forEachOutgoing(
+			v, [&](int h) { behindAll = behindAll && direction * mesh.areaVector(h / 3) < 0; });
+		return behindAll || isInsideCone(v, direction / direction.Norm());
+	}
+
+	/**
+	 * The sign of the distance to the nearest part of the cone: a triangle's normal, the sum of two at
+	 * an edge, of all, weighted by angle, at the apex (Baerentzen and Aanaes, "Signed distance
+	 * computation using the angle weighted pseudonormal", IEEE TVCG 11(3), 2005).
+	 */
+	bool isInsideCone(int v, const Point3d& d) const
+	{
+		const auto unit = [](const Point3d& x) { return x.SquaredNorm() > 0 ? x / x.Norm() : x; };
+		const Point3d& apex = mesh.position[v];
+		double nearest = 1; // squared; of the apex, where d leads away from all triangles
+		Point3d normal(0, 0, 0), apexNormal(0, 0, 0);
+		mesh.forEachOutgoing(v, [&](int h) {
+			const Point3d a = unit(mesh.position[mesh.target(h)] - apex);
+			const Point3d b = unit(mesh.position[mesh.apex(h)] - apex);
+			const Point3d n = unit(mesh.areaVector(h / 3));
+			apexNormal += n * std::atan2((a ^ b).Norm(), a * b);
+			const double height = d * n, ahead = d * a;
+			const bool aboveTriangle = (a ^ d) * n > 0 && (d ^ b) * n > 0;
+			if (aboveTriangle && height * height < nearest) {
+				nearest = height * height;
+				normal = n;
+			}
+			if (ahead > 0 && 1 - ahead * ahead < nearest) {
+				nearest = 1 - ahead * ahead;
+				normal = n + unit(mesh.areaVector(mesh.twin(h) / 3));
+			}
+		});
+		return d * (nearest < 1 ? normal : apexNormal) < 0;
+	}
+
+	bool crosses(int v, const Point3d& segment) const
+	{
+		const Point3d& p = mesh.position[v];
+		Box3d box(p, p);
+		box.Add(p + segment);
+		box.Offset(1e-9 * segment.Norm()); // flat triangles have flat boxes, which need to be entered
+		struct Place
+		{
+			int level;
+			size_t index;
+		};
+		std::array<Place, 64> stack; // three a level
+		int top = 0;
+		stack[top++] = {int(levels.size()) - 1, 0};
+		while (top > 0) {
+			const Place place = stack[--top];
+			if (!levels[place.level][place.index].Collide(box))
+				continue;
+			const size_t first = place.index * Fan;
+			if (place.level > 0) {
+				const size_t last = std::min(first + Fan, levels[place.level - 1].size());
+				for (size_t i = first; i < last; ++i)
+					stack[top++] = {place.level - 1, i};
+				continue;
+			}
+			for (size_t i = first; i < std::min(first + Fan, faces.size()); ++i)
+				if (crossesFace(faces[i], v, segment))
+					return true;
+		}
+		return false;
+	}
+
+	/// Moeller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997.
+	bool crossesFace(int f, int v, const Point3d& segment) const
+	{
+		constexpr double rounding = 1e-9; // a segment through an edge must hit one of its triangles
+		const Triangle t = mesh.triangle(f);
+		if (t[0] == v || t[1] == v || t[2] == v)
+			return false;
+		const Point3d& a = mesh.position[t[0]];
+		const Point3d e1 = mesh.position[t[1]] - a, e2 = mesh.position[t[2]] - a;
+		const Point3d across = segment ^ e2;
+		const double determinant = e1 * across;
+		if (determinant == 0)
+			return false;
+		const Point3d from = mesh.position[v] - a;
+		const double u = from * across / determinant;
+		if (!(u >= -rounding && u <= 1 + rounding))
+			return false;
+		const Point3d aside = from ^ e1;
+		const double w = segment * aside / determinant;
+		const double along = e2 * aside / determinant;
+		return w >= -rounding && u + w <= 1 + rounding && along >= -rounding && along <= 1 + rounding;
+	}
+};
+
+} // namespace vcg::tri::mcf
+
+#endif
