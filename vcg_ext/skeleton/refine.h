@@ -1,0 +1,266 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file Refine: what is done to the curve after the paper's pipeline, to make it a better skeleton.
+
+#ifndef VCG_MCF_REFINE_H
+#define VCG_MCF_REFINE_H
+
+#include "check_input.h"
+#include "closest_surface.h"
+#include "curve_skeleton.h"
+#include "errors.h"
+#include "progress.h"
+#include "refine_centre.h"
+#include "refine_graph.h"
+#include "refine_tips.h"
+#include "skeleton_branches.h"
+#include "skeleton_radius.h"
+#include "stage.h"
+#include "surface_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/**
+ * The knobs of refine(). Lengths are fractions of the bounding box diagonal of a connected
+ * component of the surface.
+ */
+struct RefineParameters
+{
+	/// Distance of neighbouring nodes; fraction of the diagonal, in (0, 0.1].
+	double spacing = 0.005;
+	/// A terminal branch whose end ball sticks out of the ball at its junction by less than this
+	/// part of the latter's radius is a spur and is removed; in [0, 1].
+	double spurProminence = 0.1;
+	/// Two junctions are one where the smaller ball sticks out of the larger one by less than this
+	/// part of the latter's radius; in [0, 1].
+	double junctionProminence = 0.5;
+	/// kappa, weight of the smoothness along the branch against that of the centring, for a spacing
+	/// of 0.5 %; >= 0. Larger: smoother, less centred.
+	double smoothing = 30;
+	/// Rounds of centring with ten times that smoothness, which free curves that are caught on a
+	/// wrong sheet of the medial axis, then rounds with it before and after the tips are
+	/// extended; >= 0.
+	int stiffRounds = 6, rounds = 3, lastRounds = 2;
+	/// A tip is extended while the balls reach further by at least this part of the way; in (0, 1].
+	double tipGain = 0.2;
+	/// A tip's ball is no smaller than this when it has been extended; fraction of the diagonal, > 0.
+	double tipRadius = 0.003;
+
+	/// @throws InvalidParameter naming the first parameter that is out of its range.
+	void check() const
+	{
+		require(spacing > 0 && spacing <= 0.1, "spacing", "between 0 and 10 % of the diagonal");
+		require(spurProminence >= 0 && spurProminence <= 1, "spur_prominence", "between 0 and 1");
+		require(junctionProminence >= 0 && junctionProminence <= 1, "junction_prominence",
+			"between 0 and 1");
+		require(smoothing >= 0 && std::isfinite(smoothing), "smoothing", "at least 0");
+		require(stiffRounds >= 0 && rounds >= 0 && lastRounds >= 0, "rounds", "at least 0");
+		require(tipGain > 0 && tipGain <= 1, "tip_gain", "in (0, 1]");
+		require(tipRadius > 0 && std::isfinite(tipRadius), "tip_radius", "greater than 0");
+	}
+
+private:
+	static void require(bool holds, const char* name, const char* range)
+	{
+		if (!holds)
+			throw InvalidParameter(std::string("Parameter ") + name + " must be " + range + ".");
+	}
+};
+
+namespace detail {
+
+/// Refines the skeleton of one component, in coordinates where the component's diagonal is 1.
+inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurface& surface,
+	const RefineParameters& parameters, const Progress& progress)
+{
+	const char* what = "Refining the skeleton";
+	constexpr double stiffer = 10, referenceSpacing = 0.005;
+	// Between two searches of the whole surface the contacts are followed from round to round.
+	constexpr int roundsOfSearch = 3;
+	const double kappa = parameters.smoothing * std::pow(referenceSpacing / parameters.spacing, 4);
+	const TipRule tips = {parameters.spacing, parameters.tipGain, parameters.tipRadius};
+	const int total = parameters.stiffRounds + parameters.rounds + parameters.lastRounds + 1;
+	int done = 0;
+	const auto centreRounds = [&](int rounds, double weight) {
+		std::vector<Contact> contacts;
+		for (int i = 0; i < rounds; ++i) {
+			if (i % roundsOfSearch == 0)
+				contacts = findContacts(skeleton, surface);
+			else
+				followContacts(contacts, skeleton, surface);
+			centre(skeleton, contacts, surface, weight);
+			progress.report(double(++done) / total, what);
+		}
+	};
+	const auto tidy = [&] {
+		measureBranchEnds(skeleton, surface);
+		skeleton = withWholeJunctions(withoutSpurs(std::move(skeleton), parameters.spurProminence),
+			parameters.junctionProminence);
+		skeleton = evenlySampled(skeleton, surface, parameters.spacing);
+	};
+	for (size_t v = 0; v < skeleton.position.size(); ++v)
+		skeleton.radius[v] = std::max(surface.clearance(skeleton.position[v]), 0.0);
+	moveInside(skeleton, surface);
+	tidy();
+	centreRounds(parameters.stiffRounds, stiffer * kappa);
+	tidy();
+	centreRounds(parameters.rounds, kappa);
+	measureBranchEnds(skeleton, surface);
+	extendTips(skeleton, surface, tips);
+	tidy();
+	centreRounds(parameters.lastRounds, kappa);
+	tidy();
+	return skeleton;
+}
+
+/**
+ * The component of the surface that each node belongs to; -1 for parts of the graph into which
+ * nothing has merged.
+ */
+inline std::vector<int> componentOfNodes(
+	const CurveSkeleton& curve, const std::vector<int>& component)
+{
+	const std::vector<std::vector<int>> neighbours = curve.neighbours();
+	std::vector<int> ofNode(curve.position.size(), -1);
+	std::vector<int> stack;
+	for (size_t s = 0; s < curve.node.size(); ++s) {
+		const int seed = curve.node[s];
+		if (seed < 0 || ofNode[seed] >= 0)
+			continue;
+		ofNode[seed] = component[s];
+		stack.push_back(seed);
+		while (!stack.empty()) {
+			const int v = stack.back();
+			stack.pop_back();
+			for (int w : neighbours[v])
+				if (ofNode[w] < 0) {
+					ofNode[w] = component[s];
+					stack.push_back(w);
+				}
+		}
+	}
+	return ofNode;
+}
+
+/// From a node downhill along the graph, to one that is nearer to the point than its neighbours.
+inline int nearestAlong(const CurveSkeleton& skeleton,
+	const std::vector<std::vector<int>>& neighbours, int node, const Point3d& point)
+{
+	for (;;) {
+		int nearest = node;
+		for (int w : neighbours[node])
+			if (SquaredDistance(skeleton.position[w], point)
+				< SquaredDistance(skeleton.position[nearest], point))
+				nearest = w;
+		if (nearest == node)
+			return node;
+		node = nearest;
+	}
+}
+
+} // namespace detail
+
+/**
+ * Refines a curve skeleton within the surface that it was extracted from: removes spurs, merges
+ * shattered junctions, samples the branches evenly, centres the nodes in the maximal balls of the
+ * surface while it smooths the branches, and extends the tips to the ends of their features.
+ *
+ * Components and cycles stay as they are. No node or edge leaves the surface; nodes that were
+ * outside are moved in where possible. The result depends on the shape of each component only, not
+ * on its size and place. Each surface vertex goes to the nearest node along the part of the graph
+ * where the node it had went; the radius is measured anew, as the mean distance to these vertices.
+ *
+ * @param curve       its `node` has an entry for each vertex of `surface`.
+ * @param surface     closed triangle mesh of any number of components, compact.
+ * @param parameters  see RefineParameters.
+ * @param progress    window for reports; cancelling leaves nothing behind.
+ * @return the refined skeleton, mesh units; nodes of the first component come first.
+ * @throws InvalidParameter, InvalidInput if the correspondence does not fit the surface or the
+ *         curve, SolverError, Cancelled.
+ * Complexity: O(V log V + N log V) for V vertices and N nodes.
+ * Source: ours; see Tagliasacchi et al., "Mean Curvature Skeletons", SGP 2012, for the curve.
+ */
+inline CurveSkeleton refine(const CurveSkeleton& curve, const SurfaceMesh& surface,
+	const RefineParameters& parameters = RefineParameters(), const Progress& progress = Progress())
+{
+	parameters.check();
+	if (int(curve.node.size()) != surface.vertexSlots())
+		throw InvalidInput("The skeleton's correspondence is for a surface of "
+			+ std::to_string(curve.node.size()) + " vertices, this one has "
+			+ std::to_string(surface.vertexSlots())
+			+ ": choose the surface that it was made from.");
+	for (int v : curve.node)
+		if (v >= int(curve.position.size()))
+			throw InvalidInput("The skeleton's correspondence names nodes that it does not have.");
+
+	int components = 0;
+	const std::vector<int> component = connectedComponents(surface, &components);
+	const std::vector<int> componentOfNode = detail::componentOfNodes(curve, component);
+	std::vector<std::vector<int>> vertices(components), nodes(components), edges(components);
+	std::vector<Box3d> box(components);
+	for (int v = 0; v < surface.vertexSlots(); ++v) {
+		vertices[component[v]].push_back(v);
+		box[component[v]].Add(surface.position[v]);
+	}
+	for (size_t v = 0; v < componentOfNode.size(); ++v)
+		if (componentOfNode[v] >= 0)
+			nodes[componentOfNode[v]].push_back(int(v));
+	for (size_t e = 0; e < curve.edges.size(); ++e)
+		if (const int c = componentOfNode[curve.edges[e][0]]; c >= 0)
+			edges[c].push_back(int(e));
+	// Each component in coordinates of its own, where its diagonal is 1.
+	const auto toUnit = [&](const Point3d& p, int c) {
+		return (p - box[c].Center()) / box[c].Diag();
+	};
+	SurfaceMesh unit = surface;
+	for (int v = 0; v < surface.vertexSlots(); ++v)
+		unit.position[v] = toUnit(surface.position[v], component[v]);
+
+	CurveSkeleton refined;
+	refined.node.assign(curve.node.size(), -1);
+	std::vector<int> number(curve.position.size(), -1);
+	constexpr double sampleSpacing = 0.01;
+	for (int c = 0; c < components; ++c) {
+		if (nodes[c].empty())
+			continue;
+		CurveSkeleton part;
+		for (int v : nodes[c]) {
+			number[v] = int(part.node.size());
+			part.node.push_back(number[v]);
+			part.position.push_back(toUnit(curve.position[v], c));
+		}
+		part.radius.assign(part.position.size(), 0);
+		for (int e : edges[c])
+			part.edges.push_back({number[curve.edges[e][0]], number[curve.edges[e][1]]});
+		const ClosestSurface closest(unit, vertices[c], sampleSpacing);
+		part = detail::refineComponent(part, closest, parameters,
+			progress.part(double(c) / components, double(c + 1) / components));
+
+		const std::vector<std::vector<int>> neighbours = part.neighbours();
+		const int first = int(refined.position.size());
+		for (int s : vertices[c])
+			if (curve.node[s] >= 0)
+				refined.node[s] = first
+					+ detail::nearestAlong(
+						part, neighbours, part.node[number[curve.node[s]]], unit.position[s]);
+		for (const Point3d& p : part.position)
+			refined.position.push_back(p * box[c].Diag() + box[c].Center());
+		for (const auto& [a, b] : part.edges)
+			refined.edges.push_back({first + a, first + b});
+	}
+	refined.radius = meanSurfaceDistance(refined.position, surface.position, refined.node);
+	fillUnknownRadii(refined.radius, refined.neighbours());
+	progress.report(1, "Refining the skeleton");
+	return refined;
+}
+
+} // namespace vcg::tri::mcf
+
+#endif

@@ -1,0 +1,211 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file Refinement, the geometry: nodes into the centres of their maximal balls, smooth along the branch.
+
+#ifndef VCG_MCF_REFINE_CENTRE_H
+#define VCG_MCF_REFINE_CENTRE_H
+
+#include "closest_surface.h"
+#include "curve_skeleton.h"
+#include "errors.h"
+#include "parallel_blocks.h"
+#include "progress.h"
+#include "refine_graph.h"
+
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace vcg::tri::mcf::detail {
+
+/// Where a node touches the surface, and the maximal ball through there.
+struct Contact
+{
+	ClosestSurface::Hit hit;
+	ClosestSurface::Ball ball;
+};
+
+/// Points of the surface that lie this deep in a ball, in distances of its node, do not hold it.
+constexpr double contactTolerance = 0.03;
+
+/// A maximal ball whose contacts are nearer to each other than this is held by the surface's
+/// curvature or its noise, not by the other side: it says nothing about the middle of the shape.
+constexpr double leastSpokeAngle = 30 * M_PI / 180;
+
+inline bool isMedial(const ClosestSurface::Ball& ball)
+{
+	return ball.spokeAngle >= leastSpokeAngle;
+}
+
+/// Searches the whole surface. @pre node is inside, and hit its closest point.
+inline ClosestSurface::Ball medialBall(const ClosestSurface& surface, const Point3d& node,
+	const ClosestSurface::Hit& hit, int near = -1)
+{
+	return surface.maximalBall(node, hit, contactTolerance * hit.distance, near);
+}
+
+/// Direction of the branch at a node of degree 1 or 2, in steps to its neighbours.
+inline Point3d tangentAt(const CurveSkeleton& skeleton, const std::vector<int>& neighbours, int v)
+{
+	const Point3d& back = skeleton.position[neighbours.front()];
+	const Point3d& front =
+		neighbours.size() == 1 ? skeleton.position[v] : skeleton.position[neighbours.back()];
+	Point3d t = front - back;
+	const double length = t.Norm();
+	return length > 0 ? t / length : Point3d(0, 0, 0);
+}
+
+/**
+ * Finds each node's contact and measures its distance from the surface; 0 outside.
+ * A node that is outside has no ball.
+ */
+inline std::vector<Contact> findContacts(CurveSkeleton& skeleton, const ClosestSurface& surface)
+{
+	std::vector<Contact> contacts(skeleton.position.size());
+	forEachBlock(int(contacts.size()), Progress(), "", [&](int begin, int end) {
+		// Neighbours in number are mostly neighbours on a branch, and touch nearly the same places.
+		int near = -1, nearOpposite = -1;
+		for (int v = begin; v < end; ++v) {
+			const Point3d& x = skeleton.position[v];
+			Contact& contact = contacts[v];
+			contact.hit = near < 0 ? surface.closest(x) : surface.closest(x, near);
+			contact.ball = {x, 0, -1, 0};
+			near = contact.hit.face;
+			const bool inside = contact.hit.distance > 0 && surface.isInside(x, contact.hit);
+			skeleton.radius[v] = inside ? contact.hit.distance : 0;
+			if (!inside)
+				continue;
+			contact.ball = medialBall(surface, x, contact.hit, nearOpposite);
+			nearOpposite = contact.ball.face;
+		}
+	});
+	return contacts;
+}
+
+/// Follows the contacts of nodes that have moved a little; radius stays as it is.
+inline void followContacts(
+	std::vector<Contact>& contacts, const CurveSkeleton& skeleton, const ClosestSurface& surface)
+{
+	for (size_t v = 0; v < contacts.size(); ++v) {
+		Contact& contact = contacts[v];
+		if (contact.ball.face < 0)
+			continue;
+		const Point3d& x = skeleton.position[v];
+		const ClosestSurface::Hit hit = surface.closestFrom(x, contact.hit.face);
+		if (hit.distance <= 0)
+			continue;
+		contact.hit = hit;
+		contact.ball = surface.maximalBallFrom(x, hit, contact.ball);
+	}
+}
+
+/**
+ * One round: solves
+ *     min  sum_i w_i |x_i - c_i|^2 + kappa sum_k |x_{k-1} - 2 x_k + x_{k+1}|^2
+ * over the inner nodes k of the branches, so that curves may meet at any angle in a junction. c_i is
+ * the centre of the maximal ball at node i, moved back along the branch to where the node is: the
+ * nodes keep their distances. Tips weigh more: the curve is not to shrink.
+ *
+ * No node moves by more than half its distance from the surface, and no edge leaves the surface:
+ * the nodes of one that would stay where they are.
+ * @param kappa for nodes at the skeleton's own spacing.
+ * @pre radius holds distances from the surface, or lower bounds. @post lower bounds.
+ */
+inline void centre(CurveSkeleton& skeleton, const std::vector<Contact>& contacts,
+	const ClosestSurface& surface, double kappa)
+{
+	constexpr double tipWeight = 1e3, weightWithoutBall = 1e-6;
+	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
+	const int n = int(skeleton.position.size());
+	std::vector<Eigen::Triplet<double>> entries;
+	Eigen::MatrixX3d right(n, 3);
+	for (int v = 0; v < n; ++v) {
+		const Point3d& x = skeleton.position[v];
+		const size_t degree = neighbours[v].size();
+		Point3d target = x;
+		double weight = weightWithoutBall;
+		if (skeleton.radius[v] > 0 && isMedial(contacts[v].ball)) {
+			weight = 1;
+			target = contacts[v].ball.centre;
+			if (degree == 1 || degree == 2) {
+				const Point3d tangent = tangentAt(skeleton, neighbours[v], v);
+				target -= tangent * (tangent * (target - x));
+			}
+		}
+		if (degree == 1)
+			weight = tipWeight;
+		entries.emplace_back(v, v, weight);
+		for (int k = 0; k < 3; ++k)
+			right(v, k) = weight * target[k];
+		if (degree != 2)
+			continue;
+		const int stencil[3] = {neighbours[v][0], v, neighbours[v][1]};
+		const double second[3] = {1, -2, 1};
+		for (int i = 0; i < 3; ++i)
+			for (int j = 0; j < 3; ++j)
+				entries.emplace_back(stencil[i], stencil[j], kappa * second[i] * second[j]);
+	}
+	Eigen::SparseMatrix<double> matrix(n, n);
+	matrix.setFromTriplets(entries.begin(), entries.end());
+	const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(matrix);
+	if (factor.info() != Eigen::Success)
+		throw SolverError("Refining the skeleton: the linear system could not be factorised.");
+	const Eigen::MatrixX3d solution = factor.solve(right);
+
+	const CurveSkeleton before = skeleton;
+	for (int v = 0; v < n; ++v) {
+		const Point3d x(solution(v, 0), solution(v, 1), solution(v, 2));
+		const Point3d move = x - before.position[v];
+		const double length = move.Norm(), most = before.radius[v] / 2;
+		skeleton.position[v] = length > most ? before.position[v] + move * (most / length) : x;
+		// The distance from the surface cannot fall faster than the node moves.
+		skeleton.radius[v] = before.radius[v] - std::min(length, most);
+	}
+	std::vector<char> back(n, 0);
+	for (bool changed = true; changed;) {
+		changed = false;
+		for (const auto& [a, b] : skeleton.edges) {
+			if ((back[a] && back[b]) || isEdgeInside(skeleton, surface, a, b))
+				continue;
+			for (int v : {a, b})
+				if (!back[v]) {
+					back[v] = 1;
+					changed = true;
+					skeleton.position[v] = before.position[v];
+					skeleton.radius[v] = before.radius[v];
+				}
+		}
+	}
+}
+
+/**
+ * Moves nodes that are outside into the maximal ball that touches the closest surface point from
+ * inside, if the edges to their neighbours allow; what cannot be moved stays, without a ball.
+ */
+inline void moveInside(CurveSkeleton& skeleton, const ClosestSurface& surface)
+{
+	for (size_t v = 0; v < skeleton.position.size(); ++v) {
+		if (skeleton.radius[v] > 0)
+			continue;
+		const ClosestSurface::Hit hit = surface.closest(skeleton.position[v]);
+		if (hit.distance <= 0)
+			continue;
+		// The ray goes from the outside through the surface: a ball is sought from just below it.
+		constexpr double below = 1e-4;
+		const Point3d inward = (hit.point - skeleton.position[v]) / hit.distance;
+		const Point3d start = hit.point + inward * below;
+		const ClosestSurface::Hit contact = surface.closest(start);
+		if (contact.distance <= 0 || !surface.isInside(start, contact))
+			continue;
+		skeleton.position[v] = medialBall(surface, start, contact).centre;
+		skeleton.radius[v] = std::max(surface.clearance(skeleton.position[v]), 0.0);
+	}
+}
+
+} // namespace vcg::tri::mcf::detail
+
+#endif

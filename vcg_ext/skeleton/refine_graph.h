@@ -1,0 +1,292 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file Refinement, the graph: spurs out, shattered junctions mended, branches evenly sampled.
+
+#ifndef VCG_MCF_REFINE_GRAPH_H
+#define VCG_MCF_REFINE_GRAPH_H
+
+#include "closest_surface.h"
+#include "skeleton_branches.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace vcg::tri::mcf::detail {
+
+/// Sets the radius of each junction and tip to its distance from the surface; 0 outside.
+inline void measureBranchEnds(CurveSkeleton& skeleton, const ClosestSurface& surface)
+{
+	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
+	for (size_t v = 0; v < neighbours.size(); ++v)
+		if (neighbours[v].size() != 2)
+			skeleton.radius[v] = std::max(surface.clearance(skeleton.position[v]), 0.0);
+}
+
+/**
+ * Whether the segment from a to b is inside the surface, given its ends' distances from it or lower
+ * bounds of them: two balls that touch each other cover the segment between their centres; else it
+ * is halved.
+ */
+inline bool isSegmentInside(const ClosestSurface& surface, const Point3d& a, double radiusA,
+	const Point3d& b, double radiusB, int depth = 0)
+{
+	constexpr int deepest = 6;
+	if (radiusA <= 0 || radiusB <= 0)
+		return false;
+	if (Distance(a, b) <= radiusA + radiusB)
+		return true;
+	if (depth == deepest)
+		return false;
+	const Point3d middle = (a + b) / 2;
+	const double radius = surface.clearance(middle);
+	return isSegmentInside(surface, a, radiusA, middle, radius, depth + 1)
+		&& isSegmentInside(surface, middle, radius, b, radiusB, depth + 1);
+}
+
+/// The same for an edge of a skeleton whose radii may be lower bounds: measures them if it must.
+inline bool isEdgeInside(CurveSkeleton& skeleton, const ClosestSurface& surface, int a, int b)
+{
+	const auto inside = [&] {
+		return isSegmentInside(surface, skeleton.position[a], skeleton.radius[a],
+			skeleton.position[b], skeleton.radius[b]);
+	};
+	if (inside())
+		return true;
+	for (int v : {a, b})
+		skeleton.radius[v] = std::max(surface.clearance(skeleton.position[v]), 0.0);
+	return inside();
+}
+
+/**
+ * Removes the spurs: terminal branches whose prominence() is below `least`, the worst first, since a
+ * branch that loses its junction becomes part of a longer one. What had merged there goes to the
+ * junction. A component that is a single chain keeps it.
+ * @pre the radius of junctions and tips is their distance from the surface.
+ */
+inline CurveSkeleton withoutSpurs(CurveSkeleton skeleton, double least)
+{
+	for (;;) {
+		const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
+		const auto degree = [&](int v) { return neighbours[v].size(); };
+		double worst = least;
+		Branch spur;
+		for (Branch& branch : skeletonBranches(skeleton)) {
+			if ((degree(branch.first()) == 1) == (degree(branch.last()) == 1))
+				continue;
+			if (degree(branch.first()) == 1)
+				std::reverse(branch.nodes.begin(), branch.nodes.end());
+			const double out = prominence(skeleton, branch.last(), branch.first());
+			if (out < worst) {
+				worst = out;
+				spur = std::move(branch);
+			}
+		}
+		if (spur.nodes.empty())
+			return skeleton;
+		std::vector<int> target(skeleton.position.size());
+		std::iota(target.begin(), target.end(), 0);
+		for (int v : spur.nodes)
+			target[v] = spur.first();
+		skeleton = mergeNodes(skeleton, target);
+	}
+}
+
+/// Whether two ascending lists share an entry.
+inline bool haveCommonNode(const std::vector<int>& a, const std::vector<int>& b)
+{
+	return std::any_of(
+		a.begin(), a.end(), [&](int v) { return std::binary_search(b.begin(), b.end(), v); });
+}
+
+/**
+ * Merges junctions that are one: those whose connecting branch has a prominence() below `least`,
+ * seen from the larger ball, the least first. The one with the larger ball stays in its place.
+ * Branches that close a cycle of the shape are kept.
+ * @pre the radius of junctions and tips is their distance from the surface.
+ */
+inline CurveSkeleton withWholeJunctions(CurveSkeleton skeleton, double least)
+{
+	for (;;) {
+		const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
+		const std::vector<Branch> branches = skeletonBranches(skeleton);
+		std::map<std::pair<int, int>, int> parallel;
+		for (const Branch& branch : branches)
+			++parallel[std::minmax(branch.first(), branch.last())];
+		double worst = least;
+		const Branch* inner = nullptr;
+		bool fromFirst = true;
+		for (const Branch& branch : branches) {
+			const int a = branch.first(), b = branch.last();
+			if (branch.isClosed() || neighbours[a].size() < 3 || neighbours[b].size() < 3
+				|| parallel[std::minmax(a, b)] > 1 || haveCommonNode(neighbours[a], neighbours[b]))
+				continue;
+			const bool first = skeleton.radius[a] >= skeleton.radius[b];
+			// A branch that winds about is no joint, however near its ends are.
+			const double detour = branchLength(skeleton, branch)
+				- Distance(skeleton.position[a], skeleton.position[b]);
+			const double out = first ? prominence(skeleton, b, a) : prominence(skeleton, a, b);
+			const double larger = std::max({skeleton.radius[a], skeleton.radius[b], 1e-300});
+			if (out + detour / larger < worst) {
+				worst = out + detour / larger;
+				inner = &branch;
+				fromFirst = first;
+			}
+		}
+		if (!inner)
+			return skeleton;
+		std::vector<int> target(skeleton.position.size());
+		std::iota(target.begin(), target.end(), 0);
+		for (int v : inner->nodes)
+			target[v] = fromFirst ? inner->first() : inner->last();
+		skeleton = mergeNodes(skeleton, target);
+	}
+}
+
+/// Length of a polyline up to each of its points.
+inline std::vector<double> lengthsAlong(const std::vector<Point3d>& line)
+{
+	std::vector<double> along(line.size(), 0);
+	for (size_t i = 1; i < line.size(); ++i)
+		along[i] = along[i - 1] + Distance(line[i - 1], line[i]);
+	return along;
+}
+
+/// Points with their distances from the surface, or lower bounds of them.
+struct BallChain
+{
+	std::vector<Point3d> points;
+	std::vector<double> radii;
+};
+
+/// Points of a polyline at equal steps of its length, both ends included.
+inline BallChain evenPoints(const BallChain& line, int segments)
+{
+	const std::vector<double> along = lengthsAlong(line.points);
+	BallChain even = {{line.points.front()}, {line.radii.front()}};
+	size_t i = 1;
+	for (int k = 1; k < segments; ++k) {
+		const double s = along.back() * k / segments;
+		while (i + 1 < along.size() && along[i] < s)
+			++i;
+		const double length = along[i] - along[i - 1];
+		const double t = length > 0 ? (s - along[i - 1]) / length : 0;
+		even.points.push_back(line.points[i - 1] + (line.points[i] - line.points[i - 1]) * t);
+		// The distance from the surface cannot change faster than the place.
+		even.radii.push_back(
+			std::max(line.radii[i - 1] - t * length, line.radii[i] - (1 - t) * length));
+	}
+	even.points.push_back(line.points.back());
+	even.radii.push_back(line.radii.back());
+	return even;
+}
+
+/// A polyline with its nodes kept and its edges cut to pieces of about `spacing`.
+inline BallChain withShortEdges(const BallChain& line, double spacing)
+{
+	BallChain finer = {{line.points.front()}, {line.radii.front()}};
+	for (size_t i = 1; i < line.points.size(); ++i) {
+		const BallChain edge = {
+			{line.points[i - 1], line.points[i]}, {line.radii[i - 1], line.radii[i]}};
+		const double length = Distance(line.points[i - 1], line.points[i]);
+		const BallChain pieces = evenPoints(edge, std::max(1, int(std::lround(length / spacing))));
+		finer.points.insert(finer.points.end(), pieces.points.begin() + 1, pieces.points.end());
+		finer.radii.insert(finer.radii.end(), pieces.radii.begin() + 1, pieces.radii.end());
+	}
+	return finer;
+}
+
+/// Whether a chain is inside; measures the radii where the bounds are not enough to tell.
+inline bool isInside(BallChain& chain, const ClosestSurface& surface)
+{
+	const auto segmentInside = [&](size_t i) {
+		return isSegmentInside(
+			surface, chain.points[i - 1], chain.radii[i - 1], chain.points[i], chain.radii[i]);
+	};
+	for (size_t i = 1; i < chain.points.size(); ++i) {
+		if (segmentInside(i))
+			continue;
+		for (size_t k : {i - 1, i})
+			chain.radii[k] = std::max(surface.clearance(chain.points[k]), 0.0);
+		if (!segmentInside(i))
+			return false;
+	}
+	return true;
+}
+
+/**
+ * Samples each branch evenly, about `spacing` apart. Junctions and tips keep their places, what had
+ * merged into a node goes to the one nearest along the branch. Where a chord would leave the
+ * surface, the branch keeps its nodes and only its long edges are cut.
+ * @pre radius holds the distances from the surface, or lower bounds. @post lower bounds.
+ */
+inline CurveSkeleton evenlySampled(
+	const CurveSkeleton& skeleton, const ClosestSurface& surface, double spacing)
+{
+	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
+	const std::vector<Branch> branches = skeletonBranches(skeleton);
+	CurveSkeleton even;
+	std::vector<int> place(skeleton.position.size(), -1);
+	const auto keep = [&](int v) {
+		if (place[v] < 0) {
+			place[v] = int(even.position.size());
+			even.position.push_back(skeleton.position[v]);
+			even.radius.push_back(skeleton.radius[v]);
+		}
+	};
+	for (size_t v = 0; v < place.size(); ++v)
+		if (neighbours[v].size() != 2)
+			keep(int(v));
+	std::map<std::pair<int, int>, int> parallel;
+	for (const Branch& branch : branches)
+		++parallel[std::minmax(branch.first(), branch.last())];
+	for (const Branch& branch : branches) {
+		keep(branch.first()); // of a free cycle
+		const int least = branch.isClosed()                            ? 3
+			: parallel[std::minmax(branch.first(), branch.last())] > 1 ? 2
+																	   : 1;
+		BallChain line;
+		for (int v : branch.nodes) {
+			line.points.push_back(skeleton.position[v]);
+			line.radii.push_back(skeleton.radius[v]);
+		}
+		const double length = branchLength(skeleton, branch);
+		BallChain chain = evenPoints(line, std::max(least, int(std::lround(length / spacing))));
+		if (!isInside(chain, surface)) {
+			const BallChain kept = withShortEdges(line, spacing);
+			if (int(kept.points.size()) > least)
+				chain = kept;
+		}
+		const int segments = int(chain.points.size()) - 1;
+		std::vector<int> ids(1, place[branch.first()]);
+		for (int k = 1; k < segments; ++k) {
+			ids.push_back(int(even.position.size()));
+			even.position.push_back(chain.points[k]);
+			even.radius.push_back(std::max(chain.radii[k], 0.0));
+		}
+		ids.push_back(place[branch.last()]);
+		for (int k = 0; k < segments; ++k)
+			even.edges.push_back({std::min(ids[k], ids[k + 1]), std::max(ids[k], ids[k + 1])});
+		const std::vector<double> from = lengthsAlong(line.points), to = lengthsAlong(chain.points);
+		int k = 0;
+		for (size_t i = 1; i + 1 < branch.nodes.size(); ++i) {
+			const double s = from[i] / from.back() * to.back();
+			while (k < segments && to[k + 1] - s < s - to[k])
+				++k;
+			place[branch.nodes[i]] = ids[k];
+		}
+	}
+	std::sort(even.edges.begin(), even.edges.end());
+	even.node.reserve(skeleton.node.size());
+	for (int v : skeleton.node)
+		even.node.push_back(v < 0 ? -1 : place[v]);
+	return even;
+}
+
+} // namespace vcg::tri::mcf::detail
+
+#endif
