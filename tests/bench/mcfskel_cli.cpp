@@ -11,6 +11,7 @@
 #include <skeleton/collapse_to_curve.h>
 #include <skeleton/parameters.h>
 #include <skeleton/poles.h>
+#include <skeleton/refine.h>
 #include <skeleton/resample.h>
 #include <skeleton/skeletonize.h>
 #include <skeleton/target_length.h>
@@ -40,14 +41,21 @@ const char* const usage =
 	"  --epsilon PCT             edges shorter than this are collapsed, in % of the diagonal\n"
 	"  --split-angle DEGREES     edges opposite wider angles are split\n"
 	"  --max-iterations N        stop the flow after this many\n"
+	"  --no-refine               leave the curve as the flow made it\n"
+	"  --spacing PCT             distance of the refined nodes, in % of the diagonal\n"
+	"  --smoothing K             smoothness of the refined branches\n"
+	"  --spur-prominence R       tips that stick out less are removed\n"
+	"  --junction-prominence R   junctions that stick out less are merged\n"
 	"  --verbose                 a line for each iteration, and the notes of the input check\n";
 
 struct Options
 {
 	std::string mesh, skeleton, surface, stage;
 	bool resampleOnly = false;
+	bool refine = true;
 	bool verbose = false;
 	mcf::Parameters parameters;
+	mcf::RefineParameters refinement;
 };
 
 mcf::PoleMethod poleMethod(const std::string& name)
@@ -63,9 +71,11 @@ Options parse(int argc, char** argv)
 {
 	Options options;
 	mcf::Parameters& p = options.parameters;
+	mcf::RefineParameters& r = options.refinement;
 	const std::map<std::string, std::function<void()>> flags = {
 		{"--no-resample", [&] { p.resample = false; }},
 		{"--resample-only", [&] { options.resampleOnly = true; }},
+		{"--no-refine", [&] { options.refine = false; }},
 		{"--verbose", [&] { options.verbose = true; }},
 	};
 	using Text = const std::string&;
@@ -82,6 +92,10 @@ Options parse(int argc, char** argv)
 		{"--epsilon", [&](Text t) { p.epsilon = std::stod(t) / 100; }},
 		{"--split-angle", [&](Text t) { p.splitAngle = std::stod(t); }},
 		{"--max-iterations", [&](Text t) { p.maxIterations = std::stoi(t); }},
+		{"--spacing", [&](Text t) { r.spacing = std::stod(t) / 100; }},
+		{"--smoothing", [&](Text t) { r.smoothing = std::stod(t); }},
+		{"--spur-prominence", [&](Text t) { r.spurProminence = std::stod(t); }},
+		{"--junction-prominence", [&](Text t) { r.junctionProminence = std::stod(t); }},
 	};
 	for (int i = 1; i < argc; ++i) {
 		const std::string word = argv[i];
@@ -155,8 +169,11 @@ void run(const Options& options)
 		const mcf::Stage stage = mcf::contractToSkeleton(mcf::initialStage(surface, poles), parameters,
 			mcf::Progress(), options.verbose ? describe : nullptr);
 		seconds.add("contraction", watch.lap());
-		const mcf::CurveSkeleton skeleton = mcf::collapseToCurve(stage);
+		mcf::CurveSkeleton skeleton = mcf::collapseToCurve(stage);
 		seconds.add("conversion", watch.lap());
+		if (options.refine)
+			skeleton = mcf::refine(skeleton, surface, options.refinement);
+		seconds.add("refine", watch.lap());
 
 		const mcf::SkeletonStatistics counts = mcf::statistics(skeleton);
 		report.add("poles_missing", poles.missing())

@@ -1,0 +1,166 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Times this project beside its peers, in one run, on the same meshes, and prints tables.
+
+Two jobs are timed: the contraction of the mesh as it is (poles, flow, collapse to a curve), and
+the whole default job (resampling first), where the peer remeshes to the same edge length. Times
+are medians; processor seconds for one thread, wall seconds for more. Reading and writing files
+is not counted. --quality measures the skeletons that came out.
+"""
+
+from __future__ import annotations
+
+import argparse
+import datetime
+import json
+import os
+import platform
+import subprocess
+import sys
+from pathlib import Path
+
+from meshes import meshes_in, subdivided
+from programs import Outcome, Program, python_peers, run_interleaved
+from tables import contraction_table, quality_table, whole_table
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def parse_arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        prog="scripts/bench.sh",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("meshes", nargs="*", type=Path, metavar="MESH", help="default: meshes/")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write all figures")
+    parser.add_argument("--runs", type=int, default=3, help="of each program (default 3)")
+    parser.add_argument(
+        "--subdivide", type=int, default=0, metavar="K", help="first cut each triangle into 4^K"
+    )
+    parser.add_argument(
+        "--threads", type=int, nargs="+", default=[1], metavar="N", help="a row for each number"
+    )
+    parser.add_argument(
+        "--density", type=float, default=0.5, metavar="PCT",
+        help="edge length of the whole job's resampling, %% of the diagonal (default 0.5)",
+    )
+    parser.add_argument(
+        "--only", choices=["contraction", "whole"], help="time this job alone"
+    )
+    parser.add_argument("--quality", action="store_true", help="measure the skeletons as well")
+    parser.add_argument(
+        "--no-peers", action="store_true", help="compare with CGAL only, not with PyGEL, skeletor"
+    )
+    parser.add_argument("--stages", action="store_true", help="time single stages instead")
+    parser.add_argument(
+        "--timeout", type=float, default=900, metavar="S", help="of one run (default 900)"
+    )
+    parser.add_argument(
+        "--option", action="append", default=[], metavar="'--NAME VALUE'",
+        help="handed to this project's program, e.g. '--pole-method voronoi'",
+    )
+    parser.add_argument("--programs", type=Path, help=argparse.SUPPRESS)
+    arguments = parser.parse_args()
+    missing = [str(mesh) for mesh in arguments.meshes if not mesh.is_file()]
+    if missing:
+        parser.error("no such mesh: " + ", ".join(missing))
+    if not arguments.meshes:
+        arguments.meshes = meshes_in(ROOT / "meshes")
+    return arguments
+
+
+def machine() -> dict:
+    """What the figures depend on besides the code."""
+    cpu = platform.processor() or platform.machine()
+    info = Path("/proc/cpuinfo")
+    if info.exists():
+        names = [x for x in info.read_text().splitlines() if x.startswith("model name")]
+        cpu = names[0].partition(":")[2].strip() if names else cpu
+    commit = subprocess.run(
+        ["git", "-C", str(ROOT), "rev-parse", "--short", "HEAD"],
+        capture_output=True, text=True, check=False,
+    ).stdout.strip()
+    return {
+        "date": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds"),
+        "cpu": cpu,
+        "processors": os.cpu_count(),
+        "load_before": os.getloadavg()[0],
+        "commit": commit,
+    }
+
+
+def jobs(arguments: argparse.Namespace) -> dict[str, list[Program]]:
+    """The programs to compare, for each job."""
+    own = str(arguments.programs / "mcfskel_cli")
+    cgal = str(arguments.programs / "cgal_peer")
+    extra = tuple(word for option in arguments.option for word in option.split())
+    density = str(arguments.density)
+    result: dict[str, list[Program]] = {}
+    if arguments.only != "whole":
+        ours = [
+            Program("ours", (own,), ("--no-resample", "--no-refine", *extra), threads=n)
+            for n in arguments.threads
+        ]
+        result["contraction"] = [*ours, Program("cgal", (cgal,))]
+        if not arguments.no_peers:
+            peers, missing = python_peers()
+            result["contraction"] += peers
+            for name in missing:
+                print(f"{name}: not installed, skipped", file=sys.stderr)
+    if arguments.only != "contraction":
+        ours = [
+            Program("ours", (own,), ("--target-length", density, *extra), threads=n)
+            for n in arguments.threads
+        ]
+        result["whole"] = [*ours, Program("cgal", (cgal,), ("--remesh", density))]
+    return result
+
+
+def run_stages(arguments: argparse.Namespace, meshes: list[Path]) -> int:
+    command = [str(arguments.programs / "benchmarks"), *map(str, meshes)]
+    if arguments.json:
+        command += [f"--benchmark_out={arguments.json}", "--benchmark_out_format=json"]
+    return subprocess.run(command, check=False).returncode
+
+
+def main() -> int:
+    arguments = parse_arguments()
+    work = ROOT / "build" / "bench" / "work"
+    meshes = arguments.meshes
+    if arguments.subdivide:
+        meshes = [subdivided(mesh, arguments.subdivide, work / "meshes") for mesh in meshes]
+    if arguments.stages:
+        return run_stages(arguments, meshes)
+
+    report: dict = {"machine": machine(), "meshes": []}
+    everything: dict[str, list[tuple[Path, list[Outcome]]]] = {}
+    for job, programs in jobs(arguments).items():
+        everything[job] = []
+        for mesh in meshes:
+            print(f"{job}: {mesh.name}", file=sys.stderr, flush=True)
+            folder = work / job / mesh.stem
+            outcomes = run_interleaved(programs, mesh, folder, arguments.runs, arguments.timeout)
+            everything[job].append((mesh, outcomes))
+            report["meshes"].append(
+                {"mesh": mesh.name, "job": job, "programs": [o.as_json() for o in outcomes]}
+            )
+    if "contraction" in everything:
+        print("\n" + contraction_table(everything["contraction"]))
+    if "whole" in everything:
+        print("\n" + whole_table(everything["whole"], arguments.density))
+    if arguments.quality:
+        for job, rows in everything.items():
+            table, figures = quality_table(job, rows)
+            report.setdefault("quality", {})[job] = figures
+            print("\n" + table)
+    if arguments.json:
+        arguments.json.write_text(json.dumps(report, indent=1) + "\n")
+    failed = [o for rows in everything.values() for _, all_ in rows for o in all_
+              if o.error and o.program.label == "ours"]
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

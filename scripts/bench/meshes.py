@@ -1,0 +1,42 @@
+# SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Input meshes of the bench: the project's own, and finer versions of any mesh."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import trimesh
+from plyfile import PlyData, PlyElement
+
+SUFFIXES = (".off", ".obj", ".ply", ".stl")
+
+
+def meshes_in(folder: Path) -> list[Path]:
+    return sorted(p for p in folder.iterdir() if p.suffix.lower() in SUFFIXES)
+
+
+def subdivided(mesh: Path, times: int, folder: Path) -> Path:
+    """The mesh with every triangle cut into four, so many times, at its edges' mid-points.
+
+    Written as binary PLY with positions in double precision; made once.
+    """
+    target = folder / f"{mesh.stem}_x{4 ** times}.ply"
+    if target.exists() and target.stat().st_mtime > mesh.stat().st_mtime:
+        return target
+    fine = trimesh.load(mesh, process=False, force="mesh")
+    fine.merge_vertices(merge_tex=True, merge_norm=True)
+    points, triangles = fine.vertices, fine.faces
+    for _ in range(times):
+        points, triangles = trimesh.remesh.subdivide(points, triangles)
+    vertex = np.empty(len(points), dtype=[("x", "f8"), ("y", "f8"), ("z", "f8")])
+    vertex["x"], vertex["y"], vertex["z"] = np.asarray(points).T
+    face = np.empty(len(triangles), dtype=[("vertex_indices", "i4", (3,))])
+    face["vertex_indices"] = triangles
+    folder.mkdir(parents=True, exist_ok=True)
+    elements = [PlyElement.describe(vertex, "vertex"), PlyElement.describe(face, "face")]
+    unfinished = target.with_suffix(".part")
+    PlyData(elements).write(str(unfinished))
+    unfinished.rename(target)
+    return target

@@ -1,0 +1,135 @@
+# SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The tables of the bench, as Markdown, so that they can stand in the docs as they are."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+from programs import RESAMPLING, SKELETON, WHOLE, Outcome
+
+Rows = list[tuple[Path, list[Outcome]]]
+
+
+def markdown(head: list[str], body: list[list[str]]) -> str:
+    widths = [max(len(row[i]) for row in [head, *body]) for i in range(len(head))]
+
+    def line(cells: list[str]) -> str:
+        first, *rest = (
+            cell.ljust(width) if i == 0 else cell.rjust(width)
+            for i, (cell, width) in enumerate(zip(cells, widths))
+        )
+        return "| " + " | ".join([first, *rest]) + " |"
+
+    rule = "|" + "|".join(
+        "-" * (w + 2) if i == 0 else "-" * (w + 1) + ":" for i, w in enumerate(widths)
+    ) + "|"
+    return "\n".join([line(head), rule, *map(line, body)])
+
+
+def number(value: float | None, digits: int = 3) -> str:
+    """So many significant digits, without an exponent."""
+    if value is None or not math.isfinite(value):
+        return "-"
+    if value == 0:
+        return "0"
+    decimals = max(0, digits - 1 - math.floor(math.log10(abs(value))))
+    return f"{value:.{min(decimals, 4)}f}"
+
+
+def ratio(theirs: float | None, ours: float | None) -> str:
+    return f"{theirs / ours:.1f}" if theirs and ours else "-"
+
+
+def named(outcomes: list[Outcome], label: str) -> Outcome | None:
+    return next((o for o in outcomes if o.program.label == label), None)
+
+
+def cell(outcome: Outcome | None, phases: tuple[str, ...]) -> str:
+    if outcome is None:
+        return "-"
+    return outcome.error or number(outcome.seconds(phases))
+
+
+def contraction_table(rows: Rows) -> str:
+    head = ["contraction of the mesh as it is", "vertices", "threads", "ours s", "CGAL s", "ratio",
+            "iterations", "CGAL", "ours MB", "CGAL MB"]
+    peers = [name for name in ("pygel", "skeletor") if any(named(o, name) for _, o in rows)]
+    body = []
+    for mesh, outcomes in rows:
+        cgal = named(outcomes, "cgal")
+        for ours in (o for o in outcomes if o.program.label == "ours"):
+            body.append([
+                mesh.stem, number(ours.median("vertices"), 9), str(ours.program.threads),
+                cell(ours, SKELETON), cell(cgal, SKELETON),
+                ratio(cgal.seconds(SKELETON), ours.seconds(SKELETON)),
+                number(ours.median("iterations"), 9), number(cgal.median("iterations"), 9),
+                number(ours.median("peak_mb")), number(cgal.median("peak_mb")),
+                *(cell(named(outcomes, name), SKELETON) for name in peers),
+            ])
+    return markdown(head + [f"{name} s" for name in peers], body)
+
+
+def whole_table(rows: Rows, density: float) -> str:
+    head = [f"whole job, edges of {density:g} %", "vertices", "CGAL", "threads",
+            "resample s", "CGAL", "skeleton s", "CGAL", "all s", "CGAL", "ratio",
+            "ours MB", "CGAL MB"]
+    body = []
+    for mesh, outcomes in rows:
+        cgal = named(outcomes, "cgal")
+        for ours in (o for o in outcomes if o.program.label == "ours"):
+            body.append([
+                mesh.stem, number(ours.median("vertices"), 9), number(cgal.median("vertices"), 9),
+                str(ours.program.threads),
+                cell(ours, RESAMPLING), cell(cgal, RESAMPLING),
+                cell(ours, SKELETON), cell(cgal, SKELETON),
+                cell(ours, WHOLE), cell(cgal, WHOLE),
+                ratio(cgal.seconds(WHOLE), ours.seconds(WHOLE)),
+                number(ours.median("peak_mb")), number(cgal.median("peak_mb")),
+            ])
+    return markdown(head, body)
+
+
+MEASURES = ("medial", "reconstruction", "turning")
+
+
+def quality_table(job: str, rows: Rows) -> tuple[str, dict]:
+    """The table, and all measures by mesh and program."""
+    from curve import read_curve
+    from quality import Shape, measure
+
+    head = [f"quality, {job}", "program", "components", "cycles (genus)", "inside", "tips",
+            "junctions", "spurs", "medial %", "reconstruction %", "turning deg"]
+    body, figures = [], {}
+    quotients: dict[str, list[tuple[float, str]]] = {name: [] for name in MEASURES}
+    for mesh, outcomes in rows:
+        shape = Shape.read(mesh)
+        axis = shape.medial_axis()
+        results = {}
+        for outcome in outcomes:
+            if outcome.error or outcome.program.label in results:
+                continue
+            result = measure(shape, axis, read_curve(outcome.skeleton))
+            results[outcome.program.label] = result
+            body.append([
+                mesh.stem, outcome.program.label, str(result["components"]),
+                f"{result['cycles']} ({result['genus']})", number(result["inside"], 5),
+                str(result["tips"]), str(result["junctions"]), str(result["spurs"]),
+                *(number(result[name]) for name in MEASURES),
+            ])
+        figures[mesh.stem] = results
+        if "ours" in results and "cgal" in results:
+            for name in MEASURES:
+                ours, theirs = results["ours"][name], results["cgal"][name]
+                if ours and theirs:
+                    quotients[name].append((ours / theirs, mesh.stem))
+    notes = []
+    for name, values in quotients.items():
+        if values:
+            mean = math.exp(sum(math.log(q) for q, _ in values) / len(values))
+            worst, where = max(values)
+            notes.append(
+                f"{name}: {mean:.2f} of CGAL's (geometric mean), {worst:.2f} at worst ({where})"
+            )
+    return "\n".join([markdown(head, body), "", *notes]), figures
