@@ -6,6 +6,7 @@
 #ifndef VCG_MCF_INNER_SEGMENTS_H
 #define VCG_MCF_INNER_SEGMENTS_H
 
+#include "four_boxes.h"
 #include "point_tree.h"
 #include "surface_mesh.h"
 
@@ -19,11 +20,11 @@ namespace vcg::tri::mcf {
 /**
  * Tests segments that start at a vertex and end in the middle of a ball without vertices in it.
  *
- * A ball may be empty of vertices and still reach through a triangle, its centre outside. The
- * segment [p, c] then crosses a triangle at a depth t from p, and the corners of this triangle are
- * no nearer to the crossing than t, since the ball of radius t around it lies in the empty one. In
- * a triangle of longest edge L no point is farther than L / sqrt(3) from all corners, so t is no
- * larger, and only the first piece of the segment has to be tested: about half an edge.
+ * A ball of radius r around c may be empty of vertices and still reach through a triangle, its centre
+ * outside. Where the segment [p, c] crosses a triangle, at x, a depth t below p, the power of x to the
+ * ball is t (2 r - t). In the triangle's plane, the power to the ball less the power to the triangle's
+ * own circumcircle is linear and not positive at the corners, and the latter is at most L^2 / 3 for a
+ * longest edge L. So t (2 r - t) <= L^2 / 3: only a first, short piece of the segment can cross.
  */
 class InnerSegments
 {
@@ -37,23 +38,28 @@ public:
 	InnerSegments(const SurfaceMesh& mesh, const PointTree& tree) : mesh(mesh)
 	{
 		sortFaces(tree.order());
-		std::vector<Box3d> boxes((faces.size() + Fan - 1) / Fan);
+		const Box3d all = mesh.bounds();
+		origin = all.Center();
+		slack = FourBoxes::slack(all.Diag());
 		double longest = 0;
+		std::vector<Box3d> boxes(faces.size());
 		for (size_t i = 0; i < faces.size(); ++i)
 			for (int k = 0; k < 3; ++k) {
 				const int h = 3 * faces[i] + k;
-				boxes[i / Fan].Add(mesh.position[mesh.origin(h)]);
+				boxes[i].Add(mesh.position[mesh.origin(h)]);
 				longest = std::max(longest, mesh.squaredLength(h));
 			}
-		farthestCrossing = std::sqrt(longest / 3);
-		while (boxes.size() > 1) {
-			std::vector<Box3d> above((boxes.size() + Fan - 1) / Fan);
-			for (size_t i = 0; i < boxes.size(); ++i)
-				above[i / Fan].Add(boxes[i]);
-			levels.push_back(std::move(boxes));
+		largestPower = longest / 3;
+		do {
+			std::vector<FourBoxes> level((boxes.size() + 3) / 4);
+			std::vector<Box3d> above(level.size());
+			for (size_t i = 0; i < boxes.size(); ++i) {
+				level[i / 4].set(i % 4, boxes[i], origin);
+				above[i / 4].Add(boxes[i]);
+			}
+			levels.push_back(std::move(level));
 			boxes = std::move(above);
-		}
-		levels.push_back(std::move(boxes));
+		} while (boxes.size() > 1);
 	}
 
 	/**
@@ -65,20 +71,21 @@ public:
 	{
 		const Point3d& p = mesh.position[v];
 		const Point3d direction = c - p;
-		const double length = direction.Norm();
-		if (!(length > 0) || !leavesInwards(v, direction))
+		const double r = direction.Norm();
+		if (!(r > 0) || !leavesInwards(v, direction))
 			return false;
-		const double piece = std::min(1.0, (farthestCrossing + depth) / length);
-		return !crosses(v, direction * piece);
+		const double power = largestPower + 2 * r * depth;
+		const double farthest = power < r * r ? power / (r + std::sqrt(r * r - power)) : r;
+		return !crosses(v, direction * (farthest / r));
 	}
 
 private:
-	static constexpr size_t Fan = 4;
-
 	const SurfaceMesh& mesh;
 	std::vector<int> faces;                 ///< neighbours in this order are near each other
-	std::vector<std::vector<Box3d>> levels; ///< around 4 faces, 16 faces, 64 faces, ...
-	double farthestCrossing;
+	std::vector<std::vector<FourBoxes>> levels; ///< around single faces, 4 faces, 16 faces, ...
+	Point3d origin;
+	double slack;
+	double largestPower; ///< of a point of a triangle to the triangle's circumcircle
 
 	/// Orders the faces by the lowest place of a corner in the order of the vertices.
 	void sortFaces(const std::vector<int>& order)
@@ -141,32 +148,32 @@ private:
 
 	bool crosses(int v, const Point3d& segment) const
 	{
-		const Point3d& p = mesh.position[v];
-		Box3d box(p, p);
-		box.Add(p + segment);
-		box.Offset(1e-9 * segment.Norm()); // flat triangles have flat boxes, which need to be entered
+		float from[3], to[3];
+		for (int axis = 0; axis < 3; ++axis) {
+			const double a = mesh.position[v][axis] - origin[axis], b = a + segment[axis];
+			from[axis] = float(std::min(a, b) - slack);
+			to[axis] = float(std::max(a, b) + slack);
+		}
 		struct Place
 		{
-			int level;
-			size_t index;
+			int level, index;
 		};
 		std::array<Place, 64> stack; // three a level
 		int top = 0;
 		stack[top++] = {int(levels.size()) - 1, 0};
 		while (top > 0) {
 			const Place place = stack[--top];
-			if (!levels[place.level][place.index].Collide(box))
-				continue;
-			const size_t first = place.index * Fan;
-			if (place.level > 0) {
-				const size_t last = std::min(first + Fan, levels[place.level - 1].size());
-				for (size_t i = first; i < last; ++i)
-					stack[top++] = {place.level - 1, i};
-				continue;
-			}
-			for (size_t i = first; i < std::min(first + Fan, faces.size()); ++i)
-				if (crossesFace(faces[i], v, segment))
+			int overlaps[4];
+			levels[place.level][place.index].overlaps(from, to, overlaps);
+			for (int k = 0; k < 4; ++k) {
+				const int below = 4 * place.index + k;
+				if (!overlaps[k])
+					continue;
+				if (place.level > 0)
+					stack[top++] = {place.level - 1, below};
+				else if (crossesFace(faces[below], v, segment))
 					return true;
+			}
 		}
 		return false;
 	}

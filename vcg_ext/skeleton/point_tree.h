@@ -6,6 +6,8 @@
 #ifndef VCG_MCF_POINT_TREE_H
 #define VCG_MCF_POINT_TREE_H
 
+#include "four_boxes.h"
+
 #include <vcg/space/box3.h>
 #include <vcg/space/point3.h>
 
@@ -40,7 +42,7 @@ public:
 		}
 		if (!points.empty())
 			origin = box.Center();
-		slack = 8 * std::numeric_limits<float>::epsilon() * (points.empty() ? 0 : box.Diag());
+		slack = points.empty() ? 0 : FourBoxes::slack(box.Diag());
 		size_t inner = 0, width = 1;
 		while (points.size() > LeafSize * width) {
 			inner += width;
@@ -87,7 +89,7 @@ public:
 				continue;
 			}
 			float squaredDistance[4];
-			nodes[range.node].squaredDistances(single, squaredDistance);
+			nodes[range.node].squaredDistances(single.centre, squaredDistance);
 			const std::array<int, 5> cuts = quarters(range.begin, range.end);
 			for (int k = 0; k < 4; ++k)
 				if (squaredDistance[k] <= single.squaredReach)
@@ -119,27 +121,6 @@ private:
 		float squaredReach;
 	};
 
-	struct Node
-	{
-		float low[3][4], high[3][4];
-
-		/// Squared distances from the centre to the four boxes; 0 inside.
-		void squaredDistances(const SingleBall& ball, float (&result)[4]) const
-		{
-			for (int k = 0; k < 4; ++k)
-				result[k] = 0;
-			for (int axis = 0; axis < 3; ++axis) {
-				const float x = ball.centre[axis];
-				for (int k = 0; k < 4; ++k) {
-					const float below = low[axis][k] - x, above = x - high[axis][k];
-					float outside = below > above ? below : above;
-					outside = outside > 0 ? outside : 0;
-					result[k] += outside * outside;
-				}
-			}
-		}
-	};
-
 	struct Nearest
 	{
 		const PointTree& tree;
@@ -163,7 +144,7 @@ private:
 	std::vector<int> ids;
 	std::vector<Point3d> sorted;
 	std::array<std::vector<float>, 3> coordinate; ///< of sorted, from the origin, padded by infinities
-	std::vector<Node> nodes; ///< the inner nodes of a complete tree, children of i from 4 i + 1 on
+	std::vector<FourBoxes> nodes; ///< the inner nodes of a complete tree, children of i from 4 i + 1 on
 	Point3d origin = Point3d(0, 0, 0);
 	double slack;
 
@@ -229,11 +210,7 @@ private:
 		split(points, begin, cuts[1], cuts[2]);
 		split(points, cuts[2], cuts[3], end);
 		for (int k = 0; k < 4; ++k) {
-			const Box3d box = bounds(points, cuts[k], cuts[k + 1]);
-			for (int axis = 0; axis < 3; ++axis) {
-				nodes[node].low[axis][k] = float(box.min[axis] - origin[axis]);
-				nodes[node].high[axis][k] = float(box.max[axis] - origin[axis]);
-			}
+			nodes[node].set(k, bounds(points, cuts[k], cuts[k + 1]), origin);
 			build(points, 4 * node + 1 + k, cuts[k], cuts[k + 1]);
 		}
 	}

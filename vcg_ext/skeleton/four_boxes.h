@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file Four boxes side by side in single precision: the node of a tree, tested by vector instructions.
+
+#ifndef VCG_MCF_FOUR_BOXES_H
+#define VCG_MCF_FOUR_BOXES_H
+
+#include <vcg/space/box3.h>
+#include <vcg/space/point3.h>
+
+#include <limits>
+
+namespace vcg::tri::mcf {
+
+/**
+ * Four axis-parallel boxes, relative to the origin of their tree.
+ *
+ * Coordinates are rounded, not widened: whoever asks enlarges the question by slack().
+ */
+class FourBoxes
+{
+public:
+	/// More than rounding can move a box or a point of a tree whose box has this diagonal.
+	static double slack(double diagonal) { return 8 * std::numeric_limits<float>::epsilon() * diagonal; }
+
+	/// All four are empty: infinitely far from anything.
+	FourBoxes()
+	{
+		for (int axis = 0; axis < 3; ++axis)
+			for (int k = 0; k < 4; ++k) {
+				low[axis][k] = std::numeric_limits<float>::infinity();
+				high[axis][k] = -std::numeric_limits<float>::infinity();
+			}
+	}
+
+	void set(int k, const Box3d& box, const Point3d& origin)
+	{
+		for (int axis = 0; axis < 3; ++axis) {
+			low[axis][k] = float(box.min[axis] - origin[axis]);
+			high[axis][k] = float(box.max[axis] - origin[axis]);
+		}
+	}
+
+	/// Squared distances from x to the boxes; 0 inside.
+	void squaredDistances(const float (&x)[3], float (&result)[4]) const
+	{
+		for (int k = 0; k < 4; ++k)
+			result[k] = 0;
+		for (int axis = 0; axis < 3; ++axis)
+			for (int k = 0; k < 4; ++k) {
+				const float below = low[axis][k] - x[axis], above = x[axis] - high[axis][k];
+				float outside = below > above ? below : above;
+				outside = outside > 0 ? outside : 0;
+				result[k] += outside * outside;
+			}
+	}
+
+	/// 1 for each box that shares a point with [from, to], else 0.
+	void overlaps(const float (&from)[3], const float (&to)[3], int (&result)[4]) const
+	{
+		for (int k = 0; k < 4; ++k)
+			result[k] = 1;
+		for (int axis = 0; axis < 3; ++axis)
+			for (int k = 0; k < 4; ++k)
+				result[k] &= int(low[axis][k] <= to[axis]) & int(high[axis][k] >= from[axis]);
+	}
+
+private:
+	float low[3][4], high[3][4];
+};
+
+} // namespace vcg::tri::mcf
+
+#endif
