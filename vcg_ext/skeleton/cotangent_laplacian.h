@@ -39,8 +39,8 @@ struct SymmetricRows
 };
 
 /**
- * The cotangent weight of each half-edge's edge: w_ij = cot(alpha_ij) + cot(beta_ij), where alpha
- * and beta are the angles opposite the edge (Desbrun et al. 1999); #half-edges, dimensionless.
+ * The cotangent weight of each half-edge's edge: w_ij = (cot(alpha_ij) + cot(beta_ij)) / 2, where
+ * alpha and beta are the angles opposite the edge (Desbrun et al. 1999); #half-edges, dimensionless.
  *
  * Cotangents are bounded to [-100, 100], so that a sliver cannot stiffen the system, and weights
  * to at least 1e-3, so that L stays an M-matrix: the flow then never pushes a vertex outwards.
@@ -67,7 +67,7 @@ inline std::vector<double> cotangentWeights(const SurfaceMesh& mesh)
 	}
 	for (int h = 0; h < mesh.halfEdgeSlots(); ++h)
 		if (mesh.isHalfEdge(h))
-			weight[h] = std::max(cotangent[h] + cotangent[mesh.twin(h)], leastWeight);
+			weight[h] = std::max((cotangent[h] + cotangent[mesh.twin(h)]) / 2, leastWeight);
 	return weight;
 }
 
