@@ -134,16 +134,16 @@ public:
 		}
 	}
 
-	/// To be called before mesh.compact().
-	void beforeCompact(const SurfaceMesh& mesh)
+	/// To be called before mesh becomes mesh.renumbered(..., newFace).
+	void beforeRenumber(const SurfaceMesh& mesh, const std::vector<int>& newFace)
 	{
 		if (empty())
 			return;
-		size_t kept = 0;
+		std::vector<char> renumbered(3 * size_t(mesh.faceCount()));
 		for (int h = 0; h < mesh.halfEdgeSlots(); ++h)
-			if (mesh.isHalfEdge(h))
-				marks[kept++] = marks[h];
-		marks.resize(kept);
+			if (newFace[h / 3] >= 0)
+				renumbered[3 * newFace[h / 3] + h % 3] = marks[h];
+		marks = std::move(renumbered);
 	}
 
 private:

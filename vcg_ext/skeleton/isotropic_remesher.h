@@ -6,6 +6,7 @@
 #ifndef VCG_MCF_ISOTROPIC_REMESHER_H
 #define VCG_MCF_ISOTROPIC_REMESHER_H
 
+#include "breadth_first_order.h"
 #include "crease_edges.h"
 #include "progress.h"
 #include "staged_coarsening.h"
@@ -62,60 +63,42 @@ public:
 	}
 
 	/**
-	 * Splits the long edges of the coarsened input. Triangles that coarsening has left alone are
-	 * subdivided within themselves, so that it is known where their new vertices lie.
+	 * Splits the long edges of the coarsened input. Each of its triangles is subdivided within
+	 * itself, with Delaunay flips, or needles would be cut into countless smaller needles; and where
+	 * the triangle is one of the input it is known where its new vertices lie.
 	 */
 	void refine(const Progress& progress)
 	{
-		inputFace.assign(mesh.faceSlots(), -1);
-		for (int f = 0; f < mesh.faceSlots(); ++f)
-			if (mesh.isFace(f) && mesh.triangle(f) == surface.triangle(f))
-				inputFace[f] = f;
+		patch.resize(mesh.faceSlots());
+		isInputPatch.resize(mesh.faceSlots());
+		for (int f = 0; f < mesh.faceSlots(); ++f) {
+			patch[f] = f;
+			isInputPatch[f] = mesh.isFace(f) && mesh.triangle(f) == surface.triangle(f);
+		}
 		splitLongEdges(progress);
-		std::vector<int>().swap(inputFace);
-		compact();
+		std::vector<int>().swap(patch);
+		std::vector<char>().swap(isInputPatch);
+		renumber();
 	}
 
 	/// Splits every edge longer than 4/3 of the target at its middle, the longest first.
 	void splitLongEdges(const Progress& progress)
 	{
-		// One bucket for each factor of 1.1; bucket 0 starts at the limit.
-		std::vector<std::vector<int>> buckets;
-		const auto bucketOf = [&](int h) {
-			const double limit = 4.0 / 3 * lengthAt(mesh.origin(h));
-			const double squared = mesh.squaredLength(h);
-			if (!(squared > limit * limit))
-				return -1;
-			return int(std::log(squared / (limit * limit)) / (2 * std::log(1.1)));
-		};
-		const auto queue = [&](int h) {
-			const int bucket = bucketOf(h);
-			if (bucket < 0)
-				return;
-			if (bucket >= int(buckets.size()))
-				buckets.resize(size_t(bucket) + 1);
-			buckets[size_t(bucket)].push_back(h);
-		};
+		EdgeQueue queue(*this);
 		for (int h = 0; h < mesh.halfEdgeSlots(); ++h)
 			if (mesh.isEdge(h))
-				queue(h);
+				queue.push(h);
 		Ticker ticker(progress, "Splitting long edges");
-		for (int bucket = int(buckets.size()) - 1; bucket >= 0; --bucket) {
-			for (size_t i = 0; i < buckets[size_t(bucket)].size(); ++i) {
-				const int h = buckets[size_t(bucket)][i];
-				ticker.tick();
-				// An id may have come to mean another edge, which was queued under its own length.
-				if (bucketOf(h) != bucket)
-					continue;
-				const int m = split(h);
-				mesh.forEachOutgoing(m, [&](int spoke) {
-					queue(spoke);
-				});
-				// The two outer edges whose ids have changed, b c and d b: see SurfaceMesh::split().
-				queue(mesh.halfEdgeSlots() - 6 + 1);
-				queue(mesh.halfEdgeSlots() - 3 + 2);
-			}
-			std::vector<int>().swap(buckets[size_t(bucket)]);
+		for (int h = queue.pop(); h >= 0; h = queue.pop()) {
+			ticker.tick();
+			const int m = split(h);
+			// The halves, the new edges, and the two outer edges whose ids have changed, b c and d b:
+			// see SurfaceMesh::split().
+			mesh.forEachOutgoing(m, [&](int spoke) { queue.push(spoke); });
+			queue.push(mesh.halfEdgeSlots() - 6 + 1);
+			queue.push(mesh.halfEdgeSlots() - 3 + 2);
+			if (!patch.empty())
+				flipWithinPatches(m, queue);
 		}
 	}
 
@@ -183,13 +166,17 @@ public:
 	void flipForAngles(const Progress& progress)
 	{
 		constexpr int rounds = 3;
-		for (int round = 0; round < rounds; ++round) {
+		bool flipped = true;
+		for (int round = 0; flipped && round < rounds; ++round) {
+			flipped = false;
 			Ticker ticker(progress, "Flipping edges");
 			for (int h = 0; h < mesh.halfEdgeSlots(); ++h) {
 				ticker.tick();
-				if (mesh.isEdge(h) && !creases.isCrease(h) && opposesWideAngles(h)
-					&& flipKeepsShape(h))
+				if (mesh.isEdge(h) && !creases.isCrease(h) && opposesWideAngles(h, 1e-9)
+					&& flipKeepsShape(h)) {
 					flip(h);
+					flipped = true;
+				}
 			}
 		}
 	}
@@ -246,28 +233,12 @@ public:
 		restoreTurnedFaces(areaVectors, old, ticker);
 	}
 
-	/**
-	 * The mesh as it is now, numbered without holes, vertices and faces sorted by component.
-	 * Leaves this object empty.
-	 */
+	/// The mesh as it is now, without holes in its numbering, one component after the other. Leaves
+	/// this object empty.
 	SurfaceMesh take()
 	{
-		compact();
-		if (length.size() <= 1)
-			return std::move(mesh);
-		std::vector<int> order(component.size()), number(component.size());
-		for (int v = 0; v < int(order.size()); ++v)
-			order[v] = v;
-		std::stable_sort(order.begin(), order.end(), [&](int v, int w) { return component[v] < component[w]; });
-		std::vector<Point3d> points(order.size());
-		for (int i = 0; i < int(order.size()); ++i) {
-			number[order[i]] = i;
-			points[i] = mesh.position[order[i]];
-		}
-		std::vector<Triangle> triangles = mesh.triangles();
-		for (Triangle& t : triangles)
-			t = {number[t[0]], number[t[1]], number[t[2]]};
-		return SurfaceMesh(std::move(points), triangles);
+		renumber();
+		return std::move(mesh);
 	}
 
 private:
@@ -277,6 +248,8 @@ private:
 	static constexpr double closestCreases = 0.25;
 	/// Coarsening merges edges up to this part of the target, and leaves the rest to the rounds.
 	static constexpr double coarseFraction = 0.6;
+	/// Needles are worth a flip while refining; triangles with right angles are not (10 degrees).
+	static constexpr double patchMargin = 0.17;
 	/// cos of the angle by which a flip may turn a face: 60 degrees.
 	static constexpr double flipCosine = 0.5;
 
@@ -290,7 +263,12 @@ private:
 	std::vector<int> component;   ///< of each vertex
 	std::vector<double> length;   ///< of each component
 	std::vector<int> track;       ///< of each vertex a half-edge of `surface`
-	std::vector<int> inputFace;   ///< while refining, the input face that a face lies in, or -1
+
+	// While refining only:
+	std::vector<int> patch;         ///< of each face the triangle that it is a part of
+	std::vector<char> isInputPatch; ///< of each such triangle whether the input has it
+
+	std::vector<int> suspects;      ///< scratch of flipWithinPatches()
 
 	/// Counts elements and lets the user cancel now and then.
 	class Ticker
@@ -311,6 +289,53 @@ private:
 		const Progress& progress;
 		const char* what;
 		std::uint32_t count = 0;
+	};
+
+	/// The edges that are too long, in buckets of lengths a factor of 1.1 apart.
+	class EdgeQueue
+	{
+	public:
+		explicit EdgeQueue(const IsotropicRemesher& remesher) : remesher(remesher) {}
+
+		/// Adds the edge of h if it is too long.
+		void push(int h)
+		{
+			const int bucket = bucketOf(h);
+			if (bucket < 0)
+				return;
+			if (bucket >= int(buckets.size()))
+				buckets.resize(size_t(bucket) + 1);
+			buckets[size_t(bucket)].push_back(h);
+		}
+
+		/// Takes out one of the longest edges; -1 if there is none.
+		int pop()
+		{
+			while (!buckets.empty()) {
+				std::vector<int>& longest = buckets.back();
+				if (longest.empty()) {
+					buckets.pop_back();
+					continue;
+				}
+				const int h = longest.back();
+				longest.pop_back();
+				// An id may have come to mean another edge, which was pushed by its own length.
+				if (bucketOf(h) + 1 == int(buckets.size()))
+					return h;
+			}
+			return -1;
+		}
+
+	private:
+		const IsotropicRemesher& remesher;
+		std::vector<std::vector<int>> buckets; ///< the first one starts at 4/3 of the target
+
+		int bucketOf(int h) const
+		{
+			const double limit = 4.0 / 3 * remesher.lengthAt(remesher.mesh.origin(h));
+			const double relative = remesher.mesh.squaredLength(h) / (limit * limit);
+			return relative > 1 ? int(std::log(relative) / (2 * std::log(1.1))) : -1;
+		}
 	};
 
 	/// How origin(h) may be merged into target(h).
@@ -366,14 +391,34 @@ private:
 		const Point3d middle = (mesh.position[a] + mesh.position[b]) / 2.0;
 		const int m = mesh.split(h, middle);
 		creases.afterSplit(mesh, h);
-		if (!inputFace.empty())
+		if (!patch.empty())
 			for (const int side : {h, mesh.twin(h)})
-				inputFace.push_back(inputFace[side / 3]);
+				patch.push_back(patch[side / 3]);
 		component.push_back(component[a]);
 		if (!role.empty())
 			role.push_back(creases.isCrease(h) ? CreaseRole::Crease : CreaseRole::Smooth);
 		track.push_back(trackOfMiddle(a, b, m));
 		return m;
+	}
+
+	/// Restores the Delaunay property around the new vertex m among the faces of each patch.
+	void flipWithinPatches(int m, EdgeQueue& queue)
+	{
+		mesh.forEachOutgoing(m, [&](int h) { suspects.push_back(mesh.next(h)); });
+		while (!suspects.empty()) {
+			const int h = suspects.back();
+			suspects.pop_back();
+			if (patch[h / 3] != patch[mesh.twin(h) / 3] || !opposesWideAngles(h, patchMargin)
+				|| !flipKeepsShape(h))
+				continue;
+			flip(h);
+			queue.push(h);
+			for (const int side : {h, mesh.twin(h)})
+				for (const int outer : {mesh.next(side), mesh.previous(side)}) {
+					queue.push(outer);
+					suspects.push_back(outer);
+				}
+		}
 	}
 
 	/// Where on the input the middle m of an edge (a b) belongs. It is moved there with the others,
@@ -388,8 +433,10 @@ private:
 			trackCrease(surface, surfaceCreases, surfaceRoles, mesh.position[m], h);
 			return h;
 		}
-		if (!inputFace.empty() && inputFace[mesh.outgoing(m) / 3] >= 0)
-			return 3 * inputFace[mesh.outgoing(m) / 3];
+		if (!patch.empty())
+			for (const int side : {mesh.outgoing(m), mesh.twin(mesh.outgoing(m))})
+				if (isInputPatch[patch[side / 3]])
+					return 3 * patch[side / 3];
 		// A walk may be stopped at a fold, or start on the wrong side of a crease: try all sides.
 		const Point3d& middle = mesh.position[m];
 		int best = -1;
@@ -459,8 +506,9 @@ private:
 			&& mesh.isFlippable(h);
 	}
 
-	/// Whether the two angles opposite to h add up to more than 180 degrees.
-	bool opposesWideAngles(int h) const
+	/// Whether the two angles opposite to h add up to more than 180 degrees, by more than an angle
+	/// whose sine is `margin`.
+	bool opposesWideAngles(int h, double margin) const
 	{
 		const Point3d &a = mesh.position[mesh.origin(h)], &b = mesh.position[mesh.target(h)];
 		const auto cosineAndSine = [&](int apex) {
@@ -470,7 +518,10 @@ private:
 		const auto [cosineC, sineC] = cosineAndSine(mesh.apex(h));
 		const auto [cosineD, sineD] = cosineAndSine(mesh.apex(mesh.twin(h)));
 		const double sine = cosineC * sineD + sineC * cosineD;
-		return sine < -1e-9 * (std::abs(cosineC * sineD) + std::abs(sineC * cosineD));
+		if (sine >= 0)
+			return false;
+		const double cosine = cosineC * cosineD - sineC * sineD;
+		return cosine > 0 || sine * sine > margin * margin * (sine * sine + cosine * cosine);
 	}
 
 	/// Puts vertices of faces that turned over back to where they were until no face is turned.
@@ -498,23 +549,20 @@ private:
 		}
 	}
 
-	void compact()
+	/// Closes the holes in the numbering and brings neighbours together, for speed.
+	void renumber()
 	{
-		creases.beforeCompact(mesh);
-		const std::vector<int> newVertex = mesh.compact();
-		for (int v = 0; v < int(newVertex.size()); ++v) {
-			const int w = newVertex[v];
-			if (w < 0)
-				continue;
-			component[w] = component[v];
-			track[w] = track[v];
-			if (!role.empty())
-				role[w] = role[v];
-		}
-		component.resize(mesh.vertexSlots());
-		track.resize(mesh.vertexSlots());
+		std::vector<int> seeds(length.size(), -1);
+		for (int v = mesh.vertexSlots() - 1; v >= 0; --v)
+			if (mesh.isVertex(v))
+				seeds[component[v]] = v;
+		Numbering number = breadthFirstOrder(mesh, seeds);
+		component = std::move(number.component);
+		track = renumbered(track, number.vertex, mesh.vertexCount());
 		if (!role.empty())
-			role.resize(mesh.vertexSlots());
+			role = renumbered(role, number.vertex, mesh.vertexCount());
+		creases.beforeRenumber(mesh, number.face);
+		mesh = mesh.renumbered(number.vertex, number.face);
 	}
 };
 

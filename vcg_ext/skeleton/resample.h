@@ -6,6 +6,7 @@
 #ifndef VCG_MCF_RESAMPLE_H
 #define VCG_MCF_RESAMPLE_H
 
+#include "breadth_first_order.h"
 #include "check_input.h"
 #include "errors.h"
 #include "isotropic_remesher.h"
@@ -50,38 +51,32 @@ inline SurfaceMesh resample(const SurfaceMesh& surface,
 	const Progress& progress = Progress())
 {
 	constexpr double mostVertices = 2e7;
-	int components = 0;
-	const std::vector<int> component = connectedComponents(surface, &components);
-	if (int(targetLengthOfComponent.size()) != components)
+	const Numbering number = breadthFirstOrder(surface);
+	if (int(targetLengthOfComponent.size()) != number.components)
 		throw InvalidParameter("Resampling needs one target length for each of the "
-			+ std::to_string(components) + " components, not "
+			+ std::to_string(number.components) + " components, not "
 			+ std::to_string(targetLengthOfComponent.size()) + ".");
-	double expected = 0;
-	for (int f = 0; f < surface.faceSlots(); ++f) {
-		if (!surface.isFace(f))
-			continue;
-		const double length = targetLengthOfComponent[component[surface.origin(3 * f)]];
+	for (double length : targetLengthOfComponent)
 		if (!(length > 0) || !std::isfinite(length))
 			throw InvalidParameter("The target length of a component must be greater than 0.");
-		expected += surface.areaVector(f).Norm() / std::sqrt(3.0) / (length * length);
-	}
-	if (expected > mostVertices)
-		throw InvalidParameter("Parameter target_length is too small: the surface would need "
-			+ std::to_string(std::llround(expected / 1e6)) + " million vertices.");
 	if (iterations <= 0) {
 		SurfaceMesh same = surface;
 		same.compact();
 		return same;
 	}
-	const auto lengthAt = [&](int v) { return targetLengthOfComponent[component[v]]; };
-	SurfaceMesh withoutThin;
-	const bool hasThin = hasThinTriangles(surface, lengthAt);
-	if (hasThin) {
-		withoutThin = surface;
-		removeThinTriangles(withoutThin, lengthAt);
+	// The input as the passes like it: neighbours near each other, no triangles without a normal.
+	SurfaceMesh reference = surface.renumbered(number.vertex, number.face);
+	const auto lengthAt = [&](int v) { return targetLengthOfComponent[number.component[v]]; };
+	double expected = 0;
+	for (int f = 0; f < reference.faceSlots(); ++f) {
+		const double length = lengthAt(reference.origin(3 * f));
+		expected += reference.areaVector(f).Norm() / (std::sqrt(3.0) * length * length);
 	}
-	detail::IsotropicRemesher remesher(
-		hasThin ? withoutThin : surface, component, targetLengthOfComponent);
+	if (expected > mostVertices)
+		throw InvalidParameter("Parameter target_length is too small: the surface would need "
+			+ std::to_string(std::llround(expected / 1e6)) + " million vertices.");
+	removeThinTriangles(reference, lengthAt);
+	detail::IsotropicRemesher remesher(reference, number.component, targetLengthOfComponent);
 	remesher.coarsen(progress.part(0, 0.35));
 	remesher.refine(progress.part(0.35, 0.4));
 	for (int i = 0; i < iterations; ++i) {

@@ -427,6 +427,33 @@ public:
 		return newVertex;
 	}
 
+	/**
+	 * The same mesh with other ids for its vertices and faces, without holes in the numbering.
+	 * @param newVertex for each vertex slot its new id, -1 where it was removed; likewise newFace.
+	 * @pre the new ids are those from 0 to the number of live elements, each once.
+	 */
+	SurfaceMesh renumbered(const std::vector<int>& newVertex, const std::vector<int>& newFace) const
+	{
+		SurfaceMesh result;
+		result.position.resize(liveVertices);
+		for (int v = 0; v < vertexSlots(); ++v)
+			if (newVertex[v] >= 0)
+				result.position[newVertex[v]] = position[v];
+		result.liveFaces = liveFaces;
+		result.origins.resize(3 * size_t(liveFaces));
+		result.twins.resize(3 * size_t(liveFaces));
+		for (int h = 0; h < halfEdgeSlots(); ++h) {
+			if (newFace[h / 3] < 0)
+				continue;
+			const int t = twins[h], id = 3 * newFace[h / 3] + h % 3;
+			result.origins[id] = newVertex[origins[h]];
+			result.twins[id] = 3 * newFace[t / 3] + t % 3;
+		}
+		result.outgoings.assign(result.position.size(), -1);
+		result.chooseOutgoing();
+		return result;
+	}
+
 private:
 	std::vector<int> origins;
 	std::vector<int> twins;

@@ -88,17 +88,6 @@ int removeThinTriangles(SurfaceMesh& mesh, LengthAt&& lengthAt)
 	return left;
 }
 
-/// Whether removeThinTriangles() would find any.
-template <class LengthAt>
-bool hasThinTriangles(const SurfaceMesh& mesh, LengthAt&& lengthAt)
-{
-	int shortest, longest;
-	for (int f = 0; f < mesh.faceSlots(); ++f)
-		if (mesh.isFace(f) && detail::isThin(mesh, f, lengthAt(mesh.origin(3 * f)), shortest, longest))
-			return true;
-	return false;
-}
-
 } // namespace vcg::tri::mcf
 
 #endif
