@@ -7,12 +7,12 @@
 #define VCG_MCF_REFINE_GRAPH_H
 
 #include "closest_surface.h"
+#include "prune.h"
 #include "skeleton_branches.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -70,37 +70,10 @@ inline bool isEdgeInside(CurveSkeleton& skeleton, const ClosestSurface& surface,
  */
 inline CurveSkeleton withoutSpurs(CurveSkeleton skeleton, double least)
 {
-	for (;;) {
-		const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
-		const auto degree = [&](int v) { return neighbours[v].size(); };
-		double worst = least;
-		Branch spur;
-		for (Branch& branch : skeletonBranches(skeleton)) {
-			if ((degree(branch.first()) == 1) == (degree(branch.last()) == 1))
-				continue;
-			if (degree(branch.first()) == 1)
-				std::reverse(branch.nodes.begin(), branch.nodes.end());
-			const double out = prominence(skeleton, branch.last(), branch.first());
-			if (out < worst) {
-				worst = out;
-				spur = std::move(branch);
-			}
-		}
-		if (spur.nodes.empty())
-			return skeleton;
-		std::vector<int> target(skeleton.position.size());
-		std::iota(target.begin(), target.end(), 0);
-		for (int v : spur.nodes)
-			target[v] = spur.first();
-		skeleton = mergeNodes(skeleton, target);
-	}
-}
-
-/// Whether two ascending lists share an entry.
-inline bool haveCommonNode(const std::vector<int>& a, const std::vector<int>& b)
-{
-	return std::any_of(
-		a.begin(), a.end(), [&](int v) { return std::binary_search(b.begin(), b.end(), v); });
+	return withoutTerminalBranches(
+		std::move(skeleton), least, [](const CurveSkeleton& s, const Branch& branch) {
+			return prominence(s, branch.last(), branch.first());
+		});
 }
 
 /**
@@ -111,40 +84,11 @@ inline bool haveCommonNode(const std::vector<int>& a, const std::vector<int>& b)
  */
 inline CurveSkeleton withWholeJunctions(CurveSkeleton skeleton, double least)
 {
-	for (;;) {
-		const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
-		const std::vector<Branch> branches = skeletonBranches(skeleton);
-		std::map<std::pair<int, int>, int> parallel;
-		for (const Branch& branch : branches)
-			++parallel[std::minmax(branch.first(), branch.last())];
-		double worst = least;
-		const Branch* inner = nullptr;
-		bool fromFirst = true;
-		for (const Branch& branch : branches) {
-			const int a = branch.first(), b = branch.last();
-			if (branch.isClosed() || neighbours[a].size() < 3 || neighbours[b].size() < 3
-				|| parallel[std::minmax(a, b)] > 1 || haveCommonNode(neighbours[a], neighbours[b]))
-				continue;
-			const bool first = skeleton.radius[a] >= skeleton.radius[b];
+	return withMergedJunctions(std::move(skeleton), least,
+		[](const CurveSkeleton& s, int larger, int smaller, double detour) {
 			// A branch that winds about is no joint, however near its ends are.
-			const double detour = branchLength(skeleton, branch)
-				- Distance(skeleton.position[a], skeleton.position[b]);
-			const double out = first ? prominence(skeleton, b, a) : prominence(skeleton, a, b);
-			const double larger = std::max({skeleton.radius[a], skeleton.radius[b], 1e-300});
-			if (out + detour / larger < worst) {
-				worst = out + detour / larger;
-				inner = &branch;
-				fromFirst = first;
-			}
-		}
-		if (!inner)
-			return skeleton;
-		std::vector<int> target(skeleton.position.size());
-		std::iota(target.begin(), target.end(), 0);
-		for (int v : inner->nodes)
-			target[v] = fromFirst ? inner->first() : inner->last();
-		skeleton = mergeNodes(skeleton, target);
-	}
+			return prominence(s, smaller, larger) + detour / std::max(s.radius[larger], 1e-300);
+		});
 }
 
 /// Length of a polyline up to each of its points.

@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file Skeletons made in code for the tests.
+
+#ifndef MCFSKEL_TESTS_CURVES_H
+#define MCFSKEL_TESTS_CURVES_H
+
+#include "skeleton/curve_skeleton.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace curves {
+
+using vcg::Point3d;
+using vcg::tri::mcf::CurveSkeleton;
+
+inline int addNode(CurveSkeleton& s, const Point3d& at, double radius)
+{
+	s.position.push_back(at);
+	s.radius.push_back(radius);
+	return int(s.position.size()) - 1;
+}
+
+inline void addEdge(CurveSkeleton& s, int a, int b)
+{
+	s.edges.push_back({std::min(a, b), std::max(a, b)});
+	std::sort(s.edges.begin(), s.edges.end());
+}
+
+/// From node `from` straight on to `to` in `count` edges; returns the last node.
+inline int addLine(CurveSkeleton& s, int from, const Point3d& to, double radius, int count)
+{
+	const Point3d start = s.position[from];
+	for (int i = 1; i <= count; ++i) {
+		const int next = addNode(s, start + (to - start) * (double(i) / count), radius);
+		addEdge(s, i == 1 ? from : next - 1, next);
+	}
+	return int(s.position.size()) - 1;
+}
+
+/// A straight chain of `count` edges.
+inline CurveSkeleton line(const Point3d& a, const Point3d& b, double radius, int count)
+{
+	CurveSkeleton s;
+	addLine(s, addNode(s, a, radius), b, radius, count);
+	return s;
+}
+
+/// A regular polygon about the z axis.
+inline CurveSkeleton circle(double across, double radius, int count)
+{
+	CurveSkeleton s;
+	for (int i = 0; i < count; ++i) {
+		const double u = 2 * M_PI * i / count;
+		addNode(s, Point3d(across * std::cos(u), across * std::sin(u), 0), radius);
+	}
+	for (int i = 0; i < count; ++i)
+		addEdge(s, i, (i + 1) % count);
+	return s;
+}
+
+/// Each node its own source, so that the correspondence tells where every node has gone.
+inline CurveSkeleton tracked(CurveSkeleton s)
+{
+	s.node.clear();
+	for (size_t v = 0; v < s.position.size(); ++v)
+		s.node.push_back(int(v));
+	return s;
+}
+
+} // namespace curves
+
+#endif
