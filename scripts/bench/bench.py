@@ -5,8 +5,8 @@
 
 Two jobs are timed: the contraction of the mesh as it is (poles, flow, collapse to a curve), and
 the whole default job (resampling first), where the peer remeshes to the same edge length. Times
-are medians; processor seconds for one thread, wall seconds for more. Reading and writing files
-is not counted. --quality measures the skeletons that came out.
+are medians: processor seconds in the rows of one thread, wall seconds in those of more and for
+the peers from PyPI. Reading and writing files is not counted. --quality measures the skeletons that came out.
 """
 
 from __future__ import annotations

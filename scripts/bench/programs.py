@@ -43,16 +43,14 @@ class Outcome:
     reports: list[dict] = field(default_factory=list)
     error: str = ""
 
-    def seconds(self, phases: tuple[str, ...]) -> float | None:
-        """Median over the runs: processor time for one thread, else wall time."""
+    def seconds(self, phases: tuple[str, ...], clock: str) -> float | None:
+        """Median over the runs; clock: "cpu" for processor time, "wall" for wall time."""
         if not self.reports:
             return None
-        clock = "cpu" if self.program.threads == 1 else "wall"
-        totals = [
+        return statistics.median(
             sum(r["seconds"][phase][clock] for phase in phases if phase in r["seconds"])
             for r in self.reports
-        ]
-        return statistics.median(totals)
+        )
 
     def median(self, key: str) -> float | None:
         values = [r[key] for r in self.reports if r.get(key) is not None]
@@ -63,9 +61,12 @@ class Outcome:
             "program": self.program.label,
             "threads": self.program.threads,
             "options": list(self.program.options),
-            "seconds_skeleton": self.seconds(SKELETON),
-            "seconds_resampling": self.seconds(RESAMPLING),
-            "seconds_whole": self.seconds(WHOLE),
+            "seconds": {
+                job: {clock: self.seconds(phases, clock) for clock in ("cpu", "wall")}
+                for job, phases in (
+                    ("resampling", RESAMPLING), ("skeleton", SKELETON), ("whole", WHOLE)
+                )
+            },
             "reports": self.reports,
             "error": self.error,
         }

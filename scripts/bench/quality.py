@@ -157,15 +157,15 @@ class Shape:
         """
         return shrink(points, normals, start, self.closest, rounds=40)
 
-    def medial_axis(self) -> np.ndarray:
+    def medial_axis(self, samples: int = MEDIAL_SAMPLES) -> np.ndarray:
         """Centres of inscribed balls with a wide enough spoke angle, many of them.
 
         A first pass against a sample of the surface finds radii that are only ever too large;
         it also drops the balls that are too narrow already, which the exact pass would drop too.
         """
-        points, normals = self.surface_samples(MEDIAL_SAMPLES, seed=11)
+        points, normals = self.surface_samples(samples, seed=11)
         # Edges and corners of the shape have no area, yet balls touch the surface there.
-        if len(self.vertices) <= MEDIAL_SAMPLES:
+        if len(self.vertices) <= samples:
             points = np.vstack([points, self.vertices])
             normals = np.vstack([normals, self.vertex_normals])
         sample = cKDTree(points[:: max(1, len(points) // 20_000)])

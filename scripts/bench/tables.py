@@ -38,18 +38,30 @@ def number(value: float | None, digits: int = 3) -> str:
     return f"{value:.{min(decimals, 4)}f}"
 
 
-def ratio(theirs: float | None, ours: float | None) -> str:
-    return f"{theirs / ours:.1f}" if theirs and ours else "-"
+def count(value: float | None) -> str:
+    return "-" if value is None else f"{value:.0f}"
 
 
 def named(outcomes: list[Outcome], label: str) -> Outcome | None:
     return next((o for o in outcomes if o.program.label == label), None)
 
 
-def cell(outcome: Outcome | None, phases: tuple[str, ...]) -> str:
+def clock_of(outcome: Outcome) -> str:
+    """Processor time of one thread does not see what else the machine does; of more than one, it
+    would hide what the threads gain."""
+    return "cpu" if outcome.program.threads == 1 else "wall"
+
+
+def cell(outcome: Outcome | None, phases: tuple[str, ...], clock: str) -> str:
     if outcome is None:
         return "-"
-    return outcome.error or number(outcome.seconds(phases))
+    return outcome.error or number(outcome.seconds(phases, clock))
+
+
+def ratio(theirs: Outcome | None, ours: Outcome, phases: tuple[str, ...], clock: str) -> str:
+    if theirs is None or not theirs.reports or not ours.reports:
+        return "-"
+    return f"{theirs.seconds(phases, clock) / ours.seconds(phases, clock):.1f}"
 
 
 def contraction_table(rows: Rows) -> str:
@@ -60,13 +72,14 @@ def contraction_table(rows: Rows) -> str:
     for mesh, outcomes in rows:
         cgal = named(outcomes, "cgal")
         for ours in (o for o in outcomes if o.program.label == "ours"):
+            clock = clock_of(ours)
             body.append([
-                mesh.stem, number(ours.median("vertices"), 9), str(ours.program.threads),
-                cell(ours, SKELETON), cell(cgal, SKELETON),
-                ratio(cgal.seconds(SKELETON), ours.seconds(SKELETON)),
-                number(ours.median("iterations"), 9), number(cgal.median("iterations"), 9),
-                number(ours.median("peak_mb")), number(cgal.median("peak_mb")),
-                *(cell(named(outcomes, name), SKELETON) for name in peers),
+                mesh.stem, count(ours.median("vertices")), str(ours.program.threads),
+                cell(ours, SKELETON, clock), cell(cgal, SKELETON, clock),
+                ratio(cgal, ours, SKELETON, clock),
+                count(ours.median("iterations")), count(cgal.median("iterations")),
+                count(ours.median("peak_mb")), count(cgal.median("peak_mb")),
+                *(cell(named(outcomes, name), SKELETON, "wall") for name in peers),
             ])
     return markdown(head + [f"{name} s" for name in peers], body)
 
@@ -79,14 +92,15 @@ def whole_table(rows: Rows, density: float) -> str:
     for mesh, outcomes in rows:
         cgal = named(outcomes, "cgal")
         for ours in (o for o in outcomes if o.program.label == "ours"):
+            clock = clock_of(ours)
             body.append([
-                mesh.stem, number(ours.median("vertices"), 9), number(cgal.median("vertices"), 9),
+                mesh.stem, count(ours.median("vertices")), count(cgal.median("vertices")),
                 str(ours.program.threads),
-                cell(ours, RESAMPLING), cell(cgal, RESAMPLING),
-                cell(ours, SKELETON), cell(cgal, SKELETON),
-                cell(ours, WHOLE), cell(cgal, WHOLE),
-                ratio(cgal.seconds(WHOLE), ours.seconds(WHOLE)),
-                number(ours.median("peak_mb")), number(cgal.median("peak_mb")),
+                cell(ours, RESAMPLING, clock), cell(cgal, RESAMPLING, clock),
+                cell(ours, SKELETON, clock), cell(cgal, SKELETON, clock),
+                cell(ours, WHOLE, clock), cell(cgal, WHOLE, clock),
+                ratio(cgal, ours, WHOLE, clock),
+                count(ours.median("peak_mb")), count(cgal.median("peak_mb")),
             ])
     return markdown(head, body)
 
