@@ -387,3 +387,20 @@ TEST(SurfaceMesh, AVertexOfVeryHighValenceIsBuiltInLinearTime)
 	EXPECT_EQ(mesh.eulerCharacteristic(), 2);
 	EXPECT_EQ(mesh.valence(0), around);
 }
+
+TEST(SurfaceMesh, APillowIsAComponentOfItsOwn)
+{
+	SurfaceMesh mesh = shapes::torus().mesh();
+	const std::array<Point3d, 3> corners = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
+	const std::array<int, 3> made = mesh.addPillow(corners);
+	EXPECT_EQ(structureError(mesh), "");
+	EXPECT_EQ(mesh.eulerCharacteristic(), 2);
+	for (int k = 0; k < 3; ++k) {
+		EXPECT_EQ(mesh.position[made[k]], corners[k]);
+		EXPECT_EQ(mesh.valence(made[k]), 2);
+		EXPECT_TRUE(mesh.isTetrahedron(mesh.findHalfEdge(made[k], made[(k + 1) % 3])));
+	}
+	int components = 0;
+	connectedComponents(mesh, &components);
+	EXPECT_EQ(components, 2);
+}

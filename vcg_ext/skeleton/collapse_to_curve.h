@@ -7,10 +7,12 @@
 #define VCG_MCF_COLLAPSE_TO_CURVE_H
 
 #include "curve_skeleton.h"
+#include "errors.h"
 #include "glued_complex.h"
 #include "progress.h"
 #include "stage.h"
 
+#include <algorithm>
 #include <functional>
 #include <queue>
 #include <tuple>
@@ -23,9 +25,11 @@ namespace detail {
 /**
  * Contracts edges that have faces, shortest first, until no face is left.
  *
- * An edge that a cycle of the shape blocks waits until nothing else can be contracted; then the
- * longest other edge of the blocking triangle gets a node in its middle, which makes the cycle four
- * edges long and the contraction possible.
+ * An edge that a cycle of the shape blocks waits until nothing else can be contracted. Then edges
+ * that only one flat piece has are taken away with it, longest first; where there is none, a piece
+ * is cut at a pinch; where there is no pinch either, balls are emptied through a face that no other
+ * piece shares. All of it ends: a cut lowers a piece's genus or parts it, the rest removes cells.
+ * @throws SolverError if none of the four is possible: no shape is known where this happens.
  */
 inline void contractAllFaces(GluedComplex& complex, const Progress& progress)
 {
@@ -36,18 +40,21 @@ inline void contractAllFaces(GluedComplex& complex, const Progress& progress)
 	};
 	for (const auto& [A, B] : complex.surfaceEdges())
 		push(A, B);
-	const double total = double(shortest.size());
+	const double allFaces = complex.faceCount();
+	double done = 0; // cuts add faces: the bar waits for them to go again
 	std::vector<Entry> blocked;
 	size_t count = 0;
-	while (complex.hasFaces()) {
+	while (complex.faceCount() > 0) {
 		bool contracted = false;
 		while (!shortest.empty()) {
-			if (++count % 4096 == 0)
-				progress.report(1 - double(shortest.size()) / (total + double(shortest.size())),
-					"Collapsing to curves");
+			if (++count % 4096 == 0) {
+				done = std::max(done, 1 - complex.faceCount() / allFaces);
+				progress.report(done, "Collapsing to curves");
+			}
 			const auto [length, A, B] = shortest.top();
 			shortest.pop();
-			if (complex.find(A) != A || complex.find(B) != B || complex.squaredLength(A, B) != length)
+			if (complex.find(A) != A || complex.find(B) != B
+				|| complex.squaredLength(A, B) != length)
 				continue;
 			switch (complex.contract(A, B)) {
 			case GluedComplex::Outcome::NoFaces: break;
@@ -64,14 +71,15 @@ inline void contractAllFaces(GluedComplex& complex, const Progress& progress)
 			blocked.clear();
 			continue;
 		}
-		// Only blocked edges are left; the first is the shortest.
-		const auto [length, A, B] = blocked.front();
-		for (int C : complex.blockingNodes(A, B)) {
-			const bool fromA = complex.squaredLength(A, C) > complex.squaredLength(B, C);
-			const int M = complex.split(fromA ? A : B, C);
-			for (int X : complex.surfaceNeighbours(M))
-				push(M, X);
-		}
+		// Only blocked edges are left, the shortest first.
+		const auto free = std::count_if(blocked.rbegin(), blocked.rend(), [&](const Entry& entry) {
+			return complex.removeFreeEdge(std::get<1>(entry), std::get<2>(entry));
+		});
+		const auto cut = [&](const Entry& entry) {
+			return complex.cut(std::get<1>(entry), std::get<2>(entry));
+		};
+		if (free == 0 && std::none_of(blocked.begin(), blocked.end(), cut) && !complex.emptyBalls())
+			throw SolverError("The stage could not be collapsed to curves.");
 		for (const Entry& entry : blocked)
 			shortest.push(entry);
 		blocked.clear();
@@ -85,7 +93,8 @@ inline void contractShortCurveEdges(GluedComplex& complex, const Stage& stage, d
 		for (int B : complex.curveNeighbours(A)) {
 			const bool lastEdge =
 				complex.curveNeighbours(A).size() == 1 && complex.curveNeighbours(B).size() == 1;
-			if (!lastEdge && complex.squaredLength(A, B) < limit * limit && complex.contractCurveEdge(B, A))
+			if (!lastEdge && complex.squaredLength(A, B) < limit * limit
+				&& complex.contractCurveEdge(B, A))
 				return true;
 		}
 		return false;
@@ -108,7 +117,7 @@ inline void contractShortCurveEdges(GluedComplex& complex, const Stage& stage, d
  *
  * @param shortestEdge edges shorter than this fraction of the component's diagonal are contracted
  *        at the end, where no cycle vanishes by it.
- * @throws Cancelled. Complexity: O(V log V).
+ * @throws SolverError, Cancelled. Complexity: O(V log V).
  */
 inline CurveSkeleton collapseToCurve(
 	const Stage& stage, double shortestEdge = 1e-4, const Progress& progress = Progress())
@@ -134,7 +143,7 @@ inline CurveSkeleton collapseToCurve(
 	for (size_t s = 0; s < stage.node.size(); ++s)
 		skeleton.node[s] = number[complex.find(stage.node[s])];
 
-	// A node made by a split has no surface vertex: it takes the mean of its neighbours' radii.
+	// A node of split vertices only has no surface vertex: it takes the mean of its neighbours' radii.
 	skeleton.radius = meanSurfaceDistance(skeleton.position, *stage.surface, skeleton.node);
 	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
 	for (bool changed = true; changed;) {

@@ -11,6 +11,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <iterator>
+#include <map>
 #include <set>
 #include <utility>
 #include <vector>
@@ -23,14 +26,15 @@ namespace vcg::tri::mcf {
  * The surface starts as the boundary of one piece for each component. Where an edge cannot be
  * contracted because the surface would pinch (three edges a b c that bound no triangle), the piece
  * is cut along a b c and both lips are closed by the triangle a b c: the two copies of the triangle
- * stay glued. A piece that has shrunk to two triangles back to back and is contracted once more
- * leaves a curve edge. So the solid is at any time a union of pieces and curve edges that share
+ * stay glued. A piece that has shrunk to two triangles back to back (a pillow) and is contracted once
+ * more leaves a curve edge. So the solid is at any time a union of pieces and curve edges that share
  * nodes; a node is a set of copies of one vertex, one or more in each piece that meets there.
  *
  * contract() merges two nodes in all pieces at once, and only if each piece keeps its topology
  * (link condition) and no loop A B C of three edges without a triangle would vanish (a real cycle
- * of the shape). Both together keep the homotopy type of the union, by construction: the skeleton
- * has a component for each component of the surface, and as many cycles as its genus.
+ * of the shape). Both together keep the homotopy type of the union, and so do the other steps, which
+ * help where every contraction would lose a cycle: the skeleton has a component for each component
+ * of the surface, and as many cycles as its genus.
  */
 class GluedComplex
 {
@@ -55,7 +59,8 @@ public:
 	double squaredLength(int A, int B) const { return SquaredDistance(positions[A], positions[B]); }
 	/// Nodes joined to A by curve edges.
 	const std::set<int>& curveNeighbours(int A) const { return curve[A]; }
-	bool hasFaces() const { return mesh.faceCount() > 0; }
+	/// Faces of all pieces: when none is left, all that is left is the curve.
+	int faceCount() const { return mesh.faceCount(); }
 
 	/// Nodes joined to A by edges that have faces, ascending.
 	std::vector<int> surfaceNeighbours(int A)
@@ -93,52 +98,111 @@ public:
 	/// Contracts the edge A B into B. @pre A and B stand for themselves.
 	Outcome contract(int A, int B)
 	{
-		std::vector<int> halfEdges = halfEdgesBetween(A, B);
-		if (halfEdges.empty())
-			return Outcome::NoFaces;
-		if (!emptyTriangle(A, B, halfEdges).empty())
-			return Outcome::Blocked;
+		for (;;) {
+			const std::vector<int> halfEdges = halfEdgesBetween(A, B);
+			if (halfEdges.empty())
+				return Outcome::NoFaces;
+			if (!emptyTriangle(A, B, halfEdges).empty())
+				return Outcome::Blocked;
+			// Each cut settles which loops of the piece bound a disc inside: all is to be asked anew.
+			if (!cut(A, B))
+				break;
+		}
 		// One at a time: a piece that is glued to itself may have the edge twice.
-		while (!halfEdges.empty()) {
-			const int h = halfEdges.front();
-			if (!cutPinch(h)) {
-				if (mesh.apex(h) == mesh.apex(mesh.twin(h)))
-					flattenLastTriangle(h);
-				else
-					collapsePiece(h);
-			}
-			halfEdges = halfEdgesBetween(A, B);
+		for (std::vector<int> left = halfEdgesBetween(A, B); !left.empty();
+			 left = halfEdgesBetween(A, B)) {
+			if (isPillow(left.front()))
+				flattenPillow(left.front());
+			else
+				collapsePiece(left.front());
 		}
 		mergeNodes(A, B);
 		return Outcome::Contracted;
 	}
 
-	/// The third nodes of the empty triangles that block the contraction of A B.
-	std::vector<int> blockingNodes(int A, int B)
+	/**
+	 * Takes away the edge A B and the only pillow that has it: the other two edges are left as curve
+	 * edges (an elementary collapse).
+	 * @return whether the edge was one that only one pillow has.
+	 */
+	bool removeFreeEdge(int A, int B)
 	{
-		return emptyTriangle(A, B, halfEdgesBetween(A, B));
+		const std::vector<int> halfEdges = halfEdgesBetween(A, B);
+		if (halfEdges.empty())
+			return false;
+		const int C = nodeOf(mesh.apex(halfEdges.front()));
+		for (int h : halfEdges)
+			if (!isPillow(h) || nodeOf(mesh.apex(h)) != C)
+				return false;
+		for (int h : halfEdges)
+			removePillow(h);
+		curve[A].erase(B);
+		curve[B].erase(A);
+		addCurveEdge(A, C);
+		addCurveEdge(B, C);
+		return true;
 	}
 
-	/// Puts a new node in the middle of the edge A B, in all pieces and on the curve. @return it.
-	int split(int A, int B)
+	/// Cuts one piece that has the edge A B and would pinch there. @return whether there was one.
+	bool cut(int A, int B)
 	{
-		const int M = nodes.add();
-		const Point3d middle = (positions[A] + positions[B]) / 2.0;
-		copies.emplace_back();
-		curve.emplace_back();
-		positions.push_back(middle);
-		weight.push_back(0); // stands for no vertex of the surface
-		for (int h : halfEdgesBetween(A, B)) {
-			const int m = mesh.split(h, middle);
-			nodeOfCopy.push_back(M);
-			copies[M].push_back(m);
+		const std::vector<int> halfEdges = halfEdgesBetween(A, B);
+		return std::any_of(halfEdges.begin(), halfEdges.end(), [&](int h) { return cutPinch(h); });
+	}
+
+	/**
+	 * Empties each ball that has a face which no other piece shares: that face is taken away, and the
+	 * others stay as pillows (an elementary collapse). Of several such faces the largest.
+	 * Complexity: O(F log F). @return whether there was such a ball.
+	 */
+	bool emptyBalls()
+	{
+		const auto nodesOf = [&](int f) {
+			const Triangle t = mesh.triangle(f);
+			std::array<int, 3> triple = {nodeOf(t[0]), nodeOf(t[1]), nodeOf(t[2])};
+			std::sort(triple.begin(), triple.end());
+			return triple;
+		};
+		std::map<std::array<int, 3>, int> solidFaces; // how many solid pieces have the triangle
+		std::map<std::array<int, 3>, std::vector<int>> pillows;
+		for (int f = 0; f < mesh.faceSlots(); ++f)
+			if (mesh.isFace(f)) {
+				if (!isPillow(3 * f))
+					++solidFaces[nodesOf(f)];
+				else if (f < mesh.twin(3 * f) / 3)
+					pillows[nodesOf(f)].push_back(3 * f);
+			}
+		bool any = false;
+		for (const std::vector<int>& piece : solidBalls()) {
+			int opened = -1;
+			double largest = -1;
+			for (int f : piece) {
+				const auto [A, B, C] = nodesOf(f);
+				const double area =
+					((positions[B] - positions[A]) ^ (positions[C] - positions[A])).SquaredNorm();
+				if (solidFaces[{A, B, C}] == 1 && area > largest) {
+					opened = f;
+					largest = area;
+				}
+			}
+			if (opened < 0)
+				continue;
+			any = true;
+			const std::array<int, 3> openedNodes = nodesOf(opened);
+			std::vector<std::array<int, 3>> left;
+			for (int f : piece) {
+				left.push_back(nodesOf(f));
+				--solidFaces[left.back()];
+			}
+			removePiece(piece);
+			for (int h : pillows[openedNodes])
+				removePillow(h);
+			pillows.erase(openedNodes);
+			for (const std::array<int, 3>& triple : left)
+				if (triple != openedNodes && solidFaces[triple] == 0 && pillows[triple].empty())
+					pillows[triple].push_back(addPillow(triple));
 		}
-		if (curve[A].erase(B)) {
-			curve[B].erase(A);
-			addCurveEdge(A, M);
-			addCurveEdge(M, B);
-		}
-		return M;
+		return any;
 	}
 
 	/// Contracts a curve edge without faces, if no cycle vanishes by it. @return whether it did.
@@ -191,7 +255,8 @@ private:
 		};
 		const std::vector<int> ofA = allNeighbours(A), ofB = allNeighbours(B);
 		std::vector<int> common, filled, empty;
-		std::set_intersection(ofA.begin(), ofA.end(), ofB.begin(), ofB.end(), std::back_inserter(common));
+		std::set_intersection(
+			ofA.begin(), ofA.end(), ofB.begin(), ofB.end(), std::back_inserter(common));
 		for (int h : halfEdges)
 			for (int e : {h, mesh.twin(h)})
 				filled.push_back(nodeOf(mesh.apex(e)));
@@ -200,7 +265,8 @@ private:
 			for (int c : pinchVertices(h))
 				filled.push_back(nodeOf(c));
 		std::sort(filled.begin(), filled.end());
-		std::set_difference(common.begin(), common.end(), filled.begin(), filled.end(), std::back_inserter(empty));
+		std::set_difference(
+			common.begin(), common.end(), filled.begin(), filled.end(), std::back_inserter(empty));
 		return empty;
 	}
 
@@ -226,11 +292,8 @@ private:
 		const std::array<int, 3> made =
 			mesh.cutAlong({h, mesh.findHalfEdge(b, c), mesh.findHalfEdge(c, a)});
 		const std::array<int, 3> from = {a, b, c};
-		for (int k = 0; k < 3; ++k) {
-			const int node = nodeOf(from[k]);
-			nodeOfCopy.push_back(node);
-			copies[node].push_back(made[k]);
-		}
+		for (int k = 0; k < 3; ++k)
+			addCopy(made[k], nodeOf(from[k]));
 		return true;
 	}
 
@@ -242,18 +305,78 @@ private:
 		dropCopy(a);
 	}
 
-	/// The piece of h is two triangles back to back: what is left of it is the edge to their apex.
-	void flattenLastTriangle(int h)
+	/// Whether the piece of h is two triangles back to back.
+	bool isPillow(int h) const { return mesh.apex(h) == mesh.apex(mesh.twin(h)); }
+
+	/// Contracts the edge h of a pillow: what is left of it is the edge to its apex.
+	void flattenPillow(int h)
 	{
-		const int a = mesh.origin(h), b = mesh.target(h), c = mesh.apex(h);
-		const int t = mesh.twin(h);
-		addCurveEdge(nodeOf(b), nodeOf(c));
-		mesh.removeFace(h / 3);
-		mesh.removeFace(t / 3);
-		for (int v : {a, b, c}) {
+		addCurveEdge(nodeOf(mesh.target(h)), nodeOf(mesh.apex(h)));
+		removePillow(h);
+	}
+
+	void removePillow(int h) { removePiece({h / 3, mesh.twin(h) / 3}); }
+
+	/// @return a half-edge of the new pillow.
+	int addPillow(const std::array<int, 3>& corners)
+	{
+		const std::array<int, 3> made =
+			mesh.addPillow({positions[corners[0]], positions[corners[1]], positions[corners[2]]});
+		for (int k = 0; k < 3; ++k)
+			addCopy(made[k], corners[k]);
+		return mesh.outgoing(made[0]);
+	}
+
+	/// Removes all faces of a piece, and with them its copies of the nodes.
+	void removePiece(const std::vector<int>& faces)
+	{
+		std::vector<int> corners;
+		for (int f : faces) {
+			const Triangle t = mesh.triangle(f);
+			corners.insert(corners.end(), t.begin(), t.end());
+			mesh.removeFace(f);
+		}
+		std::sort(corners.begin(), corners.end());
+		corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+		for (int v : corners) {
 			mesh.removeVertex(v);
 			dropCopy(v);
 		}
+	}
+
+	/// The faces of each piece that is a ball, pillows left out.
+	std::vector<std::vector<int>> solidBalls() const
+	{
+		std::vector<std::vector<int>> balls;
+		std::vector<char> seen(mesh.faceSlots(), 0);
+		for (int seed = 0; seed < mesh.faceSlots(); ++seed) {
+			if (!mesh.isFace(seed) || seen[seed] || isPillow(3 * seed))
+				continue;
+			std::vector<int> piece(1, seed), corners;
+			seen[seed] = 1;
+			for (size_t i = 0; i < piece.size(); ++i)
+				for (int h = 3 * piece[i]; h < 3 * piece[i] + 3; ++h) {
+					corners.push_back(mesh.origin(h));
+					const int neighbour = mesh.twin(h) / 3;
+					if (!seen[neighbour]) {
+						seen[neighbour] = 1;
+						piece.push_back(neighbour);
+					}
+				}
+			std::sort(corners.begin(), corners.end());
+			const auto vertices = std::unique(corners.begin(), corners.end()) - corners.begin();
+			if (2 * vertices
+				== std::ptrdiff_t(piece.size()) + 4) // Euler: V - F / 2 = 2 for a sphere
+				balls.push_back(std::move(piece));
+		}
+		return balls;
+	}
+
+	/// @pre copies are added in the order of their ids.
+	void addCopy(int copy, int node)
+	{
+		nodeOfCopy.push_back(node);
+		copies[node].push_back(copy);
 	}
 
 	void dropCopy(int copy)
@@ -265,8 +388,9 @@ private:
 	void mergeNodes(int A, int B)
 	{
 		const double total = weight[A] + weight[B];
-		positions[B] = total > 0 ? Point3d((positions[A] * weight[A] + positions[B] * weight[B]) / total)
-								 : Point3d((positions[A] + positions[B]) / 2.0);
+		positions[B] = total > 0
+			? Point3d((positions[A] * weight[A] + positions[B] * weight[B]) / total)
+			: Point3d((positions[A] + positions[B]) / 2.0);
 		weight[B] = total;
 		nodes.merge(A, B);
 		copies[B].insert(copies[B].end(), copies[A].begin(), copies[A].end());

@@ -48,8 +48,8 @@ public:
 	 */
 	SurfaceMesh(std::vector<Point3d> points, const std::vector<Triangle>& triangles) :
 			position(std::move(points)), origins(3 * triangles.size()),
-			twins(3 * triangles.size(), -1), outgoings(position.size(), -1),
-			liveVertices(0), liveFaces(int(triangles.size()))
+			twins(3 * triangles.size(), -1), outgoings(position.size(), -1), liveVertices(0),
+			liveFaces(int(triangles.size()))
 	{
 		for (size_t f = 0; f < triangles.size(); ++f)
 			for (int k = 0; k < 3; ++k)
@@ -89,7 +89,10 @@ public:
 	/// Of the two half-edges of an edge, the one with the lower id stands for it.
 	bool isEdge(int h) const { return isHalfEdge(h) && h < twins[h]; }
 
-	Triangle triangle(int f) const { return {origins[3 * f], origins[3 * f + 1], origins[3 * f + 2]}; }
+	Triangle triangle(int f) const
+	{
+		return {origins[3 * f], origins[3 * f + 1], origins[3 * f + 2]};
+	}
 
 	/// Calls visit(h) for each half-edge out of v.
 	template <class Visitor>
@@ -130,7 +133,10 @@ public:
 		return (position[origins[3 * f + 1]] - a) ^ (position[origins[3 * f + 2]] - a);
 	}
 
-	double squaredLength(int h) const { return SquaredDistance(position[origin(h)], position[target(h)]); }
+	double squaredLength(int h) const
+	{
+		return SquaredDistance(position[origin(h)], position[target(h)]);
+	}
 
 	double area() const
 	{
@@ -252,6 +258,7 @@ public:
 
 	/**
 	 * Puts a new vertex at `point` on the edge of h and joins it to both apexes.
+	 * @pre the apexes differ.
 	 * @return the new vertex. The half-edges of h's triangle and its neighbour keep their ids, but
 	 *         h now ends, and its twin now starts, at the new vertex.
 	 */
@@ -280,6 +287,25 @@ public:
 		outgoings[c] = f + 2;
 		outgoings[d] = g + 2;
 		return m;
+	}
+
+	/**
+	 * Adds two triangles back to back, (a b c) and (b a c), with vertices of their own: the smallest
+	 * component there is. The Euler characteristic grows by two.
+	 * @return a, b, c.
+	 */
+	std::array<int, 3> addPillow(const std::array<Point3d, 3>& corners)
+	{
+		const int a = int(position.size()), b = a + 1, c = a + 2;
+		position.insert(position.end(), corners.begin(), corners.end());
+		stamps.insert(stamps.end(), 3, 0);
+		liveVertices += 3;
+		const int front = addFace(a, b, c), back = addFace(b, a, c);
+		join(front, back);
+		join(front + 1, back + 2);
+		join(front + 2, back + 1);
+		outgoings.insert(outgoings.end(), {front, front + 1, front + 2});
+		return {a, b, c};
 	}
 
 	/// Whether the other diagonal of the two triangles at h is not an edge yet.
@@ -520,7 +546,8 @@ private:
 	{
 		for (int h = halfEdgeSlots() - 1; h >= 0; --h)
 			outgoings[origins[h]] = h;
-		liveVertices = int(std::count_if(outgoings.begin(), outgoings.end(), [](int h) { return h >= 0; }));
+		liveVertices =
+			int(std::count_if(outgoings.begin(), outgoings.end(), [](int h) { return h >= 0; }));
 		stamps.assign(outgoings.size(), 0);
 	}
 };
