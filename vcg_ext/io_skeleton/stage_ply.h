@@ -1,0 +1,225 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/**
+ * @file A stage of the contraction as PLY, with all that the next step needs and to the last bit:
+ * written, read in another process and stepped on, it gives what it would have given at once.
+ *
+ * Other readers find a mesh (elements vertex and face) with attributes; what belongs to no vertex of
+ * it is in further elements: mcfskel_component, mcfskel_surface, mcfskel_slot and mcfskel_stage.
+ */
+
+#ifndef VCG_MCF_STAGE_PLY_H
+#define VCG_MCF_STAGE_PLY_H
+
+#include "../skeleton/stage.h"
+#include "ply_tables.h"
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <ostream>
+#include <string>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/// A stage, and what lets a host find the layer of its surface again.
+struct StageFile
+{
+	Stage stage;
+	/// Of the surface layer's geometry, as the host counts it; 0: not known.
+	std::uint64_t surfaceFingerprint = 0;
+	/// For each vertex of that layer the vertex of the surface, or -1.
+	std::vector<int> vertexOfSlot;
+};
+
+namespace detail {
+
+inline constexpr char stageComment[] = "mcfskel stage 1";
+
+/// The table of what there is once.
+inline PlyElement stageRow(const StageFile& file)
+{
+	const Stage& stage = file.stage;
+	PlyElement row {"mcfskel_stage", 1, {}};
+	const auto add = [&](const char* name, PlyType type, double value) {
+		row.add(name, type, std::array<double, 1> {value});
+	};
+	add("iteration", PlyType::Int32, stage.iteration);
+	add("converged", PlyType::UInt8, stage.converged);
+	add("initial_volume", PlyType::Double, stage.initialVolume);
+	add("volume", PlyType::Double, stage.volume);
+	add("ranked_vertices", PlyType::Int32, stage.rankedVertices);
+	add("fingerprint_low", PlyType::UInt32, double(file.surfaceFingerprint & 0xFFFFFFFF));
+	add("fingerprint_high", PlyType::UInt32, double(file.surfaceFingerprint >> 32));
+	return row;
+}
+
+} // namespace detail
+
+/// Writes a stage. @pre its mesh is compact, as between steps. Complexity: O(V + surface).
+inline void writeStagePly(std::ostream& out, const StageFile& file)
+{
+	const Stage& stage = file.stage;
+	const std::vector<Triangle> triangles = stage.mesh.triangles();
+	const std::vector<double> radius = stageRadius(stage);
+	const size_t n = size_t(stage.mesh.vertexSlots());
+
+	PlyElement vertex {"vertex", n, {}};
+	addPoints(vertex, "", stage.mesh.position);
+	vertex.add("quality", PlyType::Float, radius);
+	vertex.add("mcfskel_radius", PlyType::Double, radius);
+	addPoints(vertex, "mcfskel_pole_", stage.pole);
+	vertex.add("mcfskel_pole_radius", PlyType::Double, stage.poleRadius);
+	vertex.add("mcfskel_fixed", PlyType::UInt8, stage.fixed);
+	vertex.add("mcfskel_component", PlyType::Int32, stage.component);
+	vertex.add(
+		"mcfskel_rank", PlyType::Int32, stage.rank.empty() ? std::vector<int>(n, -1) : stage.rank);
+
+	PlyElement face {"face", triangles.size(), {}};
+	addTuples(face, "vertex_indices", triangles);
+
+	PlyElement component {"mcfskel_component", stage.diagonal.size(), {}};
+	component.add("diagonal", PlyType::Double, stage.diagonal);
+	component.add("initial_area", PlyType::Double, stage.initialArea);
+	component.add("area", PlyType::Double, stage.area);
+
+	PlyElement surface {"mcfskel_surface", stage.node.size(), {}};
+	addPoints(surface, "", *stage.surface);
+	surface.add("node", PlyType::Int32, stage.node);
+
+	PlyElement slot {"mcfskel_slot", file.vertexOfSlot.size(), {}};
+	slot.add("vertex", PlyType::Int32, file.vertexOfSlot);
+
+	writeBinaryPly(out,
+		{{detail::stageComment}, {vertex, face, component, surface, slot, detail::stageRow(file)}});
+}
+
+namespace detail {
+
+/// @throws FormatError unless the triangles are a closed two-manifold without double edges.
+inline SurfaceMesh checkedStageMesh(
+	std::vector<Point3d> points, const std::vector<Triangle>& triangles)
+{
+	const int n = int(points.size());
+	std::vector<int> corners(size_t(n), 0);
+	for (size_t f = 0; f < triangles.size(); ++f) {
+		const auto& [a, b, c] = triangles[f];
+		if (a == b || b == c || c == a)
+			throw FormatError::atRow("face", f, "two corners are the same vertex.");
+		for (int v : triangles[f])
+			++corners[size_t(v)];
+	}
+	for (int v = 0; v < n; ++v)
+		if (!corners[size_t(v)])
+			throw FormatError::atRow("vertex", size_t(v), "no face has this vertex.");
+	try {
+		SurfaceMesh mesh(std::move(points), triangles);
+		std::vector<int> seenFrom(size_t(n), -1);
+		for (int v = 0; v < n; ++v) {
+			if (mesh.valence(v) != corners[size_t(v)])
+				throw FormatError::atRow("vertex", size_t(v), "the surface is pinched here.");
+			mesh.forEachOutgoing(v, [&](int h) {
+				int& seen = seenFrom[size_t(mesh.target(h))];
+				if (seen == v)
+					throw FormatError::atRow("vertex", size_t(v), "a double edge starts here.");
+				seen = v;
+			});
+		}
+		return mesh;
+	}
+	catch (const InvalidInput& error) {
+		throw FormatError::atRow("face", 0, error.what());
+	}
+}
+
+inline std::uint64_t fingerprintHalf(const PlyTable& row, const char* name)
+{
+	const double value = row.reals(name, 0)[0];
+	if (value > 0xFFFFFFFFu)
+		throw row.error(0, std::string("'") + name + "' has more than 32 bits.");
+	return std::uint64_t(value);
+}
+
+inline void readComponents(const PlyTable& table, Stage& stage)
+{
+	stage.diagonal = table.reals("diagonal", 0);
+	stage.initialArea = table.reals("initial_area", 0);
+	stage.area = table.reals("area", 0);
+	for (size_t c = 0; c < table.rows(); ++c)
+		if (stage.diagonal[c] <= 0 || stage.initialArea[c] <= 0)
+			throw table.error(c, "a component without extent.");
+}
+
+inline void readVertices(const PlyTable& table, int components, Stage& stage)
+{
+	stage.pole = table.anyPoints("mcfskel_pole_");
+	stage.poleRadius = table.reals("mcfskel_pole_radius");
+	for (size_t v = 0; v < table.rows(); ++v)
+		for (int k = 0; k < 3; ++k)
+			if (stage.poleRadius[v] >= 0 && !std::isfinite(stage.pole[v][k]))
+				throw table.error(v, "the pole is not finite.");
+	const std::vector<int> fixed = table.integers("mcfskel_fixed", 0, 1);
+	stage.fixed.assign(fixed.begin(), fixed.end());
+	stage.component = table.integers("mcfskel_component", 0, components - 1);
+	stage.rank = table.integers("mcfskel_rank", -1, std::max(0, stage.rankedVertices - 1));
+	if (stage.rankedVertices == 0)
+		stage.rank.clear();
+}
+
+} // namespace detail
+
+/// Whether a file's comments say that it is a stage.
+inline bool isStagePly(const PlyFile& ply)
+{
+	return std::find(ply.comments.begin(), ply.comments.end(), detail::stageComment)
+		!= ply.comments.end();
+}
+
+/**
+ * Reads a stage that writeStagePly() wrote. Further properties and elements are ignored.
+ * @throws FormatError: see readBinaryPly(); also for an element or property that is missing, a value
+ *         out of its range, a mesh that is no closed two-manifold.
+ */
+inline StageFile readStagePly(const PlyFile& ply)
+{
+	constexpr int most = std::numeric_limits<int>::max();
+	if (!isStagePly(ply))
+		throw FormatError::atLine(1,
+			std::string("the header has no comment '") + detail::stageComment
+				+ "': this is no stage that 'Save Stage' wrote.");
+	StageFile file;
+	Stage& stage = file.stage;
+	const PlyTable row(ply, "mcfskel_stage"), vertex(ply, "vertex"), face(ply, "face"),
+		component(ply, "mcfskel_component"), surface(ply, "mcfskel_surface"),
+		slot(ply, "mcfskel_slot");
+	if (row.rows() != 1)
+		throw row.error(0, "expected one row.");
+	stage.iteration = row.integers("iteration", 0, most)[0];
+	stage.converged = row.integers("converged", 0, 1)[0] == 1;
+	stage.initialVolume = row.reals("initial_volume")[0];
+	stage.volume = row.reals("volume")[0];
+	stage.rankedVertices = row.integers("ranked_vertices", 0, most)[0];
+	file.surfaceFingerprint = detail::fingerprintHalf(row, "fingerprint_low")
+		| detail::fingerprintHalf(row, "fingerprint_high") << 32;
+
+	detail::readComponents(component, stage);
+	detail::readVertices(vertex, int(component.rows()), stage);
+	const std::vector<Triangle> triangles =
+		face.tuples<3>("vertex_indices", 0, int(vertex.rows()) - 1);
+	for (size_t f = 0; f < triangles.size(); ++f)
+		for (int v : triangles[f])
+			if (stage.component[size_t(v)] != stage.component[size_t(triangles[f][0])])
+				throw face.error(f, "the corners are in different components.");
+	stage.mesh = detail::checkedStageMesh(vertex.points(""), triangles);
+
+	stage.surface = std::make_shared<const std::vector<Point3d>>(surface.points(""));
+	stage.node = surface.integers("node", -1, int(vertex.rows()) - 1);
+	file.vertexOfSlot = slot.integers("vertex", -1, int(surface.rows()) - 1);
+	return file;
+}
+
+} // namespace vcg::tri::mcf
+
+#endif
