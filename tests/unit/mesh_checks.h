@@ -151,6 +151,15 @@ inline bool sameBits(const CurveSkeleton& a, const CurveSkeleton& b)
 		&& a.node == b.node;
 }
 
+/// As if no vertex had a medial pole: the flow is then plain mean curvature flow.
+inline PoleSet noPoles(const SurfaceMesh& mesh)
+{
+	PoleSet poles;
+	poles.centre.assign(mesh.vertexSlots(), Point3d(0, 0, 0));
+	poles.radius.assign(mesh.vertexSlots(), -1);
+	return poles;
+}
+
 /// Total genus of a closed mesh.
 inline int genus(const SurfaceMesh& mesh)
 {
