@@ -8,6 +8,7 @@
 
 #include <QRegularExpression>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <type_traits>
@@ -37,6 +38,8 @@ struct LayerState
 	std::shared_ptr<const mcf::PoleSet> poles;
 	/// Stages.
 	StageLayer stage;
+	/// Skeletons.
+	std::shared_ptr<const CurveLayer> curve;
 };
 
 using StatePointer = std::shared_ptr<const LayerState>;
@@ -51,7 +54,7 @@ void mix(std::uint64_t& hash, Value value)
 	hash ^= hash >> 29;
 }
 
-/// A number that changes with any coordinate, any corner and any deletion.
+/// A number that changes with any coordinate, any corner, any edge and any deletion.
 std::uint64_t fingerprint(const CMeshO& mesh)
 {
 	std::uint64_t hash = mesh.vert.size();
@@ -63,6 +66,9 @@ std::uint64_t fingerprint(const CMeshO& mesh)
 	for (const CFaceO& f : mesh.face)
 		for (int k = 0; k < 3; ++k)
 			mix(hash, f.IsD() ? -1 : int(vcg::tri::Index(mesh, f.cV(k))));
+	for (const CEdgeO& e : mesh.edge)
+		for (int k = 0; k < 2; ++k)
+			mix(hash, e.IsD() ? -1 : int(vcg::tri::Index(mesh, e.cV(k))));
 	return hash;
 }
 
@@ -83,21 +89,38 @@ bool isOfType(const vcg::PointerToAttribute& attribute)
 	return attribute._type == std::type_index(typeid(T)) && attribute._sizeof == int(sizeof(T));
 }
 
+/// The values of an attribute, for reading: VCG of 2020 hands out none from a constant mesh.
+/// @pre isOfType<T>()
 template <class T>
-void requireWritable(const MeshModel& layer, const char* name)
+const T* valuesOf(const vcg::PointerToAttribute& attribute)
 {
-	const auto* attribute = findAttribute(layer.cm.vert_attr, name);
-	if (attribute && !isOfType<T>(*attribute))
-		throw mcf::InvalidInput("The layer '" + layer.label().toStdString() + "' has an attribute '"
-			+ name
-			+ "' of another type, made by something else: remove it, or work on a copy of the layer.");
+	return static_cast<const T*>(attribute._handle->DataBegin());
 }
 
-/// Handle to a per-vertex attribute, made if need be. @pre requireWritable()
+template <class T>
+void requireType(
+	const MeshModel& layer, const std::set<vcg::PointerToAttribute>& attributes, const char* name)
+{
+	const auto* attribute = findAttribute(attributes, name);
+	if (attribute && !isOfType<T>(*attribute))
+		throw mcf::InvalidInput("The layer '" + layer.label().toStdString() + "' has an attribute '"
+			+ name + "' of another type, made by something else: remove it, or use another layer.");
+}
+
+/// Refuses a layer on which something else has used one of the project's names.
+void requireOwnAttributes(const MeshModel& layer)
+{
+	requireType<Point3m>(layer, layer.cm.vert_attr, poleAttribute);
+	for (const char* name : {poleRadiusAttribute, fixedAttribute, radiusAttribute, nodeAttribute})
+		requireType<Scalarm>(layer, layer.cm.vert_attr, name);
+	requireType<StatePointer>(layer, layer.cm.mesh_attr, stateAttribute);
+}
+
+/// Handle to a per-vertex attribute, made if need be.
 template <class T>
 auto vertexAttribute(MeshModel& layer, const char* name)
 {
-	requireWritable<T>(layer, name);
+	requireType<T>(layer, layer.cm.vert_attr, name);
 	return Allocator::GetPerVertexAttribute<T>(layer.cm, name);
 }
 
@@ -106,7 +129,7 @@ StatePointer findState(const CMeshO& mesh)
 	const auto* attribute = findAttribute(mesh.mesh_attr, stateAttribute);
 	if (!attribute || !isOfType<StatePointer>(*attribute))
 		return nullptr;
-	return Allocator::GetPerMeshAttribute<StatePointer>(mesh, stateAttribute)();
+	return *valuesOf<StatePointer>(*attribute);
 }
 
 /// The state of a layer, if its geometry is still what the state describes.
@@ -118,11 +141,7 @@ StatePointer validState(const MeshModel& layer)
 
 void setState(MeshModel& layer, LayerState state)
 {
-	const auto* attribute = findAttribute(layer.cm.mesh_attr, stateAttribute);
-	if (attribute && !isOfType<StatePointer>(*attribute))
-		throw mcf::InvalidInput("The layer '" + layer.label().toStdString()
-			+ "' has a mesh attribute '" + stateAttribute
-			+ "' made by something else: work on a copy of the layer.");
+	requireType<StatePointer>(layer, layer.cm.mesh_attr, stateAttribute);
 	state.fingerprint = fingerprint(layer.cm);
 	Allocator::GetPerMeshAttribute<StatePointer>(layer.cm, stateAttribute)() =
 		std::make_shared<const LayerState>(std::move(state));
@@ -221,20 +240,25 @@ double referenceDiagonal(const MeshModel& layer)
 	return std::isfinite(diagonal) ? diagonal : 0;
 }
 
-QString baseName(const MeshModel& layer)
+QString baseName(QString name)
 {
 	static const QRegularExpression copyNumber("\\(\\d+\\)$");
 	static const QRegularExpression fileType("\\.[A-Za-z0-9]{1,5}$");
 	static const QRegularExpression appended("_(resampled|meso_\\d+|skeleton|refined|poles)$");
-	QString name = layer.label();
 	name.remove(copyNumber);
 	name.remove(fileType);
 	name.remove(appended);
 	return name.isEmpty() ? QString("mesh") : name;
 }
 
+QString baseName(const MeshModel& layer)
+{
+	return baseName(layer.label());
+}
+
 SurfaceLayer readSurface(const MeshModel& layer)
 {
+	requireOwnAttributes(layer);
 	const std::string label = "'" + layer.label().toStdString() + "'";
 	if (const StatePointer state = validState(layer)) {
 		if (state->stage)
@@ -280,6 +304,67 @@ StageLayer readStage(const MeshModel& layer)
 	return state ? state->stage : StageLayer();
 }
 
+std::vector<int> CurveLayer::nodeOfLayerVertex() const
+{
+	std::vector<int> result;
+	if (skeleton.node.empty() || !surface.vertexOfSlot)
+		return result;
+	for (int v : *surface.vertexOfSlot)
+		result.push_back(v < 0 ? -1 : skeleton.node[size_t(v)]);
+	return result;
+}
+
+CurveLayer readCurve(const MeshModel& layer)
+{
+	if (const StatePointer state = validState(layer); state && state->curve)
+		return *state->curve;
+	const std::string label = "'" + layer.label().toStdString() + "'";
+	const CMeshO& mesh = layer.cm;
+	const auto* radius = findAttribute(mesh.vert_attr, radiusAttribute);
+	if (mesh.fn > 0)
+		throw mcf::InvalidInput("The layer " + label
+			+ " has faces, it is no curve skeleton: make a layer of nodes and edges current.");
+	if (mesh.en == 0 && !(mesh.vn == 1 && radius))
+		throw mcf::InvalidInput("The layer " + label
+			+ " has no edges, it is no curve skeleton: make a layer of nodes and edges current.");
+
+	CurveLayer curve;
+	std::vector<int> nodeOfSlot(mesh.vert.size(), -1);
+	for (int slot : liveSlots(mesh)) {
+		nodeOfSlot[size_t(slot)] = int(curve.skeleton.position.size());
+		curve.skeleton.position.push_back(toDouble(mesh.vert[size_t(slot)].cP()));
+		if (radius && isOfType<Scalarm>(*radius))
+			curve.skeleton.radius.push_back(double(valuesOf<Scalarm>(*radius)[slot]));
+	}
+	auto& edges = curve.skeleton.edges;
+	for (const CEdgeO& e : mesh.edge) {
+		if (e.IsD())
+			continue;
+		const auto ends = std::minmax(nodeOfSlot[vcg::tri::Index(mesh, e.cV(0))],
+			nodeOfSlot[vcg::tri::Index(mesh, e.cV(1))]);
+		if (ends.first == ends.second)
+			throw mcf::InvalidInput("The layer " + label + " has an edge from a vertex to itself.");
+		edges.push_back({ends.first, ends.second});
+	}
+	std::sort(edges.begin(), edges.end());
+	edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+	return curve;
+}
+
+std::vector<int> readNodes(const MeshModel& layer)
+{
+	std::vector<int> result;
+	const auto* attribute = findAttribute(layer.cm.vert_attr, nodeAttribute);
+	if (!attribute || !isOfType<Scalarm>(*attribute))
+		return result;
+	for (int slot : liveSlots(layer.cm)) {
+		const double value = double(valuesOf<Scalarm>(*attribute)[slot]);
+		// Negated, so that NaN counts as no node.
+		result.push_back(!(value >= 0 && value <= 1e9) ? -1 : int(value));
+	}
+	return result;
+}
+
 bool hasStageAttributes(const MeshModel& layer)
 {
 	return findAttribute(layer.cm.vert_attr, fixedAttribute) != nullptr;
@@ -291,10 +376,8 @@ std::shared_ptr<const mcf::PoleSet> readPoles(const MeshModel& layer, const Surf
 	const auto* radiusFound = findAttribute(layer.cm.vert_attr, poleRadiusAttribute);
 	if (!centreFound || !radiusFound)
 		return nullptr;
-	requireWritable<Point3m>(layer, poleAttribute);
-	requireWritable<Scalarm>(layer, poleRadiusAttribute);
-	const auto centre = Allocator::GetPerVertexAttribute<Point3m>(layer.cm, poleAttribute);
-	const auto radius = Allocator::GetPerVertexAttribute<Scalarm>(layer.cm, poleRadiusAttribute);
+	const auto* centre = valuesOf<Point3m>(*centreFound);
+	const auto* radius = valuesOf<Scalarm>(*radiusFound);
 
 	auto shown = std::make_shared<mcf::PoleSet>();
 	shown->centre.assign(size_t(surface.mesh->vertexSlots()), vcg::Point3d(0, 0, 0));
@@ -317,8 +400,21 @@ SurfaceLink linkTo(const MeshModel& layer, const SurfaceLayer& surface)
 	return {layer.id(), fingerprint(layer.cm), surface.vertexOfSlot};
 }
 
+SurfaceLink linkTo(
+	const MeshDocument& document, std::uint64_t wanted, std::vector<int> vertexOfSlot)
+{
+	SurfaceLink link;
+	link.fingerprint = wanted;
+	for (const MeshModel* layer : host::layersOf(document))
+		if (link.layerId < 0 && layer->cm.vert.size() == vertexOfSlot.size()
+			&& fingerprint(layer->cm) == wanted)
+			link.layerId = layer->id();
+	link.vertexOfSlot = std::make_shared<const std::vector<int>>(std::move(vertexOfSlot));
+	return link;
+}
+
 DocumentEdit::DocumentEdit(MeshDocument& document) :
-		document(document), previousLayer(document.mm()->id())
+		document(document), previousLayer(document.mm() ? int(document.mm()->id()) : -1)
 {
 }
 
@@ -328,12 +424,23 @@ DocumentEdit::~DocumentEdit()
 		return;
 	for (int id : added)
 		host::removeLayer(document, id);
-	document.setCurrentMesh(previousLayer);
+	if (previousLayer >= 0)
+		document.setCurrentMesh(previousLayer);
 }
 
 MeshModel& DocumentEdit::addLayer(const MeshModel& source, const QString& label)
 {
-	const Matrix44m frame = source.cm.Tr;
+	return addLayer(Matrix44m(source.cm.Tr), label);
+}
+
+MeshModel& DocumentEdit::addLayer(const SurfaceLink& surface, const QString& label)
+{
+	const MeshModel* source = surface.layerId < 0 ? nullptr : document.getMesh(surface.layerId);
+	return addLayer(source ? Matrix44m(source->cm.Tr) : Matrix44m::Identity(), label);
+}
+
+MeshModel& DocumentEdit::addLayer(const Matrix44m& frame, const QString& label)
+{
 	MeshModel& layer = *document.addNewMesh("", label, false);
 	added.push_back(layer.id());
 	layer.cm.Tr = frame;
@@ -344,6 +451,12 @@ MeshModel& DocumentEdit::addSurface(
 	const MeshModel& source, const QString& label, const mcf::SurfaceMesh& mesh)
 {
 	MeshModel& layer = addLayer(source, label);
+	fillSurface(layer, mesh);
+	return layer;
+}
+
+void DocumentEdit::fillSurface(MeshModel& layer, const mcf::SurfaceMesh& mesh)
+{
 	addVertices(layer, mesh.position);
 	const std::vector<mcf::Triangle> triangles = mesh.triangles();
 	auto face = Allocator::AddFaces(layer.cm, triangles.size());
@@ -353,7 +466,6 @@ MeshModel& DocumentEdit::addSurface(
 		++face;
 	}
 	host::updateBoxAndNormals(layer);
-	return layer;
 }
 
 MeshModel& DocumentEdit::addPoints(
@@ -370,6 +482,36 @@ MeshModel& DocumentEdit::addCurve(const MeshModel& source, const QString& label,
 	const std::vector<double>& radius)
 {
 	MeshModel& layer = addLayer(source, label);
+	fillCurve(layer, nodes, edges, radius);
+	return layer;
+}
+
+MeshModel& DocumentEdit::addCurve(
+	const MeshModel& source, const QString& label, const CurveLayer& curve)
+{
+	MeshModel& layer = addLayer(source, label);
+	fillCurve(layer, curve);
+	return layer;
+}
+
+MeshModel& DocumentEdit::addCurve(const QString& label, const CurveLayer& curve)
+{
+	MeshModel& layer = addLayer(curve.surface, label);
+	fillCurve(layer, curve);
+	return layer;
+}
+
+void DocumentEdit::fillCurve(MeshModel& layer, const CurveLayer& curve)
+{
+	fillCurve(layer, curve.skeleton.position, curve.skeleton.edges, curve.skeleton.radius);
+	LayerState state;
+	state.curve = std::make_shared<const CurveLayer>(curve);
+	setState(layer, std::move(state));
+}
+
+void DocumentEdit::fillCurve(MeshModel& layer, const std::vector<vcg::Point3d>& nodes,
+	const std::vector<std::array<int, 2>>& edges, const std::vector<double>& radius)
+{
 	addVertices(layer, nodes);
 	auto edge = Allocator::AddEdges(layer.cm, edges.size());
 	for (const std::array<int, 2>& ends : edges) {
@@ -377,16 +519,33 @@ MeshModel& DocumentEdit::addCurve(const MeshModel& source, const QString& label,
 			edge->V(k) = &layer.cm.vert[size_t(ends[size_t(k)])];
 		++edge;
 	}
-	writeScalars(layer, radiusAttribute, radius);
-	writeQuality(layer, radius);
+	if (!radius.empty()) {
+		writeScalars(layer, radiusAttribute, radius);
+		writeQuality(layer, radius);
+	}
 	host::updateBoxAndNormals(layer);
-	return layer;
 }
 
 MeshModel& DocumentEdit::addStage(const MeshModel& source, const QString& label,
 	std::shared_ptr<const mcf::Stage> stage, const SurfaceLink& surface)
 {
-	MeshModel& layer = addSurface(source, label, stage->mesh);
+	MeshModel& layer = addLayer(source, label);
+	fillStage(layer, std::move(stage), surface);
+	return layer;
+}
+
+MeshModel& DocumentEdit::addStage(
+	const QString& label, std::shared_ptr<const mcf::Stage> stage, const SurfaceLink& surface)
+{
+	MeshModel& layer = addLayer(surface, label);
+	fillStage(layer, std::move(stage), surface);
+	return layer;
+}
+
+void DocumentEdit::fillStage(
+	MeshModel& layer, std::shared_ptr<const mcf::Stage> stage, const SurfaceLink& surface)
+{
+	fillSurface(layer, stage->mesh);
 	const std::vector<double> radius = mcf::stageRadius(*stage);
 	writePoints(layer, poleAttribute, stage->pole);
 	writeScalars(layer, poleRadiusAttribute, stage->poleRadius);
@@ -396,7 +555,6 @@ MeshModel& DocumentEdit::addStage(const MeshModel& source, const QString& label,
 	LayerState state;
 	state.stage = {std::move(stage), surface};
 	setState(layer, std::move(state));
-	return layer;
 }
 
 void DocumentEdit::attachSurface(MeshModel& layer, const SurfaceLayer& surface)
@@ -410,8 +568,6 @@ void DocumentEdit::attachSurface(MeshModel& layer, const SurfaceLayer& surface)
 void DocumentEdit::writePoles(
 	MeshModel& layer, const SurfaceLayer& surface, std::shared_ptr<const mcf::PoleSet> poles)
 {
-	requireWritable<Point3m>(layer, poleAttribute);
-	requireWritable<Scalarm>(layer, poleRadiusAttribute);
 	auto centre = vertexAttribute<Point3m>(layer, poleAttribute);
 	auto radius = vertexAttribute<Scalarm>(layer, poleRadiusAttribute);
 	for (size_t slot = 0; slot < layer.cm.vert.size(); ++slot) {

@@ -14,6 +14,7 @@
 
 #include "hosts/host_api.h"
 
+#include <skeleton/curve_skeleton.h>
 #include <skeleton/pole_set.h>
 #include <skeleton/stage.h>
 #include <skeleton/surface_mesh.h>
@@ -55,24 +56,51 @@ struct StageLayer
 	explicit operator bool() const { return stage != nullptr; }
 };
 
+/// A skeleton as found on a layer.
+struct CurveLayer
+{
+	/// Exact where the layer still is what a filter made; else what the layer shows, the radius from
+	/// its attribute or empty. `node` is empty where the correspondence is not known.
+	vcg::tri::mcf::CurveSkeleton skeleton;
+	/// The surface whose vertices `skeleton.node` counts.
+	SurfaceLink surface;
+	QString surfaceName;
+
+	/// For each vertex of the surface's layer its node or -1; empty if not known.
+	std::vector<int> nodeOfLayerVertex() const;
+};
+
 /**
  * The length, in mesh units, that 100 % of a Length means on this layer: the bounding box diagonal,
  * of a stage that of its surface, so that a length means the same at every step.
  */
 double referenceDiagonal(const MeshModel& layer);
 
+/// A name without file type and without what the filters append: NAME of NAME_meso_4.
+QString baseName(QString name);
+
 /// The layer's name without file type and without what the filters append: NAME of NAME_meso_4.
 QString baseName(const MeshModel& layer);
 
 /**
  * Reads and checks a surface layer; the layer itself is not changed.
- * @throws InvalidInput if it is empty, has no faces, is a stage of the contraction, or is not a
- *         closed two-manifold: see checkedSurface().
+ * @throws InvalidInput if it is empty, has no faces, is a stage of the contraction, is not a closed
+ *         two-manifold (see checkedSurface()), or has an attribute mcfskel_* of a foreign type.
  */
 SurfaceLayer readSurface(const MeshModel& layer);
 
 /// The stage that a layer holds; false if it is none, or if its geometry was edited since.
 StageLayer readStage(const MeshModel& layer);
+
+/**
+ * Reads a skeleton from a layer of edges, of any origin. A single node without edges counts if a
+ * filter made it.
+ * @throws InvalidInput if the layer has faces, no edges, or an edge from a vertex to itself.
+ */
+CurveLayer readCurve(const MeshModel& layer);
+
+/// The values of mcfskel_node on a surface layer, for each vertex; empty if it has none.
+std::vector<int> readNodes(const MeshModel& layer);
 
 /// Whether a layer was a stage once, so that it is worth a word in the log that it is none any more.
 bool hasStageAttributes(const MeshModel& layer);
@@ -86,7 +114,7 @@ std::shared_ptr<const vcg::tri::mcf::PoleSet> readPoles(
 
 /**
  * Changes to a document, all or none: what was added is removed again unless commit() is reached.
- * Each function throws before it changes anything if an attribute of its name has another type.
+ * Layers that were there before must have gone through readSurface() or readStage().
  */
 class DocumentEdit
 {
@@ -109,9 +137,17 @@ public:
 		const std::vector<vcg::Point3d>& nodes, const std::vector<std::array<int, 2>>& edges,
 		const std::vector<double>& radius);
 
+	/// The same with all that the skeleton knows, its correspondence included.
+	MeshModel& addCurve(const MeshModel& source, const QString& label, const CurveLayer& curve);
+
 	/// A new layer of a stage, with all that the next step needs.
 	MeshModel& addStage(const MeshModel& source, const QString& label,
 		std::shared_ptr<const vcg::tri::mcf::Stage> stage, const SurfaceLink& surface);
+
+	/// As above, read from files: in the frame of their surface's layer, if that is there.
+	MeshModel& addCurve(const QString& label, const CurveLayer& curve);
+	MeshModel& addStage(const QString& label, std::shared_ptr<const vcg::tri::mcf::Stage> stage,
+		const SurfaceLink& surface);
 
 	/// Gives a layer its surface in full precision.
 	void attachSurface(MeshModel& layer, const SurfaceLayer& surface);
@@ -132,6 +168,14 @@ public:
 
 private:
 	MeshModel& addLayer(const MeshModel& source, const QString& label);
+	MeshModel& addLayer(const SurfaceLink& surface, const QString& label);
+	MeshModel& addLayer(const Matrix44m& frame, const QString& label);
+	void fillSurface(MeshModel& layer, const vcg::tri::mcf::SurfaceMesh& mesh);
+	void fillCurve(MeshModel& layer, const std::vector<vcg::Point3d>& nodes,
+		const std::vector<std::array<int, 2>>& edges, const std::vector<double>& radius);
+	void fillStage(MeshModel& layer, std::shared_ptr<const vcg::tri::mcf::Stage> stage,
+		const SurfaceLink& surface);
+	void fillCurve(MeshModel& layer, const CurveLayer& curve);
 
 	MeshDocument& document;
 	int previousLayer;
@@ -141,6 +185,10 @@ private:
 
 /// The link to a surface layer, for the stages that will come from it.
 SurfaceLink linkTo(const MeshModel& layer, const SurfaceLayer& surface);
+
+/// The link to the layer of a document that has this fingerprint, if there is one.
+SurfaceLink linkTo(const MeshDocument& document, std::uint64_t fingerprint,
+	std::vector<int> vertexOfSlot);
 
 } // namespace mcfskel
 

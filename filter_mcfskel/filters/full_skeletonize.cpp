@@ -10,8 +10,6 @@
 #include <skeleton/poles.h>
 #include <skeleton/skeletonize.h>
 
-#include <limits>
-
 namespace mcfskel {
 
 namespace mcf = vcg::tri::mcf;
@@ -94,40 +92,14 @@ Pipeline skeletonize(FilterRun& run, const mcf::Parameters& parameters)
 	return pipeline;
 }
 
-/// A search for the point nearest to a centre, see PointTree::search().
-struct NearestPoint
-{
-	vcg::Point3d centre;
-	double squaredDistance = std::numeric_limits<double>::infinity();
-	int slot = -1;
-
-	double reach(const mcf::PointTree::Box& box) const
-	{
-		const double distance = box.squaredDistance(centre);
-		return distance < squaredDistance ? distance : -1;
-	}
-
-	void visit(int candidate, const vcg::Point3d& point)
-	{
-		const double distance = vcg::SquaredDistance(point, centre);
-		if (distance < squaredDistance) {
-			squaredDistance = distance;
-			slot = candidate;
-		}
-	}
-};
-
 /// For each vertex of the input the skeleton node of the nearest vertex of the resampled surface.
 std::vector<int> nodesOfInput(const Pipeline& pipeline)
 {
 	const mcf::SurfaceMesh& input = *pipeline.input.mesh;
 	const mcf::PointTree tree(pipeline.surface.mesh->position);
 	std::vector<int> node(size_t(input.vertexSlots()));
-	for (size_t v = 0; v < node.size(); ++v) {
-		NearestPoint nearest {input.position[v]};
-		tree.search(nearest);
-		node[v] = pipeline.skeleton.node[size_t(tree.order()[size_t(nearest.slot)])];
-	}
+	for (size_t v = 0; v < node.size(); ++v)
+		node[v] = pipeline.skeleton.node[size_t(tree.nearest(input.position[v]))];
 	return node;
 }
 

@@ -14,6 +14,7 @@ Results run(FilterRun& run)
 {
 	mcf::Parameters parameters;
 	readResampling(run.parameters, parameters);
+	parameters.check();
 	const SurfaceLayer surface = readSurface(run.layer());
 	logNotes(run, surface);
 	const SurfaceLayer resampled = resampledSurface(*surface.mesh, parameters, run.progress);

@@ -11,11 +11,13 @@
 #include <common/interfaces.h>
 #else
 #include <common/plugins/interfaces/filter_plugin.h>
+#include <common/plugins/interfaces/io_plugin.h>
 
 #include <common/parameters/rich_parameter_list.h>
 #endif
 
 #include <utility>
+#include <vector>
 
 namespace mcfskel::host {
 
@@ -23,6 +25,8 @@ namespace mcfskel::host {
 
 using FilterBase = MeshFilterInterface;
 using RichPercentage = ::RichAbsPerc;
+using RichFileOpen = ::RichOpenFile;
+using RichFileSave = ::RichSaveFile;
 /// The document as a filter's parameters may see it.
 using ParameterDocument = MeshDocument;
 
@@ -48,6 +52,11 @@ inline void updateBoxAndNormals(MeshModel& layer)
 	layer.UpdateBoxAndNormals();
 }
 
+inline std::vector<const MeshModel*> layersOf(const MeshDocument& document)
+{
+	return {document.meshList.begin(), document.meshList.end()};
+}
+
 inline void removeLayer(MeshDocument& document, int id)
 {
 	document.delMesh(document.getMesh(id));
@@ -57,6 +66,8 @@ inline void removeLayer(MeshDocument& document, int id)
 
 using FilterBase = FilterPlugin;
 using RichPercentage = ::RichPercentage;
+using RichFileOpen = ::RichFileOpen;
+using RichFileSave = ::RichFileSave;
 using ParameterDocument = const MeshDocument;
 
 template <class Rich, class... Arguments>
@@ -79,6 +90,14 @@ inline int layerId(const RichParameterList& list, const QString& name)
 inline void updateBoxAndNormals(MeshModel& layer)
 {
 	layer.updateBoxAndNormals();
+}
+
+inline std::vector<const MeshModel*> layersOf(const MeshDocument& document)
+{
+	std::vector<const MeshModel*> layers;
+	for (const MeshModel& layer : document.meshIterator())
+		layers.push_back(&layer);
+	return layers;
 }
 
 inline void removeLayer(MeshDocument& document, int id)

@@ -35,9 +35,9 @@ MeshFilterInterface::FilterClass FilterMcfskelPlugin::getClass(QAction* action)
 	return host::filterClass(host::filterOf(ID(action)));
 }
 
-MeshFilterInterface::FILTER_ARITY FilterMcfskelPlugin::filterArity(QAction*) const
+MeshFilterInterface::FILTER_ARITY FilterMcfskelPlugin::filterArity(QAction* action) const
 {
-	return SINGLE_MESH;
+	return host::filterOf(ID(action)).needsLayer ? SINGLE_MESH : NONE;
 }
 
 int FilterMcfskelPlugin::getPreConditions(QAction* action) const
@@ -61,12 +61,68 @@ bool FilterMcfskelPlugin::applyFilter(QAction* action, MeshDocument& document,
 {
 	const FilterSpec& filter = host::filterOf(ID(action));
 	const ParameterValues values = host::readParameters(parameters, filter, document);
-	const auto writeLog = [this](const QString& line) { Log(line.toStdString()); };
+	const auto writeLog = [this](const QString& line) {
+		MeshFilterInterface::Log(line.toStdString());
+	};
 	const Outcome outcome = runFilter(filter, document, values, writeLog, callback);
 	if (outcome.error.isEmpty())
 		return true;
 	// meshlabserver does not print errorMessage, so the log gets the reason as well.
-	errorMessage = outcome.error;
+	MeshFilterInterface::errorMessage = outcome.error;
 	writeLog(outcome.error);
+	return false;
+}
+
+namespace {
+
+QList<MeshIOInterface::Format> fileFormats(bool (SkeletonFormat::*possible)() const)
+{
+	QList<MeshIOInterface::Format> formats;
+	for (const SkeletonFormat& format : skeletonFormats())
+		if ((format.*possible)())
+			formats << MeshIOInterface::Format(format.description, format.extension);
+	return formats;
+}
+
+} // namespace
+
+QList<MeshIOInterface::Format> FilterMcfskelPlugin::importFormats() const
+{
+	return fileFormats(&SkeletonFormat::isRead);
+}
+
+QList<MeshIOInterface::Format> FilterMcfskelPlugin::exportFormats() const
+{
+	return fileFormats(&SkeletonFormat::isWritten);
+}
+
+void FilterMcfskelPlugin::GetExportMaskCapability(
+	QString&, int& capability, int& defaultBits) const
+{
+	capability = defaultBits = writtenElements;
+}
+
+bool FilterMcfskelPlugin::open(const QString&, const QString& file, MeshModel& layer, int& mask,
+	const RichParameterList&, vcg::CallBackPos*, QWidget*)
+{
+	const FileOutcome outcome = openSkeleton(file, layer);
+	mask = outcome.mask;
+	return finished(outcome);
+}
+
+bool FilterMcfskelPlugin::save(const QString&, const QString& file, MeshModel& layer, const int,
+	const RichParameterList&, vcg::CallBackPos*, QWidget*)
+{
+	return finished(saveSkeleton(file, layer));
+}
+
+bool FilterMcfskelPlugin::finished(const FileOutcome& outcome)
+{
+	for (const QString& warning : outcome.warnings)
+		MeshIOInterface::Log(GLLogStream::WARNING, warning.toStdString());
+	if (outcome.error.isEmpty())
+		return true;
+	MeshIOInterface::errorMessage = outcome.error;
+	MeshIOInterface::Log(GLLogStream::SYSTEM, outcome.error.toStdString());
 	return false;
 }

@@ -2,18 +2,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file The adapter for MeshLab and meshlabserver up to 2020.12: the catalogue as a
-/// MeshFilterInterface.
+/// MeshFilterInterface, the file formats as a MeshIOInterface.
 
 #ifndef MCFSKEL_MESHLAB_2020_H
 #define MCFSKEL_MESHLAB_2020_H
 
 #include "../filters.h"
+#include "../io/formats.h"
 
-class FilterMcfskelPlugin : public QObject, public MeshFilterInterface
+class FilterMcfskelPlugin : public QObject, public MeshFilterInterface, public MeshIOInterface
 {
 	Q_OBJECT
 	Q_PLUGIN_METADATA(IID MESH_FILTER_INTERFACE_IID)
-	Q_INTERFACES(MeshFilterInterface)
+	Q_INTERFACES(MeshFilterInterface MeshIOInterface)
 
 public:
 	FilterMcfskelPlugin();
@@ -29,6 +30,17 @@ public:
 		QAction* action, MeshDocument& document, RichParameterList& list) override;
 	bool applyFilter(QAction* action, MeshDocument& document, const RichParameterList& parameters,
 		vcg::CallBackPos* callback) override;
+
+	QList<Format> importFormats() const override;
+	QList<Format> exportFormats() const override;
+	void GetExportMaskCapability(QString& format, int& capability, int& defaultBits) const override;
+	bool open(const QString& format, const QString& file, MeshModel& layer, int& mask,
+		const RichParameterList& parameters, vcg::CallBackPos* callback, QWidget* parent) override;
+	bool save(const QString& format, const QString& file, MeshModel& layer, const int mask,
+		const RichParameterList& parameters, vcg::CallBackPos* callback, QWidget* parent) override;
+
+private:
+	bool finished(const mcfskel::FileOutcome& outcome);
 };
 
 #endif

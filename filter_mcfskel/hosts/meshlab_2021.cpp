@@ -3,6 +3,7 @@
 
 #include "meshlab_2021.h"
 
+#include "../io/formats.h"
 #include "translate.h"
 
 using namespace mcfskel;
@@ -45,9 +46,9 @@ FilterPlugin::FilterClass FilterMcfskelPlugin::getClass(const QAction* action) c
 	return host::filterClass(host::filterOf(ID(action)));
 }
 
-FilterPlugin::FilterArity FilterMcfskelPlugin::filterArity(const QAction*) const
+FilterPlugin::FilterArity FilterMcfskelPlugin::filterArity(const QAction* action) const
 {
-	return SINGLE_MESH;
+	return host::filterOf(ID(action)).needsLayer ? SINGLE_MESH : NONE;
 }
 
 int FilterMcfskelPlugin::getPreConditions(const QAction* action) const
@@ -80,6 +81,56 @@ std::map<std::string, QVariant> FilterMcfskelPlugin::applyFilter(const QAction* 
 	if (!outcome.error.isEmpty())
 		throw MLException(outcome.error);
 	return outcome.results;
+}
+
+namespace {
+
+std::list<FileFormat> fileFormats(bool (SkeletonFormat::*possible)() const)
+{
+	std::list<FileFormat> formats;
+	for (const SkeletonFormat& format : skeletonFormats())
+		if ((format.*possible)())
+			formats.emplace_back(format.description, format.extension);
+	return formats;
+}
+
+} // namespace
+
+std::list<FileFormat> FilterMcfskelPlugin::importFormats() const
+{
+	return fileFormats(&SkeletonFormat::isRead);
+}
+
+std::list<FileFormat> FilterMcfskelPlugin::exportFormats() const
+{
+	return fileFormats(&SkeletonFormat::isWritten);
+}
+
+void FilterMcfskelPlugin::exportMaskCapability(
+	const QString&, int& capability, int& defaultBits) const
+{
+	capability = defaultBits = writtenElements;
+}
+
+void FilterMcfskelPlugin::open(const QString&, const QString& file, MeshModel& layer, int& mask,
+	const RichParameterList&, vcg::CallBackPos*)
+{
+	const FileOutcome outcome = openSkeleton(file, layer);
+	mask = outcome.mask;
+	for (const QString& warning : outcome.warnings)
+		log(GLLogStream::WARNING, warning.toStdString());
+	if (!outcome.error.isEmpty())
+		throw MLException(outcome.error);
+}
+
+void FilterMcfskelPlugin::save(const QString&, const QString& file, MeshModel& layer, const int,
+	const RichParameterList&, vcg::CallBackPos*)
+{
+	const FileOutcome outcome = saveSkeleton(file, layer);
+	for (const QString& warning : outcome.warnings)
+		log(GLLogStream::WARNING, warning.toStdString());
+	if (!outcome.error.isEmpty())
+		throw MLException(outcome.error);
 }
 
 MESHLAB_PLUGIN_NAME_EXPORTER(FilterMcfskelPlugin)

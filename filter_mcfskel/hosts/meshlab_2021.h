@@ -1,18 +1,19 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-/// @file The adapter for MeshLab and pymeshlab from 2021.05 on: the catalogue as a FilterPlugin.
+/// @file The adapter for MeshLab and pymeshlab from 2021.05 on: the catalogue as a FilterPlugin, the
+/// file formats as an IOPlugin.
 
 #ifndef MCFSKEL_MESHLAB_2021_H
 #define MCFSKEL_MESHLAB_2021_H
 
 #include "../filters.h"
 
-class FilterMcfskelPlugin : public QObject, public FilterPlugin
+class FilterMcfskelPlugin : public QObject, public FilterPlugin, public IOPlugin
 {
 	Q_OBJECT
 	MESHLAB_PLUGIN_IID_EXPORTER(FILTER_PLUGIN_IID)
-	Q_INTERFACES(FilterPlugin)
+	Q_INTERFACES(FilterPlugin IOPlugin)
 
 public:
 	FilterMcfskelPlugin();
@@ -31,6 +32,16 @@ public:
 	std::map<std::string, QVariant> applyFilter(const QAction* action,
 		const RichParameterList& parameters, MeshDocument& document,
 		unsigned int& postConditionMask, vcg::CallBackPos* callback) override;
+
+	std::list<FileFormat> importFormats() const override;
+	std::list<FileFormat> exportFormats() const override;
+	void exportMaskCapability(
+		const QString& format, int& capability, int& defaultBits) const override;
+	using IOPlugin::open;
+	void open(const QString& format, const QString& file, MeshModel& layer, int& mask,
+		const RichParameterList& parameters, vcg::CallBackPos* callback) override;
+	void save(const QString& format, const QString& file, MeshModel& layer, const int mask,
+		const RichParameterList& parameters, vcg::CallBackPos* callback) override;
 };
 
 #endif

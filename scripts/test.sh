@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+# SPDX-License-Identifier: GPL-3.0-or-later
+#
+# Sets up what is missing, builds everything and runs every test. Options go to ctest: -R NAME, say.
+
+set -euo pipefail
+# shellcheck source=lib/common.sh
+. "$(dirname "${BASH_SOURCE[0]}")/lib/common.sh"
+# shellcheck source=lib/meshlab_sources.sh
+. "$ROOT/scripts/lib/meshlab_sources.sh"
+# shellcheck source=lib/build.sh
+. "$ROOT/scripts/lib/build.sh"
+# shellcheck source=lib/python_env.sh
+. "$ROOT/scripts/lib/python_env.sh"
+
+case "${1:-}" in
+-h | --help)
+	echo "usage: scripts/test.sh [CTEST_OPTION...]"
+	exit 0
+	;;
+esac
+
+need_packages libgtest-dev
+python="$(python_env)"
+build_host pymeshlab -DMCFSKEL_TESTS=ON -DMCFSKEL_PYTHON="$python" >&2
+folder="$ROOT/build/pymeshlab"
+rm -rf "$folder/pytest" "$folder/ctest.xml"
+say "testing"
+status=0
+ctest --test-dir "$folder" --output-on-failure --no-tests=error -j "$JOBS" \
+	--output-junit "$folder/ctest.xml" "$@" || status=$?
+"$python" "$ROOT/scripts/count_tests.py" "$folder/ctest.xml" "$folder"/pytest/*.xml || status=1
+exit "$status"

@@ -1,0 +1,151 @@
+# SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The plugin in pymeshlab, and helpers for what users see of it: layers, attributes, numbers."""
+
+import hashlib
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pymeshlab
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+MESHES = ROOT / "meshes"
+
+RESAMPLE = "meshing_isotropic_resampling_mcf"
+POLES = "compute_medial_poles_mcf"
+STEP = "generate_meso_skeleton_mcf"
+COLLAPSE = "generate_curve_skeleton_from_meso_mcf"
+FULL = "generate_curve_skeleton_mcf"
+
+
+@pytest.fixture(scope="session", autouse=True)
+def plugin() -> Path:
+    """Loads the plugin once: pymeshlab refuses to load a file twice."""
+    path = Path(os.environ.get(
+        "MCFSKEL_PLUGIN", ROOT / "build/pymeshlab/filter_mcfskel/libfilter_mcfskel.so"))
+    pymeshlab.load_plugin(str(path))
+    return path
+
+
+def opened(name: str) -> pymeshlab.MeshSet:
+    """A document with one of the project's meshes."""
+    layers = pymeshlab.MeshSet()
+    layers.load_new_mesh(str(MESHES / f"{name}.off"))
+    return layers
+
+
+def arrays(name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices and faces of one of the project's meshes."""
+    layers = opened(name)  # a layer lives no longer than its document
+    mesh = layers.current_mesh()
+    return mesh.vertex_matrix(), mesh.face_matrix()
+
+
+def document(*meshes: tuple[Any, Any]) -> pymeshlab.MeshSet:
+    """A document with layers made from (vertices, faces) and called mesh_0, mesh_1, ..."""
+    layers = pymeshlab.MeshSet()
+    for i, (vertices, faces) in enumerate(meshes):
+        vertices = np.asarray(vertices, float).reshape(-1, 3)
+        faces = np.asarray(faces, int).reshape(-1, 3)
+        layers.add_mesh(pymeshlab.Mesh(vertices, faces), f"mesh_{i}")
+    return layers
+
+
+def labels(layers: pymeshlab.MeshSet) -> list[str]:
+    return [mesh.label() for mesh in layers]
+
+
+def layer(layers: pymeshlab.MeshSet, label: str) -> pymeshlab.Mesh:
+    """The layer of that name."""
+    return next(mesh for mesh in layers if mesh.label() == label)
+
+
+def scalars(mesh: pymeshlab.Mesh, name: str) -> np.ndarray:
+    return mesh.vertex_custom_scalar_attribute_array(name)
+
+
+def points(mesh: pymeshlab.Mesh, name: str) -> np.ndarray:
+    return mesh.vertex_custom_point_attribute_matrix(name)
+
+
+def attributes(mesh: pymeshlab.Mesh) -> dict[str, np.ndarray]:
+    """All attributes of the project's that a layer carries."""
+    found = {}
+    for name in ["mcfskel_pole_radius", "mcfskel_fixed", "mcfskel_radius", "mcfskel_node"]:
+        try:
+            found[name] = scalars(mesh, name)
+        except pymeshlab.PyMeshLabException:
+            pass
+    try:
+        found["mcfskel_pole"] = points(mesh, "mcfskel_pole")
+    except pymeshlab.PyMeshLabException:
+        pass
+    return found
+
+
+def fingerprint(layers: pymeshlab.MeshSet) -> list[tuple]:
+    """All that a failed filter must leave as it was."""
+    def digest(array: np.ndarray) -> str:
+        return hashlib.sha256(np.ascontiguousarray(array).tobytes()).hexdigest()
+
+    state: list[tuple] = [("current", layers.current_mesh_id())]
+    for mesh in layers:
+        state.append((mesh.id(), mesh.label(), mesh.is_visible(),
+                      digest(mesh.vertex_matrix()), digest(mesh.face_matrix()),
+                      digest(mesh.edge_matrix()), digest(mesh.transform_matrix()),
+                      digest(mesh.vertex_scalar_array()),
+                      sorted((name, digest(values)) for name, values in attributes(mesh).items())))
+    return state
+
+
+def failing(layers: pymeshlab.MeshSet, name: str, **parameters: Any) -> str:
+    """The text of the error with which a filter fails."""
+    with pytest.raises(pymeshlab.PyMeshLabException) as error:
+        layers.apply_filter(name, **parameters)
+    # After a filter has failed, pymeshlab goes on logging into that document even when it is gone,
+    # until some filter succeeds.
+    pymeshlab.MeshSet().create_cube()
+    return str(error.value)
+
+
+def edges_of(faces: np.ndarray) -> np.ndarray:
+    """Each edge of a triangle mesh once."""
+    pairs = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
+    return np.unique(pairs, axis=0)
+
+
+def euler(mesh: pymeshlab.Mesh) -> int:
+    """V - E + F."""
+    return mesh.vertex_number() - len(edges_of(mesh.face_matrix())) + mesh.face_number()
+
+
+def area(vertices: np.ndarray, faces: np.ndarray) -> float:
+    a, b, c = (vertices[faces[:, k]] for k in range(3))
+    return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)
+
+
+def volume(vertices: np.ndarray, faces: np.ndarray) -> float:
+    a, b, c = (vertices[faces[:, k]] - vertices.mean(axis=0) for k in range(3))
+    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
+
+
+def components(count: int, edges: np.ndarray) -> int:
+    """Connected components of a graph."""
+    parent = list(range(count))
+
+    def find(i: int) -> int:
+        while parent[i] != i:
+            parent[i] = parent[parent[i]]
+            i = parent[i]
+        return i
+
+    for a, b in edges:
+        parent[find(int(a))] = find(int(b))
+    return sum(find(i) == i for i in range(count))
+
+
+def diagonal(vertices: np.ndarray) -> float:
+    return float(np.linalg.norm(np.ptp(vertices, axis=0)))

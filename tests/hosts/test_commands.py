@@ -1,0 +1,159 @@
+# SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""scripts/skeletonize.sh: the files it writes, what is in them, and how it fails."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from plyfile import PlyData
+
+from conftest import MESHES, ROOT, components
+
+sys.path.insert(0, str(ROOT / "scripts"))
+from ply_files import read_skeleton, read_surface  # noqa: E402
+
+SCRIPT = ROOT / "scripts" / "skeletonize.sh"
+
+
+def skeletonize(*arguments: object, folder: Path | None = None) -> subprocess.CompletedProcess:
+    return subprocess.run([str(SCRIPT), *map(str, arguments)], capture_output=True, text=True,
+                          cwd=folder, timeout=1800)
+
+
+@pytest.fixture(scope="module")
+def torus(tmp_path_factory) -> tuple[Path, subprocess.CompletedProcess]:
+    """The folder and the output of one run that writes all there is."""
+    folder = tmp_path_factory.mktemp("torus")
+    run = skeletonize(MESHES / "torus.off", folder / "results", "--target-length", "1.2%",
+                      "--keep-stages", 4, "--formats", "ply", "obj", folder=folder)
+    assert run.returncode == 0, run.stderr
+    return folder / "results", run
+
+
+class TestResults:
+    def test_files(self, torus):
+        folder, run = torus
+        names = {path.name for path in folder.iterdir()}
+        assert {"torus_skeleton.ply", "torus_skeleton.obj", "torus_surface.ply", "torus_meso_4.ply",
+                "torus.png"} <= names
+        assert not [name for name in names if name.endswith(".part")]
+        for name in names:
+            assert name in run.stdout
+
+    def test_summary_counts(self, torus):
+        folder, run = torus
+        nodes, edges, _ = read_skeleton(folder / "torus_skeleton.ply")
+        assert f"{len(nodes)} nodes, 1 branches, 0 tips, 0 junctions" in run.stdout
+        assert "1 components, 1 cycles" in run.stdout
+        assert "converged after" in run.stdout
+
+    def test_skeleton(self, torus):
+        nodes, edges, radius = read_skeleton(torus[0] / "torus_skeleton.ply")
+        assert components(len(nodes), edges) == 1
+        assert len(edges) == len(nodes)  # one cycle
+        assert (radius > 0).all()
+        quality = PlyData.read(str(torus[0] / "torus_skeleton.ply"))["vertex"]["quality"]
+        assert np.array_equal(quality, radius.astype(np.float32))
+
+    def test_obj_is_the_same_graph(self, torus):
+        nodes, edges, _ = read_skeleton(torus[0] / "torus_skeleton.ply")
+        lines = [line.split() for line in (torus[0] / "torus_skeleton.obj").read_text().splitlines()]
+        vertices = np.array([line[1:] for line in lines if line[0] == "v"], float)
+        pairs = np.array([line[1:] for line in lines if line[0] == "l"], int) - 1
+        assert np.array_equal(vertices, nodes) and np.array_equal(pairs, edges)
+
+    def test_surface_with_its_correspondence(self, torus):
+        nodes, _, radius = read_skeleton(torus[0] / "torus_skeleton.ply")
+        vertices, faces = read_surface(torus[0] / "torus_surface.ply")
+        assert faces.max() == len(vertices) - 1
+        vertex = PlyData.read(str(torus[0] / "torus_surface.ply"))["vertex"]
+        node = np.asarray(vertex["mcfskel_node"])
+        assert np.issubdtype(node.dtype, np.integer)
+        distance = np.linalg.norm(vertices - nodes[node], axis=1)
+        mean = np.bincount(node, distance, len(nodes)) / np.maximum(np.bincount(node, minlength=len(nodes)), 1)
+        reached = np.bincount(node, minlength=len(nodes)) > 0
+        assert mean[reached] == pytest.approx(radius[reached], rel=1e-5)
+        pole = np.column_stack([vertex[f"mcfskel_pole_{axis}"] for axis in "xyz"])
+        has = vertex["mcfskel_pole_radius"] >= 0
+        assert np.linalg.norm(pole - vertices, axis=1)[has] == pytest.approx(
+            vertex["mcfskel_pole_radius"][has])
+
+    def test_stages(self, torus):
+        vertices, faces = read_surface(torus[0] / "torus_meso_4.ply")
+        assert len(faces) == 2 * len(vertices)  # Euler characteristic 0
+        fixed = PlyData.read(str(torus[0] / "torus_meso_4.ply"))["vertex"]["mcfskel_fixed"]
+        assert np.isin(fixed, [0, 1]).all()
+
+    def test_picture_shows_the_surface_and_the_skeleton(self, torus):
+        import matplotlib.image
+        picture = matplotlib.image.imread(torus[0] / "torus.png")[..., :3]
+        assert min(picture.shape[:2]) > 200
+        saturation = picture.max(axis=2) - picture.min(axis=2)
+        assert 0.1 < (picture.min(axis=2) < 0.97).mean() < 0.95  # the surface, not all of it
+        assert 0.002 < (saturation > 0.4).mean() < 0.2  # the skeleton and its colour bar
+
+    def test_progress_goes_to_the_terminal_and_results_to_the_output(self, torus):
+        assert "%" in torus[1].stderr
+        assert "Contracting" not in torus[1].stdout
+
+
+class TestOptions:
+    def test_without_resampling_the_surface_is_the_input(self, tmp_path):
+        run = skeletonize(MESHES / "capsule.off", tmp_path, "--no-resample", "--no-picture")
+        assert run.returncode == 0, run.stderr
+        assert sorted(path.name for path in tmp_path.iterdir()) == [
+            "capsule_skeleton.ply", "capsule_surface.ply"]
+        vertices, _ = read_surface(tmp_path / "capsule_surface.ply")
+        text = (MESHES / "capsule.off").read_text().split("\n")
+        assert len(vertices) == int(text[1].split()[0])
+
+    def test_help(self):
+        run = skeletonize("--help")
+        assert run.returncode == 0
+        for option in ["--w-l", "--epsilon", "--no-resample", "--keep-stages", "--formats",
+                       "--no-picture"]:
+            assert option in run.stdout
+
+
+class TestFailures:
+    def test_open_mesh(self, tmp_path):
+        text = (MESHES / "box8.off").read_text().rstrip("\n").split("\n")
+        counts = text[1].split()
+        counts[1] = str(int(counts[1]) - 1)
+        text[1] = " ".join(counts)
+        (tmp_path / "open.off").write_text("\n".join(text[:-1]) + "\n")
+        run = skeletonize(tmp_path / "open.off", tmp_path / "out")
+        assert run.returncode == 1
+        lines = run.stderr.strip().splitlines()
+        assert lines[-1].startswith("error:") and "Close Holes" in lines[-1]
+        assert "Traceback" not in run.stderr
+        assert not (tmp_path / "out").exists()
+
+    def test_no_such_file(self, tmp_path):
+        run = skeletonize(tmp_path / "nothing.off", tmp_path / "out")
+        assert run.returncode == 1
+        assert "there is no file" in run.stderr.strip().splitlines()[-1]
+
+    def test_not_a_mesh(self, tmp_path):
+        (tmp_path / "text.off").write_text("this is no mesh\n")
+        run = skeletonize(tmp_path / "text.off", tmp_path / "out")
+        assert run.returncode == 1 and "Traceback" not in run.stderr
+
+    @pytest.mark.parametrize("option", [("--epsilon", "much"), ("--keep-stages", "0"), ("--nonsense",)])
+    def test_bad_option(self, tmp_path, option):
+        run = skeletonize(MESHES / "capsule.off", tmp_path, *option)
+        assert run.returncode == 2 and "usage:" in run.stderr
+
+    def test_parameter_out_of_range(self, tmp_path):
+        run = skeletonize(MESHES / "capsule.off", tmp_path, "--w-l", "-1")
+        assert run.returncode == 1
+        assert "w_l" in run.stderr.strip().splitlines()[-1]
+
+    def test_folder_that_cannot_be_written(self, tmp_path):
+        (tmp_path / "taken").write_text("")
+        run = skeletonize(MESHES / "capsule.off", tmp_path / "taken", "--no-picture",
+                          "--target-length", "2%")
+        assert run.returncode == 1 and "Traceback" not in run.stderr
