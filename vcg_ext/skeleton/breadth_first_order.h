@@ -6,9 +6,9 @@
 #ifndef VCG_MCF_BREADTH_FIRST_ORDER_H
 #define VCG_MCF_BREADTH_FIRST_ORDER_H
 
+#include "progress.h"
 #include "surface_mesh.h"
 
-#include <utility>
 #include <vector>
 
 namespace vcg::tri::mcf {
@@ -30,10 +30,13 @@ struct Numbering
  *
  * @param seeds a vertex of each component, in the order that the components shall have; or empty
  *              for the order of connectedComponents(), by lowest vertex.
+ * @throws Cancelled
  * Complexity: O(V + F).
  */
-inline Numbering breadthFirstOrder(const SurfaceMesh& mesh, const std::vector<int>& seeds = {})
+inline Numbering breadthFirstOrder(const SurfaceMesh& mesh, const std::vector<int>& seeds = {},
+	const Progress& progress = Progress())
 {
+	constexpr size_t reportEvery = 1 << 15;
 	Numbering number;
 	number.vertex.assign(mesh.vertexSlots(), -1);
 	number.face.assign(mesh.faceSlots(), -1);
@@ -53,12 +56,15 @@ inline Numbering breadthFirstOrder(const SurfaceMesh& mesh, const std::vector<in
 		if (!mesh.isVertex(seed) || number.vertex[seed] >= 0)
 			return;
 		reach(seed);
-		for (; next < order.size(); ++next)
+		for (; next < order.size(); ++next) {
+			if (next % reportEvery == 0)
+				progress.report(double(next) / mesh.vertexCount(), "Ordering the surface");
 			mesh.forEachOutgoing(order[next], [&](int h) {
 				reach(mesh.target(h));
 				if (number.face[h / 3] < 0)
 					number.face[h / 3] = faces++;
 			});
+		}
 		++number.components;
 	};
 	if (seeds.empty())

@@ -115,7 +115,8 @@ public:
 		if (empty())
 			return;
 		const int t = mesh.twin(h);
-		const int hn = mesh.next(h), hp = mesh.previous(h), tn = mesh.next(t), tp = mesh.previous(t);
+		const int hn = mesh.next(h), hp = mesh.previous(h), tn = mesh.next(t),
+				  tp = mesh.previous(t);
 		const char bc = marks[hn], ca = marks[hp], ad = marks[tn], db = marks[tp];
 		marks[hn] = ca;
 		marks[hp] = ad;

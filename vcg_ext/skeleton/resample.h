@@ -51,7 +51,7 @@ inline SurfaceMesh resample(const SurfaceMesh& surface,
 	const Progress& progress = Progress())
 {
 	constexpr double mostVertices = 2e7;
-	const Numbering number = breadthFirstOrder(surface);
+	const Numbering number = breadthFirstOrder(surface, {}, progress.part(0, 0.1));
 	if (int(targetLengthOfComponent.size()) != number.components)
 		throw InvalidParameter("Resampling needs one target length for each of the "
 			+ std::to_string(number.components) + " components, not "
@@ -77,11 +77,11 @@ inline SurfaceMesh resample(const SurfaceMesh& surface,
 			+ std::to_string(std::llround(expected / 1e6)) + " million vertices.");
 	removeThinTriangles(reference, lengthAt);
 	detail::IsotropicRemesher remesher(reference, number.component, targetLengthOfComponent);
-	remesher.coarsen(progress.part(0, 0.35));
-	remesher.refine(progress.part(0.35, 0.4));
+	remesher.coarsen(progress.part(0.1, 0.4));
+	remesher.refine(progress.part(0.4, 0.5));
 	for (int i = 0; i < iterations; ++i) {
-		const Progress round = progress.part(
-			0.4 + 0.55 * i / iterations, 0.4 + 0.55 * (i + 1) / iterations);
+		const Progress round =
+			progress.part(0.5 + 0.45 * i / iterations, 0.5 + 0.45 * (i + 1) / iterations);
 		remesher.splitLongEdges(round.part(0, 0.2));
 		remesher.collapseShortEdges(round.part(0.2, 0.4));
 		remesher.flipForValence(round.part(0.4, 0.5));

@@ -7,6 +7,7 @@
 #define VCG_MCF_STAGED_COARSENING_H
 
 #include "progress.h"
+#include "shape_tests.h"
 #include "surface_mesh.h"
 
 #include <algorithm>
@@ -17,44 +18,6 @@
 namespace vcg::tri::mcf {
 
 namespace detail {
-
-/// cos^2 of the angle by which a collapse may turn a face: 70 degrees.
-constexpr double collapseCosineSquared = 0.117;
-
-/**
- * Whether the triangles around v, but for the two that disappear with half-edge `gone`, turn by
- * less than 70 degrees and get no edge longer than `longest` when v moves to `point`. An edge that
- * was longer already may grow a little: else a fan of needles could not lose its short edges.
- */
-inline bool ringAllowsMove(
-	const SurfaceMesh& mesh, int v, const Point3d& point, int gone, double squaredLongest)
-{
-	constexpr double stretch = 1.1;
-	const int goneFace = gone / 3, goneTwin = mesh.twin(gone) / 3;
-	const Point3d& old = mesh.position[v];
-	const int first = mesh.outgoing(v);
-	int h = first;
-	do {
-		const Point3d& p = mesh.position[mesh.target(h)];
-		const double squared = SquaredDistance(p, point);
-		if (squared > squaredLongest && squared > stretch * SquaredDistance(p, old))
-			return false;
-		const int f = h / 3;
-		if (f != goneFace && f != goneTwin) {
-			const Point3d side = mesh.position[mesh.apex(h)] - p;
-			const Point3d before = side ^ (old - p), after = side ^ (point - p);
-			const double cosine = before * after;
-			const double squaredAreas = before.SquaredNorm() * after.SquaredNorm();
-			// A face without area has no direction to keep, but none may become one.
-			if (squaredAreas > 0
-					? cosine <= 0 || cosine * cosine < collapseCosineSquared * squaredAreas
-					: after.SquaredNorm() <= 0)
-				return false;
-		}
-		h = mesh.rotated(h);
-	} while (h != first);
-	return true;
-}
 
 /**
  * One stage: merges origin(h) into target(h) wherever the edge is shorter than shortest(vertex) and
@@ -78,7 +41,8 @@ void coarseningPass(SurfaceMesh& mesh, double fraction, Shortest&& lengthAt, All
 		if (mesh.squaredLength(h) >= shortest * shortest || !allowed(h))
 			continue;
 		const double longest = longestOfStage * shortest;
-		if (ringAllowsMove(mesh, mesh.origin(h), mesh.position[mesh.target(h)], h, longest * longest)
+		if (ringAllowsMove(
+				mesh, mesh.origin(h), mesh.position[mesh.target(h)], h, longest * longest)
 			&& mesh.isCollapsible(h))
 			collapse(h);
 	}
@@ -128,7 +92,8 @@ void coarsenInStages(SurfaceMesh& mesh, LengthAt&& lengthAt, Allowed&& allowed, 
  * Complexity: O(V + F), the collapses dominate.
  */
 template <class LengthAt>
-std::vector<int> coarsen(SurfaceMesh& mesh, LengthAt&& lengthAt, const Progress& progress = Progress())
+std::vector<int> coarsen(
+	SurfaceMesh& mesh, LengthAt&& lengthAt, const Progress& progress = Progress())
 {
 	std::vector<int> mergedInto(mesh.vertexSlots());
 	std::iota(mergedInto.begin(), mergedInto.end(), 0);

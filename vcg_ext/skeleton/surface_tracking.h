@@ -32,7 +32,8 @@ inline TrianglePoint closestOnTriangle(
 	const auto at = [&](const Point3d& p, int part) {
 		return TrianglePoint {p, SquaredDistance(p, q), part};
 	};
-	const auto along = [&](const Point3d& from, const Point3d& to, double part, double whole, int edge) {
+	const auto along = [&](const Point3d& from, const Point3d& to, double part, double whole,
+						   int edge) {
 		return at(whole > 0 ? from + (to - from) * (part / whole) : from, edge);
 	};
 	const Point3d ab = b - a, ac = c - a;
@@ -81,8 +82,8 @@ inline Point3d trackSurface(const SurfaceMesh& surface, const Point3d& query, in
 	using detail::TrianglePoint;
 	const auto closest = [&](int f) {
 		return detail::closestOnTriangle(surface.position[surface.origin(3 * f)],
-			surface.position[surface.origin(3 * f + 1)], surface.position[surface.origin(3 * f + 2)],
-			query);
+			surface.position[surface.origin(3 * f + 1)],
+			surface.position[surface.origin(3 * f + 2)], query);
 	};
 	TrianglePoint best = closest(face);
 	while (best.part != TrianglePoint::interior) {

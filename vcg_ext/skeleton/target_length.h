@@ -51,7 +51,8 @@ inline std::vector<double> defaultTargetLength(
 		const double diagonal = box[c].Diag();
 		length[c] = parameters.targetLength > 0
 			? parameters.targetLength * diagonal
-			: std::min(std::sqrt(area[c] / (areaOfVertex * vertices)), 8 * parameters.epsilon * diagonal);
+			: std::min(
+				std::sqrt(area[c] / (areaOfVertex * vertices)), 8 * parameters.epsilon * diagonal);
 	}
 	return length;
 }

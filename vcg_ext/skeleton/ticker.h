@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file Progress reports from inside long loops.
+
+#ifndef VCG_MCF_TICKER_H
+#define VCG_MCF_TICKER_H
+
+#include "progress.h"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace vcg::tri::mcf::detail {
+
+/// Counts elements and lets the user cancel now and then.
+class Ticker
+{
+public:
+	/// @param expected how many elements there will be, as far as it is known.
+	Ticker(const Progress& progress, const char* what, int expected) :
+			progress(progress), what(what), expected(std::max(expected, 1))
+	{
+		progress.report(0, what);
+	}
+	void tick()
+	{
+		if (++count % reportEvery == 0)
+			progress.report(double(count) / expected, what);
+	}
+
+private:
+	static constexpr std::uint32_t reportEvery = 1 << 15;
+	const Progress progress;
+	const char* what;
+	int expected;
+	std::uint32_t count = 0;
+};
+
+} // namespace vcg::tri::mcf::detail
+
+#endif
