@@ -47,15 +47,46 @@ public:
 	 * Complexity: O(V + F).
 	 */
 	SurfaceMesh(std::vector<Point3d> points, const std::vector<Triangle>& triangles) :
-			position(std::move(points)), origins(3 * triangles.size()),
-			twins(3 * triangles.size(), -1), outgoings(position.size(), -1), liveVertices(0),
-			liveFaces(int(triangles.size()))
+			position(std::move(points))
 	{
-		for (size_t f = 0; f < triangles.size(); ++f)
-			for (int k = 0; k < 3; ++k)
-				origins[3 * f + k] = triangles[f][k];
-		pairTwins();
+		setTriangles(triangles);
+		if (!pairTwins())
+			throw InvalidInput("The mesh is not closed, or its faces are not oriented alike.");
 		chooseOutgoing();
+	}
+
+	/**
+	 * Whether `triangles` are a closed two-manifold, oriented alike, on `vertices` vertices (of which
+	 * not all need be used): each directed edge occurs once, and so does its reverse, and the
+	 * triangles at each vertex form one fan. Complexity: O(V + F).
+	 */
+	static bool isClosedManifold(size_t vertices, const std::vector<Triangle>& triangles)
+	{
+		for (const Triangle& t : triangles)
+			if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0])
+				return false;
+		SurfaceMesh mesh;
+		mesh.position.resize(vertices);
+		mesh.setTriangles(triangles);
+		if (!mesh.pairTwins())
+			return false;
+		mesh.chooseOutgoing();
+		// One ring of distinct neighbours at each vertex, and no half-edge outside of these rings.
+		long inRings = 0;
+		for (int v = 0; v < mesh.vertexSlots(); ++v) {
+			if (!mesh.isVertex(v))
+				continue;
+			const int stamp = mesh.nextStamp();
+			bool distinct = true;
+			mesh.forEachOutgoing(v, [&](int h) {
+				distinct &= mesh.stamps[mesh.target(h)] != stamp;
+				mesh.stamps[mesh.target(h)] = stamp;
+				++inRings;
+			});
+			if (!distinct)
+				return false;
+		}
+		return inRings == mesh.halfEdgeSlots();
 	}
 
 	// Sizes. The ids run over [0, vertexSlots()) and [0, faceSlots()), holes included.
@@ -514,8 +545,20 @@ private:
 		return ++stampClock;
 	}
 
+	void setTriangles(const std::vector<Triangle>& triangles)
+	{
+		origins.resize(3 * triangles.size());
+		for (size_t f = 0; f < triangles.size(); ++f)
+			for (int k = 0; k < 3; ++k)
+				origins[3 * f + k] = triangles[f][k];
+		twins.assign(origins.size(), -1);
+		outgoings.assign(position.size(), -1);
+		liveFaces = int(triangles.size());
+	}
+
 	/// Pairs the half-edges; each lower end has a bucket of those that wait for their twin. O(F).
-	void pairTwins()
+	/// @return whether each has found one.
+	bool pairTwins()
 	{
 		const int n = int(position.size());
 		std::vector<int> start(n + 1, 0), bucket(origins.size());
@@ -538,8 +581,7 @@ private:
 			if (twins[h] < 0)
 				bucket[end[low]++] = h;
 		}
-		if (std::find(twins.begin(), twins.end(), -1) != twins.end())
-			throw InvalidInput("The mesh is not closed, or its faces are not oriented alike.");
+		return std::find(twins.begin(), twins.end(), -1) == twins.end();
 	}
 
 	void chooseOutgoing()
