@@ -29,7 +29,9 @@ enum class ParameterKind {
 	Real,
 	Length, ///< MeshLab's percentage of the bounding box diagonal
 	Choice,
-	Layer
+	Layer,
+	FileToOpen, ///< a name; `choices` holds patterns such as *.ply
+	FileToSave
 };
 
 struct ParameterSpec
@@ -37,7 +39,7 @@ struct ParameterSpec
 	ParameterKind kind;
 	/// The name that scripts use: an identity, never changed.
 	QString name;
-	/// Length: percent of the diagonal; Choice: index into `choices`; Boolean: 0 or 1.
+	/// Length: percent of the diagonal; Choice: index into `choices`; Boolean: 0 or 1; files: unused.
 	double defaultValue;
 	QString label;
 	/// What it does, its unit, and what is sane.
@@ -64,6 +66,7 @@ class ParameterValues
 {
 public:
 	void set(const QString& name, double value) { values[name] = value; }
+	void setText(const QString& name, const QString& value) { texts[name] = value; }
 
 	/**
 	 * Takes a Length in mesh units and keeps it as a fraction of the diagonal. A host that counts in
@@ -76,9 +79,12 @@ public:
 	bool flag(const char* name) const { return values.at(name) != 0; }
 	/// A Length, as a fraction of the bounding box diagonal.
 	double fraction(const char* name) const { return values.at(name); }
+	/// The name of a file.
+	QString text(const char* name) const { return texts.at(name); }
 
 private:
 	std::map<QString, double> values;
+	std::map<QString, QString> texts;
 };
 
 /// Numbers by name: int or double only, since nothing else reaches Python safely.
@@ -93,7 +99,7 @@ struct FilterRun
 	std::function<void(const QString&)> log;
 	vcg::tri::mcf::Progress progress;
 
-	/// The current layer. @pre the host has one: see runFilter().
+	/// The current layer. @pre the host has one, as runFilter() sees to if the filter needs it.
 	MeshModel& layer() const { return *document.mm(); }
 };
 
@@ -111,6 +117,7 @@ struct FilterSpec
 	int preConditions;
 	std::vector<ParameterSpec> parameters;
 	Results (*run)(FilterRun&);
+	bool needsLayer = true;
 };
 
 /// Every filter, in the order in which a user meets them.
