@@ -45,6 +45,7 @@ public:
 		/// centre, radians; -1 and 0 if nothing bounds the ball.
 		int face;
 		double spokeAngle;
+		Point3d contact;
 	};
 
 	/**
@@ -131,7 +132,7 @@ public:
 	Ball maximalBall(const Point3d& inside, const Hit& hit, double tolerance, int near) const
 	{
 		const Point3d outward = (hit.point - inside) / hit.distance;
-		Ball first = {inside, box.Diag(), -1, 0};
+		Ball first = {inside, box.Diag(), -1, 0, hit.point};
 		if (near >= 0)
 			first = heldBall(hit, outward, hit.distance, near);
 		detail::MaximalBall ball(
@@ -219,7 +220,7 @@ private:
 			const Point3d e = contact - hit.point;
 			const double depth = -(e * outward);
 			if (!(depth > 0))
-				return {hit.point - outward * radius, radius, -1, 0};
+				return {hit.point - outward * radius, radius, -1, 0, hit.point};
 			const double held = std::max(e.SquaredNorm() / (2 * depth), hit.distance);
 			const bool last = std::abs(held - radius) <= settled * radius;
 			radius = held;
@@ -228,7 +229,7 @@ private:
 		}
 		const Point3d centre = hit.point - outward * radius;
 		const Point3d a = hit.point - centre, b = contact - centre;
-		return {centre, radius, face, std::atan2((a ^ b).Norm(), a * b)};
+		return {centre, radius, face, std::atan2((a ^ b).Norm(), a * b), contact};
 	}
 
 	Point3d unitNormal(int face) const

@@ -42,7 +42,7 @@ struct RefineParameters
 	/// part of the latter's radius; in [0, 1].
 	double junctionProminence = 0.5;
 	/// kappa, weight of the smoothness along the branch against that of the centring, for a spacing
-	/// of 0.5 %; >= 0. Larger: smoother, less centred.
+	/// of 0.5 % where the shape's radius is 3.3 %; >= 0. Larger: smoother, less centred.
 	double smoothing = 30;
 	/// Rounds of centring with ten times that smoothness, which free curves that are caught on a
 	/// wrong sheet of the medial axis, then rounds with it before and after the tips are
@@ -88,35 +88,41 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 	const TipRule tips = {parameters.spacing, parameters.tipGain, parameters.tipRadius};
 	const int total = parameters.stiffRounds + parameters.rounds + parameters.lastRounds + 1;
 	int done = 0;
-	const auto centreRounds = [&](int rounds, double weight) {
+	const auto centreRounds = [&](int rounds, double weight, bool ascend) {
 		std::vector<Contact> contacts;
 		for (int i = 0; i < rounds; ++i) {
 			if (i % roundsOfSearch == 0)
-				contacts = findContacts(skeleton, surface);
+				contacts = findContacts(skeleton, surface, ascend);
 			else
 				followContacts(contacts, skeleton, surface);
 			centre(skeleton, contacts, surface, weight);
 			progress.report(double(++done) / total, what);
 		}
 	};
-	const auto tidy = [&] {
+	const auto tidy = [&](double spurProminence) {
 		measureBranchEnds(skeleton, surface);
-		skeleton = withWholeJunctions(withoutSpurs(std::move(skeleton), parameters.spurProminence),
-			parameters.junctionProminence);
+		skeleton = withWholeJunctions(
+			withoutSpurs(std::move(skeleton), spurProminence), parameters.junctionProminence);
 		skeleton = evenlySampled(skeleton, surface, parameters.spacing);
+	};
+	const auto extend = [&] {
+		measureBranchEnds(skeleton, surface);
+		extendTips(skeleton, surface, tips);
 	};
 	for (size_t v = 0; v < skeleton.position.size(); ++v)
 		skeleton.radius[v] = std::max(surface.clearance(skeleton.position[v]), 0.0);
 	moveInside(skeleton, surface);
-	tidy();
-	centreRounds(parameters.stiffRounds, stiffer * kappa);
-	tidy();
-	centreRounds(parameters.rounds, kappa);
-	measureBranchEnds(skeleton, surface);
-	extendTips(skeleton, surface, tips);
-	tidy();
-	centreRounds(parameters.lastRounds, kappa);
-	tidy();
+	// A stub may be the start of a feature: all but the hopeless are extended before they are judged.
+	constexpr double hopeless = 0;
+	tidy(hopeless);
+	centreRounds(parameters.stiffRounds, stiffer * kappa, false);
+	extend();
+	tidy(parameters.spurProminence);
+	centreRounds(parameters.rounds, kappa, true);
+	extend();
+	tidy(parameters.spurProminence);
+	centreRounds(parameters.lastRounds, kappa, true);
+	tidy(parameters.spurProminence);
 	return skeleton;
 }
 

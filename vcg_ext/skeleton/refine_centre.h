@@ -30,11 +30,11 @@ struct Contact
 };
 
 /// Points of the surface that lie this deep in a ball, in distances of its node, do not hold it.
-constexpr double contactTolerance = 0.03;
+constexpr double contactTolerance = 0.02;
 
 /// A maximal ball whose contacts are nearer to each other than this is held by the surface's
 /// curvature or its noise, not by the other side: it says nothing about the middle of the shape.
-constexpr double leastSpokeAngle = 30 * M_PI / 180;
+constexpr double leastSpokeAngle = 20 * M_PI / 180;
 
 inline bool isMedial(const ClosestSurface::Ball& ball)
 {
@@ -60,12 +60,34 @@ inline Point3d tangentAt(const CurveSkeleton& skeleton, const std::vector<int>& 
 }
 
 /**
+ * Moves a ball's centre within the medial axis and across the branch towards where the ball grows,
+ * the middle of a cross-section that is not round: half the sum of the directions from both contacts
+ * is the slope of the radius. Stays where the ball would not grow.
+ */
+inline void ascendAside(Contact& contact, const Point3d& tangent, const ClosestSurface& surface)
+{
+	constexpr double pace = 0.3, flattest = 150 * M_PI / 180;
+	ClosestSurface::Ball& ball = contact.ball;
+	if (!isMedial(ball) || ball.spokeAngle > flattest)
+		return;
+	Point3d slope = (ball.centre * 2 - contact.hit.point - ball.contact) / (2 * ball.radius);
+	slope -= tangent * (tangent * slope);
+	const Point3d aside = ball.centre + slope * (pace * ball.radius);
+	const ClosestSurface::Hit hit = surface.closest(aside, contact.hit.face);
+	if (hit.distance > ball.radius && surface.isInside(aside, hit))
+		ball.centre = aside;
+}
+
+/**
  * Finds each node's contact and measures its distance from the surface; 0 outside.
  * A node that is outside has no ball.
+ * @param ascend  whether the centres go to the middle of the cross-section: see ascendAside().
  */
-inline std::vector<Contact> findContacts(CurveSkeleton& skeleton, const ClosestSurface& surface)
+inline std::vector<Contact> findContacts(
+	CurveSkeleton& skeleton, const ClosestSurface& surface, bool ascend)
 {
 	std::vector<Contact> contacts(skeleton.position.size());
+	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
 	forEachBlock(int(contacts.size()), Progress(), "", [&](int begin, int end) {
 		// Neighbours in number are mostly neighbours on a branch, and touch nearly the same places.
 		int near = -1, nearOpposite = -1;
@@ -73,7 +95,7 @@ inline std::vector<Contact> findContacts(CurveSkeleton& skeleton, const ClosestS
 			const Point3d& x = skeleton.position[v];
 			Contact& contact = contacts[v];
 			contact.hit = near < 0 ? surface.closest(x) : surface.closest(x, near);
-			contact.ball = {x, 0, -1, 0};
+			contact.ball = {x, 0, -1, 0, x};
 			near = contact.hit.face;
 			const bool inside = contact.hit.distance > 0 && surface.isInside(x, contact.hit);
 			skeleton.radius[v] = inside ? contact.hit.distance : 0;
@@ -81,6 +103,8 @@ inline std::vector<Contact> findContacts(CurveSkeleton& skeleton, const ClosestS
 				continue;
 			contact.ball = medialBall(surface, x, contact.hit, nearOpposite);
 			nearOpposite = contact.ball.face;
+			if (ascend && !neighbours[v].empty() && neighbours[v].size() <= 2)
+				ascendAside(contact, tangentAt(skeleton, neighbours[v], v), surface);
 		}
 	});
 	return contacts;
@@ -105,20 +129,21 @@ inline void followContacts(
 
 /**
  * One round: solves
- *     min  sum_i w_i |x_i - c_i|^2 + kappa sum_k |x_{k-1} - 2 x_k + x_{k+1}|^2
+ *     min  sum_i w_i |x_i - c_i|^2 + kappa sum_k (r_k / R)^2 |x_{k-1} - 2 x_k + x_{k+1}|^2
  * over the inner nodes k of the branches, so that curves may meet at any angle in a junction. c_i is
  * the centre of the maximal ball at node i, moved back along the branch to where the node is: the
  * nodes keep their distances. Tips weigh more: the curve is not to shrink.
  *
  * No node moves by more than half its distance from the surface, and no edge leaves the surface:
  * the nodes of one that would stay where they are.
- * @param kappa for nodes at the skeleton's own spacing.
+ * @param kappa for nodes at the skeleton's own spacing whose distance r_k from the surface is R.
  * @pre radius holds distances from the surface, or lower bounds. @post lower bounds.
  */
 inline void centre(CurveSkeleton& skeleton, const std::vector<Contact>& contacts,
 	const ClosestSurface& surface, double kappa)
 {
 	constexpr double tipWeight = 1e3, weightWithoutBall = 1e-6;
+	constexpr double referenceRadius = 0.033, thinnest = 0.03, thickest = 3;
 	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
 	const int n = int(skeleton.position.size());
 	std::vector<Eigen::Triplet<double>> entries;
@@ -143,11 +168,15 @@ inline void centre(CurveSkeleton& skeleton, const std::vector<Contact>& contacts
 			right(v, k) = weight * target[k];
 		if (degree != 2)
 			continue;
+		// A bend is judged by the thickness where it is: within a large ball, small ones mean nothing.
+		const double relative =
+			std::clamp(contacts[v].hit.distance / referenceRadius, thinnest, thickest);
+		const double stiffness = kappa * relative * relative;
 		const int stencil[3] = {neighbours[v][0], v, neighbours[v][1]};
 		const double second[3] = {1, -2, 1};
 		for (int i = 0; i < 3; ++i)
 			for (int j = 0; j < 3; ++j)
-				entries.emplace_back(stencil[i], stencil[j], kappa * second[i] * second[j]);
+				entries.emplace_back(stencil[i], stencil[j], stiffness * second[i] * second[j]);
 	}
 	Eigen::SparseMatrix<double> matrix(n, n);
 	matrix.setFromTriplets(entries.begin(), entries.end());
@@ -184,24 +213,24 @@ inline void centre(CurveSkeleton& skeleton, const std::vector<Contact>& contacts
 
 /**
  * Moves nodes that are outside into the maximal ball that touches the closest surface point from
- * inside, if the edges to their neighbours allow; what cannot be moved stays, without a ball.
+ * inside; where there is none they stay, without a ball.
  */
 inline void moveInside(CurveSkeleton& skeleton, const ClosestSurface& surface)
 {
+	// The ball is sought from just below the surface, and must be larger than its roughness.
+	constexpr double below = 1e-4, roughness = 1e-3;
 	for (size_t v = 0; v < skeleton.position.size(); ++v) {
 		if (skeleton.radius[v] > 0)
 			continue;
 		const ClosestSurface::Hit hit = surface.closest(skeleton.position[v]);
 		if (hit.distance <= 0)
 			continue;
-		// The ray goes from the outside through the surface: a ball is sought from just below it.
-		constexpr double below = 1e-4;
 		const Point3d inward = (hit.point - skeleton.position[v]) / hit.distance;
 		const Point3d start = hit.point + inward * below;
 		const ClosestSurface::Hit contact = surface.closest(start);
 		if (contact.distance <= 0 || !surface.isInside(start, contact))
 			continue;
-		skeleton.position[v] = medialBall(surface, start, contact).centre;
+		skeleton.position[v] = surface.maximalBall(start, contact, roughness, -1).centre;
 		skeleton.radius[v] = std::max(surface.clearance(skeleton.position[v]), 0.0);
 	}
 }

@@ -47,11 +47,20 @@ inline Point3d tipDirection(
 	return length > 0 ? direction / length : Point3d(0, 0, 0);
 }
 
+/// Whether a point lies in one of the skeleton's balls.
+inline bool isCovered(const CurveSkeleton& skeleton, const Point3d& point)
+{
+	for (size_t v = 0; v < skeleton.position.size(); ++v)
+		if (SquaredDistance(skeleton.position[v], point) < skeleton.radius[v] * skeleton.radius[v])
+			return true;
+	return false;
+}
+
 /**
  * Extends each tip along its direction, in steps of at most a quarter of its ball, each recentred
  * sideways, as long as the balls reach further by it: (step + r' - r) / step >= leastGain.
  * In a round end the ball shrinks as fast as the tip advances, and it stays; in a tapered or
- * pointed one it goes on to the least radius. A tip outside stays where it is.
+ * pointed one it goes on to the least radius. None goes where another branch's balls are. A tip outside stays where it is.
  * @pre radius holds the distances from the surface. @post the same.
  */
 inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, const TipRule& rule)
@@ -83,8 +92,9 @@ inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, c
 			}
 			const double s = Distance(x, y);
 			const double reached = std::max(surface.clearance(y), 0.0);
+			const Point3d front = y + (y - x) * (reached / s);
 			if (reached < rule.leastRadius || s + reached - r < rule.leastGain * s
-				|| !isSegmentInside(surface, x, r, y, reached))
+				|| isCovered(skeleton, front) || !isSegmentInside(surface, x, r, y, reached))
 				break;
 			const int next = int(skeleton.position.size());
 			skeleton.position.push_back(y);

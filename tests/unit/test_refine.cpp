@@ -1,0 +1,557 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// Refinement of hand-made curves in shapes whose axes are known.
+
+#include "mesh_checks.h"
+#include "shapes.h"
+
+#include "skeleton/refine.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <vector>
+
+using namespace vcg::tri::mcf;
+using vcg::Point3d;
+
+namespace {
+
+/// Chains of points; points of different chains that coincide are one node.
+class CurveMaker
+{
+public:
+	CurveMaker& chain(const std::vector<Point3d>& points)
+	{
+		int last = -1;
+		for (const Point3d& p : points) {
+			int v = 0;
+			while (v < int(curve.position.size()) && Distance(curve.position[v], p) > 1e-9)
+				++v;
+			if (v == int(curve.position.size()))
+				curve.position.push_back(p);
+			if (last >= 0)
+				curve.edges.push_back({std::min(last, v), std::max(last, v)});
+			last = v;
+		}
+		return *this;
+	}
+	/// Straight from a to b in `pieces`.
+	CurveMaker& line(const Point3d& a, const Point3d& b, int pieces = 20)
+	{
+		std::vector<Point3d> points;
+		for (int i = 0; i <= pieces; ++i)
+			points.push_back(a + (b - a) * (double(i) / pieces));
+		return chain(points);
+	}
+	/// Every surface vertex has merged into the nearest node.
+	CurveSkeleton in(const SurfaceMesh& surface)
+	{
+		std::sort(curve.edges.begin(), curve.edges.end());
+		curve.radius.assign(curve.position.size(), 0);
+		curve.node.clear();
+		for (const Point3d& p : surface.position) {
+			int nearest = 0;
+			for (size_t v = 1; v < curve.position.size(); ++v)
+				if (SquaredDistance(p, curve.position[v])
+					< SquaredDistance(p, curve.position[nearest]))
+					nearest = int(v);
+			curve.node.push_back(nearest);
+		}
+		return curve;
+	}
+
+private:
+	CurveSkeleton curve;
+};
+
+/// A line from (from, 0, 0) to (to, 0, 0) that is aside of the x axis and zigzags.
+std::vector<Point3d> zigzag(double from, double to, double aside, double amount, int pieces = 40)
+{
+	std::vector<Point3d> points;
+	for (int i = 0; i <= pieces; ++i)
+		points.emplace_back(
+			from + (to - from) * i / pieces, aside + (i % 2 ? amount : -amount), aside / 2);
+	return points;
+}
+
+double windingNumber(const SurfaceMesh& mesh, const Point3d& x)
+{
+	double sum = 0;
+	for (const Triangle& t : mesh.triangles()) {
+		const Point3d a = mesh.position[t[0]] - x, b = mesh.position[t[1]] - x,
+					  c = mesh.position[t[2]] - x;
+		const double la = a.Norm(), lb = b.Norm(), lc = c.Norm();
+		sum +=
+			2 * std::atan2(a * (b ^ c), la * lb * lc + (a * b) * lc + (b * c) * la + (c * a) * lb);
+	}
+	return sum / (4 * M_PI);
+}
+
+/// Whether all nodes and three points of each edge are inside.
+bool isInside(const CurveSkeleton& s, const SurfaceMesh& mesh)
+{
+	for (const auto& [a, b] : s.edges)
+		for (double t : {0.0, 0.25, 0.5, 0.75, 1.0})
+			if (windingNumber(mesh, s.position[a] + (s.position[b] - s.position[a]) * t) < 0.5)
+				return false;
+	return true;
+}
+
+double meanDistance(const CurveSkeleton& s, const std::function<double(const Point3d&)>& distance)
+{
+	double sum = 0;
+	for (const Point3d& p : s.position)
+		sum += distance(p);
+	return sum / double(s.position.size());
+}
+
+double distanceFromXAxis(const Point3d& p)
+{
+	return std::hypot(p[1], p[2]);
+}
+
+std::vector<Point3d> tips(const CurveSkeleton& s)
+{
+	std::vector<Point3d> result;
+	const auto neighbours = s.neighbours();
+	for (size_t v = 0; v < neighbours.size(); ++v)
+		if (neighbours[v].size() == 1)
+			result.push_back(s.position[v]);
+	return result;
+}
+
+double farthest(const std::vector<Point3d>& points, int axis)
+{
+	double most = -std::numeric_limits<double>::infinity();
+	for (const Point3d& p : points)
+		most = std::max(most, p[axis]);
+	return most;
+}
+
+double meanTurning(const CurveSkeleton& s)
+{
+	const auto neighbours = s.neighbours();
+	double sum = 0;
+	int count = 0;
+	for (size_t v = 0; v < neighbours.size(); ++v)
+		if (neighbours[v].size() == 2) {
+			const Point3d a = s.position[v] - s.position[neighbours[v][0]];
+			const Point3d b = s.position[neighbours[v][1]] - s.position[v];
+			sum += std::atan2((a ^ b).Norm(), a * b);
+			++count;
+		}
+	return sum / count * 180 / M_PI;
+}
+
+bool sameGraph(const CurveSkeleton& a, const CurveSkeleton& b)
+{
+	return a.edges == b.edges && a.node == b.node && a.position.size() == b.position.size();
+}
+
+/// A bar along x (0 to 21) of width 5 about y = z = 2.5, with an arm of that width up to y = 5 + height.
+shapes::Soup barWithArm(int height)
+{
+	return shapes::cells(
+		21, 5 + height, 5, [](int i, int j, int) { return j < 5 || (i >= 8 && i < 13); });
+}
+
+CurveSkeleton curveOfBarWithArm(const SurfaceMesh& mesh, double armTip)
+{
+	const Point3d centre(10.5, 2.5, 2.5);
+	return CurveMaker()
+		.line(Point3d(2.5, 2.5, 2.5), centre)
+		.line(centre, Point3d(18.5, 2.5, 2.5))
+		.line(centre, Point3d(10.5, armTip, 2.5), 8)
+		.in(mesh);
+}
+
+TEST(Refine, CentresAndSmoothsACurveInATube)
+{
+	const SurfaceMesh mesh = shapes::capsule(3, 0.35, 48).mesh();
+	const double diagonal = mesh.bounds().Diag();
+	const CurveSkeleton rough = CurveMaker().chain(zigzag(-1.4, 1.4, 0.08, 0.03)).in(mesh);
+	ASSERT_GT(meanDistance(rough, distanceFromXAxis), 0.02 * diagonal);
+	ASSERT_GT(meanTurning(rough), 30);
+
+	const CurveSkeleton s = refine(rough, mesh);
+	EXPECT_EQ(checks::skeletonError(s), "");
+	EXPECT_LE(meanDistance(s, distanceFromXAxis), 0.0015 * diagonal);
+	EXPECT_LE(meanTurning(s), 1);
+	EXPECT_TRUE(isInside(s, mesh));
+	EXPECT_EQ(statistics(s).branches, 1);
+	for (double r : s.radius)
+		EXPECT_NEAR(r, 0.35, 0.09) << "the mean distance to the vertices around";
+}
+
+TEST(Refine, SamplesEvenlyAtTheSpacing)
+{
+	const SurfaceMesh mesh = shapes::capsule(3, 0.35, 48).mesh();
+	const CurveSkeleton rough =
+		CurveMaker()
+			.chain({{-1.4, 0, 0}, {-1.3, 0, 0}, {0.2, 0, 0}, {0.25, 0, 0}, {1.4, 0, 0}})
+			.in(mesh);
+	for (double spacing : {0.003, 0.005, 0.02}) {
+		RefineParameters parameters;
+		parameters.spacing = spacing;
+		const CurveSkeleton s = refine(rough, mesh, parameters);
+		for (const auto& [a, b] : s.edges)
+			EXPECT_NEAR(Distance(s.position[a], s.position[b]) / mesh.bounds().Diag(), spacing,
+				0.1 * spacing);
+	}
+}
+
+TEST(Refine, KeepsARing)
+{
+	const SurfaceMesh mesh = shapes::torus(1, 0.3, 120, 40).mesh();
+	std::vector<Point3d> ring;
+	for (int i = 0; i <= 60; ++i) {
+		const double u = 2 * M_PI * (i % 60) / 60, r = 1.05 + (i % 2 ? 0.02 : -0.02);
+		ring.emplace_back(r * std::cos(u), r * std::sin(u), 0.04);
+	}
+	const CurveSkeleton s = refine(CurveMaker().chain(ring).in(mesh), mesh);
+	EXPECT_EQ(checks::skeletonError(s), "");
+	const SkeletonStatistics counts = statistics(s);
+	EXPECT_EQ(counts.components, 1);
+	EXPECT_EQ(counts.cycles, 1);
+	EXPECT_EQ(counts.terminals, 0);
+	EXPECT_EQ(counts.junctions, 0);
+	const auto fromCircle = [](const Point3d& p) {
+		return std::hypot(std::hypot(p[0], p[1]) - 1, p[2]);
+	};
+	EXPECT_LE(meanDistance(s, fromCircle), 0.0015 * mesh.bounds().Diag());
+	EXPECT_NEAR(counts.length, 2 * M_PI, 0.05);
+}
+
+TEST(Refine, RemovesASpurAndHandsOnWhatHadMergedThere)
+{
+	const SurfaceMesh mesh = shapes::capsule(3, 0.35, 48).mesh();
+	const CurveSkeleton rough = CurveMaker()
+									.line({-1.4, 0, 0}, {0, 0, 0})
+									.line({0, 0, 0}, {1.4, 0, 0})
+									.line({0, 0, 0}, {0, 0.25, 0}, 6)
+									.in(mesh);
+	ASSERT_EQ(statistics(rough).terminals, 3);
+	const CurveSkeleton s = refine(rough, mesh);
+	EXPECT_EQ(checks::skeletonError(s), "");
+	EXPECT_EQ(statistics(s).terminals, 2);
+	EXPECT_EQ(statistics(s).junctions, 0);
+	for (size_t i = 0; i < s.node.size(); ++i)
+		if (std::abs(mesh.position[i][0]) < 1.3) {
+			EXPECT_NEAR(s.position[s.node[i]][0], mesh.position[i][0], 0.02);
+		}
+}
+
+TEST(Refine, KeepsASpurIfToldSo)
+{
+	const SurfaceMesh mesh = barWithArm(2).mesh();
+	RefineParameters parameters;
+	EXPECT_EQ(statistics(refine(curveOfBarWithArm(mesh, 4.5), mesh, parameters)).terminals, 3)
+		<< "an arm is a feature, however short";
+	parameters.spurProminence = 1;
+	EXPECT_EQ(statistics(refine(curveOfBarWithArm(mesh, 4.5), mesh, parameters)).terminals, 2)
+		<< "unless it must add the whole of its junction's radius";
+}
+
+TEST(Refine, ExtendsTipsIntoATaperedEnd)
+{
+	// Radius 0.4 at x = 0, 0.02 at both ends, straight in between.
+	std::vector<std::pair<double, double>> profile = {{-1.5, 0}};
+	for (int i = -60; i <= 60; ++i)
+		profile.emplace_back(1.5 * i / 60, 0.4 - 0.38 * std::abs(i) / 60);
+	profile.emplace_back(1.5, 0);
+	const SurfaceMesh mesh = shapes::revolved(profile, 40).mesh();
+	const CurveSkeleton s = refine(CurveMaker().line({-0.5, 0, 0}, {0.5, 0, 0}).in(mesh), mesh);
+	EXPECT_TRUE(isInside(s, mesh));
+	const std::vector<Point3d> ends = tips(s);
+	ASSERT_EQ(ends.size(), 2u);
+	for (const Point3d& tip : ends) {
+		const double radius = 0.4 - 0.38 * std::abs(tip[0]) / 1.5;
+		EXPECT_LE(1.5 - std::abs(tip[0]), 1.5 * radius) << "within about a radius of the end";
+	}
+	EXPECT_LE(meanDistance(s, distanceFromXAxis), 0.0015 * mesh.bounds().Diag());
+}
+
+TEST(Refine, EndsInTheCentreOfARoundEnd)
+{
+	const SurfaceMesh mesh = shapes::capsule(3, 0.35, 48).mesh();
+	const CurveSkeleton s = refine(CurveMaker().line({-0.7, 0, 0}, {0.7, 0, 0}).in(mesh), mesh);
+	for (const Point3d& tip : tips(s))
+		EXPECT_NEAR(std::abs(tip[0]), 1.5, 0.05);
+}
+
+TEST(Refine, MakesOneJunctionOfSeveralPieces)
+{
+	// Four arms that meet in the middle of a plus, the curve in two junctions.
+	const SurfaceMesh mesh = shapes::cells(25, 25, 5, [](int i, int j, int) {
+		return (i >= 10 && i < 15) || (j >= 10 && j < 15);
+	}).mesh();
+	const Point3d a(12.1, 12.5, 2.5), b(12.9, 12.5, 2.5);
+	const CurveSkeleton rough = CurveMaker()
+									.line(a, {2.5, 12.5, 2.5})
+									.line(a, {12.5, 2.5, 2.5})
+									.line(a, b, 2)
+									.line(b, {22.5, 12.5, 2.5})
+									.line(b, {12.5, 22.5, 2.5})
+									.in(mesh);
+	ASSERT_EQ(statistics(rough).junctions, 2);
+	const CurveSkeleton s = refine(rough, mesh);
+	EXPECT_EQ(statistics(s).junctions, 1);
+	EXPECT_EQ(statistics(s).terminals, 4);
+	EXPECT_TRUE(isInside(s, mesh));
+}
+
+TEST(Refine, KeepsJunctionsThatAreApart)
+{
+	const SurfaceMesh mesh = shapes::cells(45, 15, 5, [](int i, int j, int) {
+		return j < 5 || (i >= 10 && i < 15) || (i >= 30 && i < 35);
+	}).mesh();
+	const Point3d a(12.5, 2.5, 2.5), b(32.5, 2.5, 2.5);
+	const CurveSkeleton s = refine(CurveMaker()
+									   .line(a, {2.5, 2.5, 2.5})
+									   .line(a, {12.5, 12.5, 2.5})
+									   .line(a, b)
+									   .line(b, {32.5, 12.5, 2.5})
+									   .line(b, {42.5, 2.5, 2.5})
+									   .in(mesh),
+		mesh);
+	EXPECT_EQ(statistics(s).junctions, 2);
+	EXPECT_EQ(statistics(s).terminals, 4);
+}
+
+TEST(Refine, KeepsEveryCycle)
+{
+	const SurfaceMesh mesh = shapes::plate(3, 4).mesh(); // bars of width 1
+	CurveMaker maker;
+	for (int i = 0; i < 3; ++i)
+		maker.line({2.0 * i + 0.5, 0.5, 0.5}, {2.0 * i + 2.5, 0.5, 0.5})
+			.line({2.0 * i + 0.5, 2.5, 0.5}, {2.0 * i + 2.5, 2.5, 0.5});
+	for (int i = 0; i < 4; ++i)
+		maker.line({2.0 * i + 0.5, 0.5, 0.5}, {2.0 * i + 0.5, 2.5, 0.5});
+	const CurveSkeleton rough = maker.in(mesh);
+	ASSERT_EQ(statistics(rough).cycles, 3);
+	// Even where every two junctions are near enough to be merged.
+	for (double junctionProminence : {0.5, 1.0}) {
+		RefineParameters parameters;
+		parameters.junctionProminence = junctionProminence;
+		const CurveSkeleton s = refine(rough, mesh, parameters);
+		EXPECT_EQ(checks::skeletonError(s), "");
+		EXPECT_EQ(statistics(s).cycles, 3);
+		EXPECT_EQ(statistics(s).components, 1);
+		EXPECT_TRUE(isInside(s, mesh));
+	}
+}
+
+TEST(Refine, KeepsTinyCycles)
+{
+	// Two cycles of three edges each, far smaller than the spacing.
+	const SurfaceMesh mesh = shapes::capsule(3, 0.35, 48).mesh();
+	const double d = 1e-3;
+	const CurveSkeleton rough = CurveMaker()
+									.line({-1.4, 0, 0}, {0, 0, 0})
+									.chain({{0, 0, 0}, {d, d, 0}, {d, -d, 0}, {0, 0, 0}})
+									.chain({{0, 0, 0}, {-d, 0, d}, {d, d, d}, {0, 0, 0}})
+									.in(mesh);
+	ASSERT_EQ(statistics(rough).cycles, 2);
+	const CurveSkeleton s = refine(rough, mesh);
+	EXPECT_EQ(statistics(s).cycles, 2);
+	EXPECT_EQ(statistics(s).components, 1);
+}
+
+TEST(Refine, MovesACurveThatStartsOutsideIn)
+{
+	const SurfaceMesh mesh = shapes::torus(1, 0.3, 120, 40).mesh();
+	std::vector<Point3d> ring; // passes outside on one side
+	for (int i = 0; i <= 80; ++i) {
+		const double u = 2 * M_PI * (i % 80) / 80;
+		ring.emplace_back(0.8 * std::cos(u) - 0.15, 0.95 * std::sin(u), 0);
+	}
+	const CurveSkeleton rough = CurveMaker().chain(ring).in(mesh);
+	ASSERT_FALSE(isInside(rough, mesh));
+	const CurveSkeleton s = refine(rough, mesh);
+	EXPECT_EQ(statistics(s).cycles, 1);
+	EXPECT_TRUE(isInside(s, mesh));
+}
+
+TEST(Refine, NeverCutsThroughThinWalls)
+{
+	// A thin tube in the shape of a U: the straight way between its legs is outside.
+	const SurfaceMesh mesh = shapes::cells(7, 24, 1, [](int i, int j, int) {
+		return i == 0 || i == 6 || j == 0;
+	}).mesh();
+	const CurveSkeleton s = refine(CurveMaker()
+									   .line({0.5, 23.2, 0.5}, {0.5, 0.5, 0.5}, 9)
+									   .line({0.5, 0.5, 0.5}, {6.5, 0.5, 0.5}, 3)
+									   .line({6.5, 0.5, 0.5}, {6.5, 23.2, 0.5}, 9)
+									   .in(mesh),
+		mesh);
+	EXPECT_TRUE(isInside(s, mesh));
+	EXPECT_EQ(statistics(s).terminals, 2);
+	// What belongs to one leg stays there.
+	for (size_t i = 0; i < s.node.size(); ++i)
+		if (mesh.position[i][1] > 4) {
+			EXPECT_EQ(s.position[s.node[i]][0] > 3.5, mesh.position[i][0] > 3.5);
+		}
+}
+
+TEST(Refine, VerticesGoToTheNearestNodeAround)
+{
+	const SurfaceMesh mesh = barWithArm(6).mesh();
+	const CurveSkeleton s = refine(curveOfBarWithArm(mesh, 8.5), mesh);
+	ASSERT_EQ(checks::skeletonError(s), "");
+	const auto neighbours = s.neighbours();
+	for (size_t i = 0; i < s.node.size(); ++i)
+		for (int w : neighbours[s.node[i]])
+			EXPECT_LE(Distance(mesh.position[i], s.position[s.node[i]]),
+				Distance(mesh.position[i], s.position[w]));
+}
+
+TEST(Refine, RefinesEachComponentAsIfItWereAlone)
+{
+	const shapes::Soup large = shapes::capsule(3, 0.35, 48);
+	const shapes::Soup small = shapes::moved(shapes::scaled(large, 0.01), Point3d(0, 2, 0));
+	const auto maker = [](double scale, double y) {
+		std::vector<Point3d> points = zigzag(-1.3, 1.3, 0.05, 0.02);
+		for (Point3d& p : points)
+			p = p * scale + Point3d(0, y, 0);
+		return points;
+	};
+	const SurfaceMesh both = shapes::joined({large, small}).mesh();
+	const CurveSkeleton s =
+		refine(CurveMaker().chain(maker(1, 0)).chain(maker(0.01, 2)).in(both), both);
+	const SurfaceMesh one = large.mesh();
+	const CurveSkeleton alone = refine(CurveMaker().chain(maker(1, 0)).in(one), one);
+	EXPECT_EQ(checks::skeletonError(s), "");
+	EXPECT_EQ(statistics(s).components, 2);
+	ASSERT_EQ(s.position.size(), 2 * alone.position.size());
+	for (size_t v = 0; v < alone.position.size(); ++v) {
+		EXPECT_EQ(s.position[v], alone.position[v]);
+		const Point3d p = (s.position[alone.position.size() + v] - Point3d(0, 2, 0)) / 0.01;
+		EXPECT_LE(Distance(p, alone.position[v]), 0.001 * one.bounds().Diag());
+	}
+}
+
+TEST(Refine, KeepsTheEdgeOfABallsSkeleton)
+{
+	const SurfaceMesh mesh = shapes::sphere(3).mesh();
+	const CurveSkeleton s = refine(CurveMaker().line({0, 0, 0}, {1e-3, 0, 0}, 1).in(mesh), mesh);
+	EXPECT_EQ(checks::skeletonError(s), "");
+	EXPECT_EQ(statistics(s).components, 1);
+	EXPECT_EQ(statistics(s).cycles, 0);
+	for (const Point3d& p : s.position)
+		EXPECT_LE(p.Norm(), 0.1);
+}
+
+TEST(Refine, WorksOnABoxOfEightVertices)
+{
+	const SurfaceMesh mesh = shapes::box(4, 1, 1).mesh();
+	const CurveSkeleton s =
+		refine(CurveMaker().line({0.6, 0.45, 0.6}, {3.4, 0.6, 0.4}).in(mesh), mesh);
+	EXPECT_EQ(checks::skeletonError(s), "");
+	EXPECT_TRUE(isInside(s, mesh));
+	EXPECT_LE(meanDistance(s,
+				  [](const Point3d& p) {
+					  return p[0] < 1 || p[0] > 3 ? 0 : std::hypot(p[1] - 0.5, p[2] - 0.5);
+				  }),
+		0.0015 * mesh.bounds().Diag());
+}
+
+class RefineMoved : public testing::TestWithParam<double>
+{
+};
+
+TEST_P(RefineMoved, ScalesWithTheShape)
+{
+	const double scale = GetParam();
+	const shapes::Soup soup = barWithArm(4);
+	const SurfaceMesh mesh = soup.mesh(), scaled = shapes::scaled(soup, scale).mesh();
+	const CurveSkeleton curve = curveOfBarWithArm(mesh, 6);
+	CurveSkeleton scaledCurve = curve;
+	for (Point3d& p : scaledCurve.position)
+		p *= scale;
+	const CurveSkeleton a = refine(curve, mesh), b = refine(scaledCurve, scaled);
+	ASSERT_EQ(a.edges, b.edges);
+	for (size_t v = 0; v < a.position.size(); ++v) {
+		EXPECT_LE(Distance(a.position[v], b.position[v] / scale), 0.001 * mesh.bounds().Diag());
+		EXPECT_NEAR(a.radius[v], b.radius[v] / scale, 0.01 * mesh.bounds().Diag());
+	}
+}
+
+INSTANTIATE_TEST_SUITE_P(Refine, RefineMoved, testing::Values(1e-6, 1e-3, 7.0, 1e6));
+
+TEST(Refine, TurnsAndMovesWithTheShape)
+{
+	const auto map = [](const Point3d& p) {
+		return Point3d(0.36 * p[0] + 0.48 * p[1] - 0.8 * p[2], -0.8 * p[0] + 0.6 * p[1],
+				   0.48 * p[0] + 0.64 * p[1] + 0.6 * p[2])
+			+ Point3d(100, -200, 300);
+	};
+	const shapes::Soup soup = shapes::capsule(3, 0.35, 47);
+	const SurfaceMesh mesh = soup.mesh(), moved = shapes::transformed(soup, map).mesh();
+	const CurveSkeleton curve = CurveMaker().chain(zigzag(-1.3, 1.3, 0.05, 0.02)).in(mesh);
+	CurveSkeleton movedCurve = curve;
+	for (Point3d& p : movedCurve.position)
+		p = map(p);
+	const CurveSkeleton a = refine(curve, mesh), b = refine(movedCurve, moved);
+	const double diagonal = mesh.bounds().Diag();
+	// The bounding box, and with it the spacing, turns only as well as boxes do.
+	for (const Point3d& p : a.position) {
+		double nearest = diagonal;
+		for (const Point3d& q : b.position)
+			nearest = std::min(nearest, Distance(map(p), q));
+		EXPECT_LE(nearest, 0.005 * diagonal);
+	}
+	EXPECT_EQ(statistics(a).branches, statistics(b).branches);
+}
+
+TEST(Refine, GivesTheSameBitsTwice)
+{
+	const SurfaceMesh mesh = barWithArm(4).mesh();
+	const CurveSkeleton curve = curveOfBarWithArm(mesh, 6);
+	const CurveSkeleton a = refine(curve, mesh), b = refine(curve, mesh);
+	EXPECT_EQ(a.position, b.position);
+	EXPECT_EQ(a.radius, b.radius);
+	EXPECT_TRUE(sameGraph(a, b));
+}
+
+TEST(Refine, SaysWhatIsWrong)
+{
+	const SurfaceMesh mesh = shapes::capsule().mesh();
+	CurveSkeleton curve = CurveMaker().line({-0.8, 0, 0}, {0.8, 0, 0}).in(mesh);
+	RefineParameters bad;
+	bad.spacing = 0;
+	EXPECT_THROW(refine(curve, mesh, bad), InvalidParameter);
+	bad = RefineParameters();
+	bad.smoothing = -1;
+	EXPECT_THROW(refine(curve, mesh, bad), InvalidParameter);
+	bad = RefineParameters();
+	bad.tipGain = 0;
+	EXPECT_THROW(refine(curve, mesh, bad), InvalidParameter);
+	CurveSkeleton wrong = curve;
+	wrong.node.front() = int(curve.position.size());
+	EXPECT_THROW(refine(wrong, mesh), InvalidInput);
+	wrong.node.pop_back();
+	EXPECT_THROW(refine(wrong, mesh), InvalidInput);
+}
+
+TEST(Refine, CanBeCancelled)
+{
+	const SurfaceMesh mesh = shapes::capsule().mesh();
+	const CurveSkeleton curve = CurveMaker().line({-0.8, 0, 0}, {0.8, 0, 0}).in(mesh);
+	EXPECT_THROW(
+		refine(curve, mesh, RefineParameters(), Progress([](int, const char*) { return false; })),
+		Cancelled);
+	int last = 0;
+	refine(curve, mesh, RefineParameters(), Progress([&](int percent, const char*) {
+		EXPECT_GE(percent, last);
+		last = percent;
+		return true;
+	}));
+	EXPECT_EQ(last, 100);
+}
+
+} // namespace
