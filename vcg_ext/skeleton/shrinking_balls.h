@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 #include <vector>
 
@@ -114,6 +115,31 @@ PoleSet maximalBalls(const std::vector<Point3d>& points, const std::vector<Point
 	return poles;
 }
 
+/**
+ * Unit normals that are exact where the neighbours of a vertex lie on a sphere with it: cross products
+ * over the squared lengths of both edges (Max, "Weights for computing vertex normals from facet
+ * normals", Journal of Graphics Tools 4(2), 1999); zero where they are not defined.
+ * A tilt by t makes the ball against a neighbour at distance h on a surface of curvature k smaller
+ * by a factor of 1 + 2 t / (h k): on a fine mesh the tilt of area-weighted normals costs a fifth.
+ */
+inline std::vector<Point3d> osculatingNormals(const SurfaceMesh& mesh)
+{
+	std::vector<Point3d> normals(mesh.vertexSlots(), Point3d(0, 0, 0));
+	for (int h = 0; h < mesh.halfEdgeSlots(); ++h) {
+		const int v = mesh.origin(h);
+		const Point3d a = mesh.position[mesh.target(h)] - mesh.position[v];
+		const Point3d b = mesh.position[mesh.apex(h)] - mesh.position[v];
+		const double aa = a.SquaredNorm(), bb = b.SquaredNorm();
+		if (aa > 0 && bb > 0)
+			normals[v] += (a ^ b) / aa / bb;
+	}
+	for (Point3d& n : normals) {
+		const double length = n.Norm();
+		n = length > 0 && std::isfinite(length) ? Point3d(n / length) : Point3d(0, 0, 0);
+	}
+	return normals;
+}
+
 inline double ballTolerance(const UnitFrame& frame, double delta)
 {
 	// Coincident samples, and the steps of rounding in flat regions, are no contacts.
@@ -162,7 +188,7 @@ inline PoleSet shrinkingBallPoles(const SurfaceMesh& mesh, const std::vector<int
 	const UnitFrame frame(mesh.position);
 	const double tolerance = detail::ballTolerance(frame, delta);
 	const std::vector<Point3d> samples = frame.in(mesh.position);
-	const std::vector<Point3d> allNormals = mesh.vertexNormals();
+	const std::vector<Point3d> allNormals = detail::osculatingNormals(mesh);
 	std::vector<Point3d> points, normals;
 	bool all = vertices.size() == samples.size();
 	for (size_t i = 0; i < vertices.size(); ++i) {

@@ -58,12 +58,22 @@ private:
 	qhT state;
 };
 
+/// What Qhull wrote, up to its list of options.
+inline std::string firstParagraph(FILE* log)
+{
+	std::string text(1000, '\0');
+	std::rewind(log);
+	text.resize(std::fread(text.data(), 1, text.size(), log));
+	return text.substr(0, text.find("\n\n"));
+}
+
 /**
  * The Delaunay cells of the points, without those that reach out to a cube put around them.
  *
  * The corners of the cube bound the cells of the outermost points, and lend cospherical points,
  * which a sphere's are, the fourth dimension that the lifted points need.
- * @pre the points lie in the cube of half side 1 around the origin.
+ * @pre the points lie in the cube of half side 1 around the origin, which leaves out NaN: Qhull does
+ *      not survive it.
  * @throws SolverError with Qhull's own words.
  */
 inline DelaunayCells delaunayCells(const std::vector<Point3d>& points, const char* command = "qhull d Q12")
@@ -86,13 +96,9 @@ inline DelaunayCells delaunayCells(const std::vector<Point3d>& points, const cha
 	std::string mutableCommand(command);
 	const int status = qh_new_qhull(
 		qh, 3, count + 8, coordinates.data(), False, mutableCommand.data(), nullptr, log.get());
-	if (status != 0) {
-		std::string message(400, '\0');
-		std::rewind(log.get());
-		message.resize(std::fread(message.data(), 1, message.size(), log.get()));
+	if (status != 0)
 		throw SolverError("Qhull could not compute the Voronoi diagram (code " + std::to_string(status) +
-			"): " + message);
-	}
+			"): " + firstParagraph(log.get()));
 	DelaunayCells cells;
 	cells.start.push_back(0);
 	facetT* facet;
@@ -177,6 +183,8 @@ inline PoleSet voronoiPoles(const SurfaceMesh& mesh, const Progress& progress = 
 	poles.centre.assign(mesh.vertexSlots(), Point3d(0, 0, 0));
 	poles.radius.assign(mesh.vertexSlots(), -1);
 	const UnitFrame frame(mesh.position);
+	if (!std::isfinite(frame.diagonal()))
+		throw SolverError("The Voronoi diagram of points at infinity is not defined.");
 	if (!(frame.diagonal() > 0))
 		return poles;
 	const std::vector<Point3d> samples = frame.in(mesh.position);

@@ -1,0 +1,121 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "skeleton/point_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <set>
+#include <vector>
+
+namespace {
+
+using vcg::Point3d;
+using vcg::tri::mcf::PointTree;
+
+std::vector<Point3d> randomPoints(int count, double size, const Point3d& middle)
+{
+	std::mt19937 random(7);
+	std::uniform_real_distribution<double> coordinate(-size, size);
+	std::vector<Point3d> points;
+	for (int i = 0; i < count; ++i) {
+		const double x = coordinate(random), y = coordinate(random), z = coordinate(random);
+		points.push_back(middle + Point3d(x, y, z));
+	}
+	return points;
+}
+
+int nearestByHand(const std::vector<Point3d>& points, const Point3d& x)
+{
+	int best = -1;
+	for (size_t i = 0; i < points.size(); ++i)
+		if (best < 0 || Distance(points[i], x) < Distance(points[best], x))
+			best = int(i);
+	return best;
+}
+
+struct CollectingBall
+{
+	Point3d c;
+	double radius;
+	std::set<int> found;
+
+	const Point3d& centre() const { return c; }
+	double reach() const { return radius; }
+	void visit(int slot, const Point3d&) { found.insert(slot); }
+};
+
+struct Placement
+{
+	double size;
+	Point3d middle;
+};
+
+class PointTreeAnywhere : public testing::TestWithParam<Placement>
+{};
+
+TEST_P(PointTreeAnywhere, FindsWhatASearchByHandFinds)
+{
+	const auto [size, middle] = GetParam();
+	for (const int count : {1, 2, 31, 33, 129, 5000}) {
+		const std::vector<Point3d> points = randomPoints(count, size, middle);
+		const PointTree tree(points);
+		for (const Point3d& x : randomPoints(50, 3 * size, middle))
+			ASSERT_EQ(tree.nearest(x), nearestByHand(points, x)) << count;
+	}
+}
+
+TEST_P(PointTreeAnywhere, VisitsEveryPointOfTheBallAndNotManyMore)
+{
+	const auto [size, middle] = GetParam();
+	const std::vector<Point3d> points = randomPoints(5000, size, middle);
+	const PointTree tree(points);
+	for (const Point3d& x : randomPoints(50, size, middle)) {
+		CollectingBall ball {x, 0.3 * size, {}};
+		tree.search(ball);
+		std::set<int> ids;
+		for (int slot : ball.found)
+			ids.insert(tree.order()[slot]);
+		size_t within = 0;
+		for (size_t i = 0; i < points.size(); ++i)
+			if (Distance(points[i], x) <= ball.radius) {
+				++within;
+				ASSERT_TRUE(ids.count(int(i)));
+			}
+		EXPECT_LE(ids.size(), within + 2);
+	}
+}
+
+INSTANTIATE_TEST_SUITE_P(Places, PointTreeAnywhere,
+	testing::Values(Placement {1, {0, 0, 0}}, Placement {1e-6, {1e-6, 0, 0}},
+		Placement {1e6, {0, -1e7, 0}}, Placement {1, {1e5, 0, 1e5}}));
+
+TEST(PointTree, HoldsEachPointOnce)
+{
+	const std::vector<Point3d> points = randomPoints(1234, 1, {0, 0, 0});
+	const PointTree tree(points);
+	std::vector<int> order = tree.order();
+	for (int slot = 0; slot < tree.size(); ++slot)
+		EXPECT_EQ(tree.point(slot), points[order[slot]]);
+	std::sort(order.begin(), order.end());
+	for (int i = 0; i < tree.size(); ++i)
+		EXPECT_EQ(order[i], i);
+}
+
+TEST(PointTree, TakesTheLowestOfEquallyNearPoints)
+{
+	std::vector<Point3d> points(200, Point3d(1, 2, 3));
+	points[0] = {5, 5, 5};
+	EXPECT_EQ(PointTree(points).nearest({1, 2, 2}), 1);
+	EXPECT_EQ(PointTree({{1, 0, 0}, {-1, 0, 0}}).nearest({0, 0, 0}), 0);
+}
+
+TEST(PointTree, HasNoNearestPointWithoutPoints)
+{
+	EXPECT_EQ(PointTree(std::vector<Point3d>()).nearest({0, 0, 0}), -1);
+}
+
+} // namespace
