@@ -55,7 +55,8 @@ struct Placement
 };
 
 class PointTreeAnywhere : public testing::TestWithParam<Placement>
-{};
+{
+};
 
 TEST_P(PointTreeAnywhere, FindsWhatASearchByHandFinds)
 {

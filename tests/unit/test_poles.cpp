@@ -42,7 +42,8 @@ void expectEmptyInnerBalls(const SurfaceMesh& mesh, const PoleSet& poles, const 
 shapes::Soup pebble(int levels = 4)
 {
 	return shapes::transformed(shapes::sphere(levels), [](const Point3d& p) {
-		const double r = 1 + 0.1 * std::sin(3 * p[0] + 0.4) * std::cos(2 * p[1] - 0.3) + 0.07 * p[2];
+		const double r =
+			1 + 0.1 * std::sin(3 * p[0] + 0.4) * std::cos(2 * p[1] - 0.3) + 0.07 * p[2];
 		return Point3d(1.7 * r * p[0], 1.1 * r * p[1], 0.8 * r * p[2]);
 	});
 }
@@ -168,14 +169,15 @@ TEST_P(Poles, OfACapsuleLieOnItsSegment)
 TEST_P(Poles, OfTheCoarsestMeshesAreInsideOrMissing)
 {
 	const auto inTetrahedron = [](const Point3d& c) {
-		return c[0] + c[1] + c[2] > -1 && c[0] - c[1] - c[2] > -1 && -c[0] + c[1] - c[2] > -1 &&
-			-c[0] - c[1] + c[2] > -1;
+		return c[0] + c[1] + c[2] > -1 && c[0] - c[1] - c[2] > -1 && -c[0] + c[1] - c[2] > -1
+			&& -c[0] - c[1] + c[2] > -1;
 	};
 	const SurfaceMesh tetrahedron = shapes::tetrahedron().mesh();
 	expectEmptyInnerBalls(tetrahedron, polesOf(tetrahedron), inTetrahedron);
 	const SurfaceMesh box = shapes::box(4, 2, 0.1).mesh();
-	expectEmptyInnerBalls(
-		box, polesOf(box), [](const Point3d& c) { return isInBox(c, {4, 2, 0.1}); });
+	expectEmptyInnerBalls(box, polesOf(box), [](const Point3d& c) {
+		return isInBox(c, {4, 2, 0.1});
+	});
 }
 
 TEST_P(Poles, DoNotDependOnSizeOrPlace)
@@ -185,8 +187,7 @@ TEST_P(Poles, DoNotDependOnSizeOrPlace)
 	EXPECT_EQ(reference.missing(), 0);
 	for (const double factor : {1e-6, 0.3, 1e6}) {
 		const Point3d by = Point3d(-3, 1, 2) * (100 * factor);
-		const PoleSet poles =
-			polesOf(shapes::moved(shapes::scaled(shape, factor), by).mesh());
+		const PoleSet poles = polesOf(shapes::moved(shapes::scaled(shape, factor), by).mesh());
 		for (size_t v = 0; v < reference.radius.size(); ++v) {
 			EXPECT_NEAR(poles.radius[v] / factor, reference.radius[v], 1e-6) << factor << ' ' << v;
 			EXPECT_LT(Distance((poles.centre[v] - by) / factor, reference.centre[v]), 1e-5)
@@ -210,7 +211,8 @@ TEST_P(Poles, FollowTheirVerticesWhenRenumbered)
 	const PoleSet poles = polesOf(shape.mesh()), others = polesOf(other.mesh());
 	const PointTree places(other.points);
 	for (size_t v = 0; v < shape.points.size(); ++v)
-		EXPECT_LT(Distance(poles.centre[v], others.centre[places.nearest(shape.points[v])]), 1e-6) << v;
+		EXPECT_LT(Distance(poles.centre[v], others.centre[places.nearest(shape.points[v])]), 1e-6)
+			<< v;
 }
 
 TEST_P(Poles, TreatComponentsAlike)
@@ -279,7 +281,7 @@ TEST(InnerSegments, EndAtTheFirstTriangleThatTheyMeet)
 	const PointTree tree(mesh.position);
 	const InnerSegments segments(mesh, tree);
 	EXPECT_TRUE(segments.staysInside(0, {0, 0, 0.9}, 0));
-	EXPECT_FALSE(segments.staysInside(0, {0, 0, 1.1}, 0));  // through the edge of two triangles
+	EXPECT_FALSE(segments.staysInside(0, {0, 0, 1.1}, 0));   // through the edge of two triangles
 	EXPECT_FALSE(segments.staysInside(0, {0.1, 0, 1.1}, 0)); // through one
 	EXPECT_FALSE(segments.staysInside(0, {0, 0, -0.5}, 0));
 	EXPECT_FALSE(segments.staysInside(0, {1, 0, 0.4}, 0));
@@ -293,10 +295,14 @@ TEST(InnerSegments, StartInsideAtSaddlesToo)
 	const InnerSegments segments(mesh, tree);
 	const int corner = tree.nearest({1, 1, 1}); // of the three reflex edges
 	const Point3d p = mesh.position[corner];
-	for (const Point3d& to : {Point3d(-0.2, -0.2, -0.2), Point3d(-0.2, 0.1, -0.01), Point3d(0.01, -0.2, -0.2)})
-		EXPECT_TRUE(segments.staysInside(corner, p + to, 1)) << to[0] << ' ' << to[1] << ' ' << to[2];
-	for (const Point3d& to : {Point3d(0.2, 0.2, 0.2), Point3d(0.2, 0.1, -0.01), Point3d(0.2, -0.01, 0.2)})
-		EXPECT_FALSE(segments.staysInside(corner, p + to, 1)) << to[0] << ' ' << to[1] << ' ' << to[2];
+	for (const Point3d& to :
+		{Point3d(-0.2, -0.2, -0.2), Point3d(-0.2, 0.1, -0.01), Point3d(0.01, -0.2, -0.2)})
+		EXPECT_TRUE(segments.staysInside(corner, p + to, 1))
+			<< to[0] << ' ' << to[1] << ' ' << to[2];
+	for (const Point3d& to :
+		{Point3d(0.2, 0.2, 0.2), Point3d(0.2, 0.1, -0.01), Point3d(0.2, -0.01, 0.2)})
+		EXPECT_FALSE(segments.staysInside(corner, p + to, 1))
+			<< to[0] << ' ' << to[1] << ' ' << to[2];
 }
 
 TEST(ShrinkingBalls, OfSomeVerticesAreThoseOfAllVertices)
@@ -348,8 +354,8 @@ TEST(ShrinkingBalls, IgnoreSamplesThatCoincide)
 TEST(ShrinkingBalls, NeedANormalAndSomethingToTouch)
 {
 	const std::vector<Point3d> samples = {{0, 0, 1}, {0, 0, -1}};
-	const PoleSet poles = shrinkingBalls({{0, 0, 1}, {0, 0, 1}, {0, 0, 1}},
-		{{0, 0, 1}, {0, 0, 0}, {0, 0, -1}}, samples);
+	const PoleSet poles = shrinkingBalls(
+		{{0, 0, 1}, {0, 0, 1}, {0, 0, 1}}, {{0, 0, 1}, {0, 0, 0}, {0, 0, -1}}, samples);
 	EXPECT_NEAR(poles.radius[0], 1, 1e-6);
 	EXPECT_LT(poles.centre[0].Norm(), 1e-6);
 	EXPECT_FALSE(poles.has(1));

@@ -22,7 +22,10 @@ class FourBoxes
 {
 public:
 	/// More than rounding can move a box or a point of a tree whose box has this diagonal.
-	static double slack(double diagonal) { return 8 * std::numeric_limits<float>::epsilon() * diagonal; }
+	static double slack(double diagonal)
+	{
+		return 8 * std::numeric_limits<float>::epsilon() * diagonal;
+	}
 
 	/// All four are empty: infinitely far from anything.
 	FourBoxes()

@@ -81,7 +81,7 @@ public:
 
 private:
 	const SurfaceMesh& mesh;
-	std::vector<int> faces;                 ///< neighbours in this order are near each other
+	std::vector<int> faces;                     ///< neighbours in this order are near each other
 	std::vector<std::vector<FourBoxes>> levels; ///< around single faces, 4 faces, 16 faces, ...
 	Point3d origin;
 	double slack;
@@ -198,7 +198,8 @@ private:
 		const Point3d aside = from ^ e1;
 		const double w = segment * aside / determinant;
 		const double along = e2 * aside / determinant;
-		return w >= -rounding && u + w <= 1 + rounding && along >= -rounding && along <= 1 + rounding;
+		return w >= -rounding && u + w <= 1 + rounding && along >= -rounding
+			&& along <= 1 + rounding;
 	}
 };
 

@@ -33,7 +33,8 @@ class PointTree
 {
 public:
 	/// @pre the points are finite. Complexity: O(n log n).
-	explicit PointTree(const std::vector<Point3d>& points) : ids(points.size()), sorted(points.size())
+	explicit PointTree(const std::vector<Point3d>& points) :
+			ids(points.size()), sorted(points.size())
 	{
 		Box3d box;
 		for (size_t i = 0; i < ids.size(); ++i) {
@@ -143,8 +144,10 @@ private:
 
 	std::vector<int> ids;
 	std::vector<Point3d> sorted;
-	std::array<std::vector<float>, 3> coordinate; ///< of sorted, from the origin, padded by infinities
-	std::vector<FourBoxes> nodes; ///< the inner nodes of a complete tree, children of i from 4 i + 1 on
+	/// Of the sorted points, from the origin; padded by infinities.
+	std::array<std::vector<float>, 3> coordinate;
+	/// The inner nodes of a complete tree, the children of i from 4 i + 1 on.
+	std::vector<FourBoxes> nodes;
 	Point3d origin = Point3d(0, 0, 0);
 	double slack;
 
@@ -153,7 +156,8 @@ private:
 		const Point3d c = centre - origin;
 		const double enlarged = reach * (1 + 8 * std::numeric_limits<float>::epsilon()) + slack;
 		constexpr double largest = std::numeric_limits<float>::max();
-		return {{float(c[0]), float(c[1]), float(c[2])}, float(std::min(enlarged * enlarged, largest))};
+		return {
+			{float(c[0]), float(c[1]), float(c[2])}, float(std::min(enlarged * enlarged, largest))};
 	}
 
 	template <class Ball>
@@ -195,10 +199,11 @@ private:
 	void split(const std::vector<Point3d>& points, int begin, int middle, int end)
 	{
 		const int axis = bounds(points, begin, end).MaxDim();
-		std::nth_element(ids.begin() + begin, ids.begin() + middle, ids.begin() + end, [&](int a, int b) {
-			const double x = points[a][axis], y = points[b][axis];
-			return x != y ? x < y : a < b;
-		});
+		std::nth_element(
+			ids.begin() + begin, ids.begin() + middle, ids.begin() + end, [&](int a, int b) {
+				const double x = points[a][axis], y = points[b][axis];
+				return x != y ? x < y : a < b;
+			});
 	}
 
 	void build(const std::vector<Point3d>& points, int node, int begin, int end)

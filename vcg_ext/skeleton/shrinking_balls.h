@@ -40,7 +40,8 @@ class MaximalBall
 public:
 	MaximalBall(const Point3d& p, const Point3d& n, double delta, double largest) :
 			p(p), n(n), c(p - n * largest), delta(delta), r(largest)
-	{}
+	{
+	}
 
 	double radius() const { return r; }
 	/// The place in the tree of the sample that holds the ball, -1 if none does.
@@ -100,7 +101,8 @@ PoleSet maximalBalls(const std::vector<Point3d>& points, const std::vector<Point
 				if (slot >= 0)
 					ball.visit(slot, tree.point(slot));
 			if (onSamples)
-				for (int j = std::max(i - neighbours, 0); j <= std::min(i + neighbours, tree.size() - 1); ++j)
+				for (int j = std::max(i - neighbours, 0);
+					 j <= std::min(i + neighbours, tree.size() - 1); ++j)
 					ball.visit(j, tree.point(j));
 			tree.search(ball);
 			if (ball.contact() < 0)
@@ -162,12 +164,14 @@ inline double ballTolerance(const UnitFrame& frame, double delta)
  * @throws Cancelled
  * Complexity: O((P + Q) log Q) for samples of a surface. Same bits on any number of threads.
  */
-inline PoleSet shrinkingBalls(const std::vector<Point3d>& points, const std::vector<Point3d>& normals,
-	const std::vector<Point3d>& against, double delta = 0, const Progress& progress = Progress())
+inline PoleSet shrinkingBalls(const std::vector<Point3d>& points,
+	const std::vector<Point3d>& normals, const std::vector<Point3d>& against, double delta = 0,
+	const Progress& progress = Progress())
 {
 	const UnitFrame frame(against);
-	return detail::maximalBalls(frame.in(points), normals, frame, PointTree(frame.in(against)), false,
-		detail::ballTolerance(frame, delta), progress, [](int, const Point3d&) { return true; });
+	return detail::maximalBalls(frame.in(points), normals, frame, PointTree(frame.in(against)),
+		false, detail::ballTolerance(frame, delta), progress,
+		[](int, const Point3d&) { return true; });
 }
 
 /**

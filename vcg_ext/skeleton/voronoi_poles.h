@@ -76,7 +76,8 @@ inline std::string firstParagraph(FILE* log)
  *      not survive it.
  * @throws SolverError with Qhull's own words.
  */
-inline DelaunayCells delaunayCells(const std::vector<Point3d>& points, const char* command = "qhull d Q12")
+inline DelaunayCells delaunayCells(
+	const std::vector<Point3d>& points, const char* command = "qhull d Q12")
 {
 	constexpr double halfSide = 3;
 	const int count = int(points.size());
@@ -90,24 +91,27 @@ inline DelaunayCells delaunayCells(const std::vector<Point3d>& points, const cha
 	// Qhull writes to C files only, and a library must not write to its user's terminal.
 	const std::unique_ptr<FILE, int (*)(FILE*)> log(std::tmpfile(), std::fclose);
 	if (!log)
-		throw SolverError("The Voronoi diagram needs a temporary file for Qhull's messages and got none.");
+		throw SolverError(
+			"The Voronoi diagram needs a temporary file for Qhull's messages and got none.");
 	QhullRun run;
 	qhT* qh = run.get();
 	std::string mutableCommand(command);
 	const int status = qh_new_qhull(
 		qh, 3, count + 8, coordinates.data(), False, mutableCommand.data(), nullptr, log.get());
 	if (status != 0)
-		throw SolverError("Qhull could not compute the Voronoi diagram (code " + std::to_string(status) +
-			"): " + firstParagraph(log.get()));
+		throw SolverError("Qhull could not compute the Voronoi diagram (code "
+			+ std::to_string(status) + "): " + firstParagraph(log.get()));
 	DelaunayCells cells;
 	cells.start.push_back(0);
 	facetT* facet;
 	vertexT *vertex, **vertexp;
-	FORALLfacets {
+	FORALLfacets
+	{
 		if (facet->upperdelaunay)
 			continue;
 		bool reachesOut = false;
-		FOREACHvertex_(facet->vertices) {
+		FOREACHvertex_(facet->vertices)
+		{
 			const int id = qh_pointid(qh, vertex->point);
 			reachesOut = reachesOut || id >= count;
 			cells.samples.push_back(id);
@@ -133,7 +137,10 @@ public:
 	bool isEmpty() const { return empty; }
 	const Point3d& centre() const { return c; }
 	double reach() const { return empty ? radius : 0; }
-	void visit(int, const Point3d& q) { empty = empty && !(SquaredDistance(c, q) < radius * radius); }
+	void visit(int, const Point3d& q)
+	{
+		empty = empty && !(SquaredDistance(c, q) < radius * radius);
+	}
 
 private:
 	Point3d c;
@@ -145,8 +152,8 @@ private:
  * Whether a cell's ball is what it claims to be: within the cube, through its samples, and empty.
  * Nearly co-circular neighbourhoods yield centres up to 1e16 diagonals away, and smaller errors.
  */
-inline bool isDelaunayCell(const DelaunayCells& cells, size_t cell, const std::vector<Point3d>& samples,
-	const PointTree& tree, double tolerance)
+inline bool isDelaunayCell(const DelaunayCells& cells, size_t cell,
+	const std::vector<Point3d>& samples, const PointTree& tree, double tolerance)
 {
 	const Point3d& c = cells.centre[cell];
 	for (int k = 0; k < 3; ++k)
@@ -201,8 +208,8 @@ inline PoleSet voronoiPoles(const SurfaceMesh& mesh, const Progress& progress = 
 		for (int i = cells.start[cell]; i < cells.start[cell + 1]; ++i) {
 			const int v = cells.samples[i];
 			const double radius = Distance(centre, mesh.position[v]);
-			if (radius > poles.radius[v] && (centre - mesh.position[v]) * normals[v] < 0 &&
-				segments.staysInside(v, centre, frame.lengthOut(tolerance))) {
+			if (radius > poles.radius[v] && (centre - mesh.position[v]) * normals[v] < 0
+				&& segments.staysInside(v, centre, frame.lengthOut(tolerance))) {
 				poles.centre[v] = centre;
 				poles.radius[v] = radius;
 			}
