@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file Systems as the flow has them, and their direct solution by Eigen.
+
+#ifndef MCFSKEL_TESTS_LINEAR_SYSTEMS_H
+#define MCFSKEL_TESTS_LINEAR_SYSTEMS_H
+
+#include "mesh_checks.h"
+
+#include "skeleton/cotangent_laplacian.h"
+#include "skeleton/elimination_order.h"
+
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+
+#include <random>
+#include <vector>
+
+namespace systems {
+
+using namespace vcg::tri::mcf;
+using vcg::Point3d;
+using Sparse = Eigen::SparseMatrix<double>;
+
+inline Sparse sparse(const SymmetricRows& A)
+{
+	std::vector<Eigen::Triplet<double>> entries;
+	for (int i = 0; i < A.size(); ++i) {
+		entries.emplace_back(i, i, A.diagonal[i]);
+		for (int k = A.start[i]; k < A.start[i + 1]; ++k)
+			entries.emplace_back(i, A.column[k], A.value[k]);
+	}
+	Sparse S(A.size(), A.size());
+	S.setFromTriplets(entries.begin(), entries.end());
+	return S;
+}
+
+inline Sparse diagonal(const std::vector<double>& values)
+{
+	Sparse S(int(values.size()), int(values.size()));
+	for (int i = 0; i < int(values.size()); ++i)
+		S.insert(i, i) = values[i];
+	return S;
+}
+
+/// The Laplacian of a mesh, numbered in the flow's elimination order.
+inline SymmetricRows orderedLaplacian(const SurfaceMesh& mesh)
+{
+	Stage stage = initialStage(mesh, checks::noPoles(mesh));
+	const std::vector<int> order = eliminationOrder(stage);
+	std::vector<int> number(order.size());
+	for (size_t i = 0; i < order.size(); ++i)
+		number[order[i]] = int(i);
+	const std::vector<double> weight = cotangentWeights(mesh);
+	SymmetricRows L;
+	L.start.push_back(0);
+	for (int v : order) {
+		double sum = 0;
+		mesh.forEachOutgoing(v, [&](int h) {
+			sum += weight[h];
+			L.column.push_back(number[mesh.target(h)]);
+			L.value.push_back(-weight[h]);
+		});
+		L.diagonal.push_back(sum);
+		L.start.push_back(int(L.column.size()));
+	}
+	return L;
+}
+
+inline std::vector<Point3d> randomColumns(int n, unsigned seed)
+{
+	std::mt19937 random(seed);
+	std::vector<Point3d> x(n);
+	for (Point3d& p : x)
+		for (int k = 0; k < 3; ++k)
+			p[k] = 2.0 * random() / double(std::mt19937::max()) - 1;
+	return x;
+}
+
+inline Eigen::MatrixXd matrix(const std::vector<Point3d>& x)
+{
+	Eigen::MatrixXd X(int(x.size()), 3);
+	for (int i = 0; i < int(x.size()); ++i)
+		for (int k = 0; k < 3; ++k)
+			X(i, k) = x[i][k];
+	return X;
+}
+
+/// S^-1 B, directly.
+inline Eigen::MatrixXd solved(const Sparse& S, const Eigen::MatrixXd& B)
+{
+	return Eigen::SimplicialLDLT<Sparse>(S).solve(B);
+}
+
+} // namespace systems
+
+#endif
