@@ -74,7 +74,7 @@ private:
 	}
 };
 
-namespace detail {
+namespace refining {
 
 /// Refines the skeleton of one component, in coordinates where the component's diagonal is 1.
 inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurface& surface,
@@ -171,7 +171,7 @@ inline int nearestAlong(const CurveSkeleton& skeleton,
 	}
 }
 
-} // namespace detail
+} // namespace refining
 
 /**
  * Refines a curve skeleton within the surface that it was extracted from: removes spurs, merges
@@ -208,7 +208,7 @@ inline CurveSkeleton refine(const CurveSkeleton& curve, const SurfaceMesh& surfa
 
 	int components = 0;
 	const std::vector<int> component = connectedComponents(surface, &components);
-	const std::vector<int> componentOfNode = detail::componentOfNodes(curve, component);
+	const std::vector<int> componentOfNode = refining::componentOfNodes(curve, component);
 	std::vector<std::vector<int>> vertices(components), nodes(components), edges(components);
 	std::vector<Box3d> box(components);
 	for (int v = 0; v < surface.vertexSlots(); ++v) {
@@ -246,7 +246,7 @@ inline CurveSkeleton refine(const CurveSkeleton& curve, const SurfaceMesh& surfa
 		for (int e : edges[c])
 			part.edges.push_back({number[curve.edges[e][0]], number[curve.edges[e][1]]});
 		const ClosestSurface closest(unit, vertices[c], sampleSpacing);
-		part = detail::refineComponent(part, closest, parameters,
+		part = refining::refineComponent(part, closest, parameters,
 			progress.part(double(c) / components, double(c + 1) / components));
 
 		const std::vector<std::vector<int>> neighbours = part.neighbours();
@@ -254,7 +254,7 @@ inline CurveSkeleton refine(const CurveSkeleton& curve, const SurfaceMesh& surfa
 		for (int s : vertices[c])
 			if (curve.node[s] >= 0)
 				refined.node[s] = first
-					+ detail::nearestAlong(
+					+ refining::nearestAlong(
 						part, neighbours, part.node[number[curve.node[s]]], unit.position[s]);
 		for (const Point3d& p : part.position)
 			refined.position.push_back(p * box[c].Diag() + box[c].Center());

@@ -20,7 +20,7 @@
 #include <cmath>
 #include <vector>
 
-namespace vcg::tri::mcf::detail {
+namespace vcg::tri::mcf::refining {
 
 /// Where a node touches the surface, and the maximal ball through there.
 struct Contact
@@ -32,9 +32,10 @@ struct Contact
 /// Points of the surface that lie this deep in a ball, in distances of its node, do not hold it.
 constexpr double contactTolerance = 0.02;
 
-/// A maximal ball whose contacts are nearer to each other than this is held by the surface's
-/// curvature or its noise, not by the other side: it says nothing about the middle of the shape.
-constexpr double leastSpokeAngle = 20 * M_PI / 180;
+/// A maximal ball whose contacts are near each other is held by the surface's curvature or its noise,
+/// not by the other side: it says nothing about the middle of the shape. Balls count from the first
+/// angle between their contacts on, and fully from the second.
+constexpr double leastSpokeAngle = 20 * M_PI / 180, fullSpokeAngle = 50 * M_PI / 180;
 
 inline bool isMedial(const ClosestSurface::Ball& ball)
 {
@@ -154,7 +155,9 @@ inline void centre(CurveSkeleton& skeleton, const std::vector<Contact>& contacts
 		Point3d target = x;
 		double weight = weightWithoutBall;
 		if (skeleton.radius[v] > 0 && isMedial(contacts[v].ball)) {
-			weight = 1;
+			weight = std::clamp((contacts[v].ball.spokeAngle - leastSpokeAngle)
+					/ (fullSpokeAngle - leastSpokeAngle),
+				weightWithoutBall, 1.0);
 			target = contacts[v].ball.centre;
 			if (degree == 1 || degree == 2) {
 				const Point3d tangent = tangentAt(skeleton, neighbours[v], v);
@@ -235,6 +238,6 @@ inline void moveInside(CurveSkeleton& skeleton, const ClosestSurface& surface)
 	}
 }
 
-} // namespace vcg::tri::mcf::detail
+} // namespace vcg::tri::mcf::refining
 
 #endif

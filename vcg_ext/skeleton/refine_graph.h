@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-namespace vcg::tri::mcf::detail {
+namespace vcg::tri::mcf::refining {
 
 /// Sets the radius of each junction and tip to its distance from the surface; 0 outside.
 inline void measureBranchEnds(CurveSkeleton& skeleton, const ClosestSurface& surface)
@@ -231,6 +231,6 @@ inline CurveSkeleton evenlySampled(
 	return even;
 }
 
-} // namespace vcg::tri::mcf::detail
+} // namespace vcg::tri::mcf::refining
 
 #endif

@@ -15,7 +15,7 @@
 #include <cmath>
 #include <vector>
 
-namespace vcg::tri::mcf::detail {
+namespace vcg::tri::mcf::refining {
 
 /// Where a tip may go.
 struct TipRule
@@ -65,7 +65,8 @@ inline bool isCovered(const CurveSkeleton& skeleton, const Point3d& point)
  */
 inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, const TipRule& rule)
 {
-	constexpr double mostSteps = 400;
+	constexpr int mostSteps = 400;
+	constexpr double farthestTurn = 50 * M_PI / 180;
 	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
 	const int count = int(neighbours.size());
 	for (int v = 0; v < count; ++v) {
@@ -74,6 +75,7 @@ inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, c
 		Point3d direction = tipDirection(skeleton, neighbours, v);
 		if (direction.SquaredNorm() == 0)
 			continue;
+		const Point3d start = direction;
 		int tip = v;
 		for (int i = 0; i < mostSteps; ++i) {
 			const Point3d x = skeleton.position[tip];
@@ -103,12 +105,14 @@ inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, c
 			// The branch may bend, but turns slowly: a quarter of the way in each step.
 			direction = direction * 0.75 + (y - x) * (0.25 / s);
 			direction /= direction.Norm();
+			if (direction * start < std::cos(farthestTurn))
+				break;
 			tip = next;
 		}
 	}
 	std::sort(skeleton.edges.begin(), skeleton.edges.end());
 }
 
-} // namespace vcg::tri::mcf::detail
+} // namespace vcg::tri::mcf::refining
 
 #endif
