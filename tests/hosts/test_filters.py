@@ -114,8 +114,8 @@ class TestResample:
 
 
 class TestPoles:
-    @pytest.mark.parametrize("method", ["voronoi", "balls"])
-    def test_poles_of_a_torus_lie_on_its_circle(self, method):
+    @pytest.mark.parametrize("method, tolerance", [("voronoi", 0.05), ("balls", 0.3)])
+    def test_poles_of_a_torus_lie_on_its_circle(self, method, tolerance):
         layers = opened("torus")
         record = json.loads((MESHES / "torus.json").read_text())
         results = layers.apply_filter(POLES, pole_method=method)
@@ -128,9 +128,9 @@ class TestPoles:
         circle = np.array(record["skeleton"]["nodes"])
         tube = np.mean(record["skeleton"]["radius"])
         distance = np.linalg.norm(pole[has][::20, None] - circle[None], axis=2).min(axis=1)
-        assert np.percentile(distance, 90) < 0.25 * tube
-        assert distance.max() < 0.5 * tube
-        assert np.median(radius[has]) == pytest.approx(tube, rel=0.02)
+        assert np.percentile(distance, 95) < tolerance * tube
+        assert distance.max() < tube
+        assert np.median(radius[has]) == pytest.approx(tube, rel=0.2 * tolerance)
 
     def test_written_in_place_and_the_layer_stays_current(self):
         layers = opened("torus")
