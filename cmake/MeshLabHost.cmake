@@ -43,7 +43,8 @@ add_library(meshlab_host INTERFACE)
 target_include_directories(meshlab_host SYSTEM INTERFACE "${MESHLAB_SRC}/src" "${GLEW_INCLUDE_DIR}")
 target_compile_definitions(meshlab_host INTERFACE
 	MESHLAB_SCALAR=${MESHLAB_SCALAR} MESHLAB_VERSION=${MESHLAB_VERSION}
-	MCFSKEL_HOST_API=${MESHLAB_API})
+	MCFSKEL_HOST_API=${MESHLAB_API}
+	MCFSKEL_PYTHON_HOST=$<STREQUAL:${MESHLAB_HOST},pymeshlab>)
 target_link_libraries(meshlab_host INTERFACE
 	vcg -Wl,--no-as-needed meshlab_common_stub -Wl,--as-needed
 	Qt5::Core Qt5::Gui Qt5::Widgets Qt5::OpenGL Qt5::Xml)

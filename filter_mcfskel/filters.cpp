@@ -64,6 +64,9 @@ const std::vector<FilterSpec>& catalogue()
 		contractionStepFilter(),
 		collapseToCurveFilter(),
 		fullSkeletonizeFilter(),
+		saveStageFilter(),
+		loadStageFilter(),
+		saveSkeletonFilter(),
 	};
 	return filters;
 }
@@ -74,7 +77,7 @@ Outcome runFilter(const FilterSpec& filter, MeshDocument& document,
 {
 	Outcome outcome;
 	try {
-		if (!document.mm())
+		if (filter.needsLayer && !document.mm())
 			throw vcg::tri::mcf::InvalidInput(
 				"There is no layer: open a closed triangle mesh first.");
 		FilterRun run {document, parameters, log, hostProgress(callback)};

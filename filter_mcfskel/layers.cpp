@@ -244,7 +244,7 @@ QString baseName(QString name)
 {
 	static const QRegularExpression copyNumber("\\(\\d+\\)$");
 	static const QRegularExpression fileType("\\.[A-Za-z0-9]{1,5}$");
-	static const QRegularExpression appended("_(resampled|meso_\\d+|skeleton|refined|poles)$");
+	static const QRegularExpression appended("_(resampled|meso_\\d+|skeleton|refined|poles|pruned|smoothed|medial|balls)$");
 	name.remove(copyNumber);
 	name.remove(fileType);
 	name.remove(appended);
@@ -400,6 +400,63 @@ SurfaceLink linkTo(const MeshModel& layer, const SurfaceLayer& surface)
 	return {layer.id(), fingerprint(layer.cm), surface.vertexOfSlot};
 }
 
+namespace {
+
+void fillSurface(MeshModel& layer, const mcf::SurfaceMesh& mesh)
+{
+	addVertices(layer, mesh.position);
+	const std::vector<mcf::Triangle> triangles = mesh.triangles();
+	auto face = Allocator::AddFaces(layer.cm, triangles.size());
+	for (const mcf::Triangle& triangle : triangles) {
+		for (int k = 0; k < 3; ++k)
+			face->V(k) = &layer.cm.vert[size_t(triangle[size_t(k)])];
+		++face;
+	}
+	host::updateBoxAndNormals(layer);
+}
+
+void fillCurve(MeshModel& layer, const std::vector<vcg::Point3d>& nodes,
+	const std::vector<std::array<int, 2>>& edges, const std::vector<double>& radius)
+{
+	addVertices(layer, nodes);
+	auto edge = Allocator::AddEdges(layer.cm, edges.size());
+	for (const std::array<int, 2>& ends : edges) {
+		for (int k = 0; k < 2; ++k)
+			edge->V(k) = &layer.cm.vert[size_t(ends[size_t(k)])];
+		++edge;
+	}
+	if (!radius.empty()) {
+		writeScalars(layer, radiusAttribute, radius);
+		writeQuality(layer, radius);
+	}
+	host::updateBoxAndNormals(layer);
+}
+
+void fillStage(
+	MeshModel& layer, std::shared_ptr<const mcf::Stage> stage, const SurfaceLink& surface)
+{
+	fillSurface(layer, stage->mesh);
+	const std::vector<double> radius = mcf::stageRadius(*stage);
+	writePoints(layer, poleAttribute, stage->pole);
+	writeScalars(layer, poleRadiusAttribute, stage->poleRadius);
+	writeScalars(layer, fixedAttribute, {stage->fixed.begin(), stage->fixed.end()});
+	writeScalars(layer, radiusAttribute, radius);
+	writeQuality(layer, radius);
+	LayerState state;
+	state.stage = {std::move(stage), surface};
+	setState(layer, std::move(state));
+}
+
+} // namespace
+
+void fillCurve(MeshModel& layer, const CurveLayer& curve)
+{
+	fillCurve(layer, curve.skeleton.position, curve.skeleton.edges, curve.skeleton.radius);
+	LayerState state;
+	state.curve = std::make_shared<const CurveLayer>(curve);
+	setState(layer, std::move(state));
+}
+
 SurfaceLink linkTo(
 	const MeshDocument& document, std::uint64_t wanted, std::vector<int> vertexOfSlot)
 {
@@ -455,19 +512,6 @@ MeshModel& DocumentEdit::addSurface(
 	return layer;
 }
 
-void DocumentEdit::fillSurface(MeshModel& layer, const mcf::SurfaceMesh& mesh)
-{
-	addVertices(layer, mesh.position);
-	const std::vector<mcf::Triangle> triangles = mesh.triangles();
-	auto face = Allocator::AddFaces(layer.cm, triangles.size());
-	for (const mcf::Triangle& triangle : triangles) {
-		for (int k = 0; k < 3; ++k)
-			face->V(k) = &layer.cm.vert[size_t(triangle[size_t(k)])];
-		++face;
-	}
-	host::updateBoxAndNormals(layer);
-}
-
 MeshModel& DocumentEdit::addPoints(
 	const MeshModel& source, const QString& label, const std::vector<vcg::Point3d>& points)
 {
@@ -501,31 +545,6 @@ MeshModel& DocumentEdit::addCurve(const QString& label, const CurveLayer& curve)
 	return layer;
 }
 
-void DocumentEdit::fillCurve(MeshModel& layer, const CurveLayer& curve)
-{
-	fillCurve(layer, curve.skeleton.position, curve.skeleton.edges, curve.skeleton.radius);
-	LayerState state;
-	state.curve = std::make_shared<const CurveLayer>(curve);
-	setState(layer, std::move(state));
-}
-
-void DocumentEdit::fillCurve(MeshModel& layer, const std::vector<vcg::Point3d>& nodes,
-	const std::vector<std::array<int, 2>>& edges, const std::vector<double>& radius)
-{
-	addVertices(layer, nodes);
-	auto edge = Allocator::AddEdges(layer.cm, edges.size());
-	for (const std::array<int, 2>& ends : edges) {
-		for (int k = 0; k < 2; ++k)
-			edge->V(k) = &layer.cm.vert[size_t(ends[size_t(k)])];
-		++edge;
-	}
-	if (!radius.empty()) {
-		writeScalars(layer, radiusAttribute, radius);
-		writeQuality(layer, radius);
-	}
-	host::updateBoxAndNormals(layer);
-}
-
 MeshModel& DocumentEdit::addStage(const MeshModel& source, const QString& label,
 	std::shared_ptr<const mcf::Stage> stage, const SurfaceLink& surface)
 {
@@ -540,21 +559,6 @@ MeshModel& DocumentEdit::addStage(
 	MeshModel& layer = addLayer(surface, label);
 	fillStage(layer, std::move(stage), surface);
 	return layer;
-}
-
-void DocumentEdit::fillStage(
-	MeshModel& layer, std::shared_ptr<const mcf::Stage> stage, const SurfaceLink& surface)
-{
-	fillSurface(layer, stage->mesh);
-	const std::vector<double> radius = mcf::stageRadius(*stage);
-	writePoints(layer, poleAttribute, stage->pole);
-	writeScalars(layer, poleRadiusAttribute, stage->poleRadius);
-	writeScalars(layer, fixedAttribute, {stage->fixed.begin(), stage->fixed.end()});
-	writeScalars(layer, radiusAttribute, radius);
-	writeQuality(layer, radius);
-	LayerState state;
-	state.stage = {std::move(stage), surface};
-	setState(layer, std::move(state));
 }
 
 void DocumentEdit::attachSurface(MeshModel& layer, const SurfaceLayer& surface)

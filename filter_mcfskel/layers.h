@@ -99,6 +99,9 @@ StageLayer readStage(const MeshModel& layer);
  */
 CurveLayer readCurve(const MeshModel& layer);
 
+/// Puts a skeleton into a new, empty layer.
+void fillCurve(MeshModel& layer, const CurveLayer& curve);
+
 /// The values of mcfskel_node on a surface layer, for each vertex; empty if it has none.
 std::vector<int> readNodes(const MeshModel& layer);
 
@@ -170,12 +173,6 @@ private:
 	MeshModel& addLayer(const MeshModel& source, const QString& label);
 	MeshModel& addLayer(const SurfaceLink& surface, const QString& label);
 	MeshModel& addLayer(const Matrix44m& frame, const QString& label);
-	void fillSurface(MeshModel& layer, const vcg::tri::mcf::SurfaceMesh& mesh);
-	void fillCurve(MeshModel& layer, const std::vector<vcg::Point3d>& nodes,
-		const std::vector<std::array<int, 2>>& edges, const std::vector<double>& radius);
-	void fillStage(MeshModel& layer, std::shared_ptr<const vcg::tri::mcf::Stage> stage,
-		const SurfaceLink& surface);
-	void fillCurve(MeshModel& layer, const CurveLayer& curve);
 
 	MeshDocument& document;
 	int previousLayer;

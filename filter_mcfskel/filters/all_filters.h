@@ -15,6 +15,9 @@ FilterSpec medialPolesFilter();
 FilterSpec contractionStepFilter();
 FilterSpec collapseToCurveFilter();
 FilterSpec fullSkeletonizeFilter();
+FilterSpec saveStageFilter();
+FilterSpec loadStageFilter();
+FilterSpec saveSkeletonFilter();
 
 } // namespace mcfskel
 

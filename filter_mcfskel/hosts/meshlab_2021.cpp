@@ -6,10 +6,31 @@
 #include "../io/formats.h"
 #include "translate.h"
 
+#if MCFSKEL_PYTHON_HOST
+#include <common/globals.h>
+#include <common/python/function_set.h>
+#endif
+
 using namespace mcfskel;
+
+namespace {
+
+/// pymeshlab.load_plugin() registers the formats of a plugin only if it has no filters.
+void registerFormats([[maybe_unused]] IOPlugin* plugin)
+{
+#if MCFSKEL_PYTHON_HOST
+	// While pymeshlab loads its own plugins at start, the registry is not to be touched: it is made
+	// from them afterwards, formats of ours included.
+	if (meshlab::pluginManagerInstance().isInputMeshFormatSupported("ply"))
+		pymeshlab::functionSetInstance().loadIOPlugin(plugin);
+#endif
+}
+
+} // namespace
 
 FilterMcfskelPlugin::FilterMcfskelPlugin()
 {
+	registerFormats(this);
 	for (int id = 0; id < int(catalogue().size()); ++id) {
 		typeList.push_back(id);
 		actionList.push_back(new QAction(filterName(id), this));

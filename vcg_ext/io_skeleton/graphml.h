@@ -14,13 +14,34 @@
 
 namespace vcg::tri::mcf {
 
+namespace detail {
+
+/// A text within an XML element.
+inline std::string xmlText(const std::string& text)
+{
+	std::string result;
+	for (char c : text)
+		switch (c) {
+		case '&': result += "&amp;"; break;
+		case '<': result += "&lt;"; break;
+		case '>': result += "&gt;"; break;
+		default: result += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+		}
+	return result;
+}
+
+} // namespace detail
+
 /**
  * Writes a skeleton as GraphML: nodes 0, 1, ... with the numbers x, y, z and radius (mesh units) and
- * the text surface_vertices (ids from 0, blanks between); edges with their length. What is not known
+ * the text surface_vertices (ids from 0, blanks between); edges with their length;
+ * the graph with the name of the surface. What is not known
  * is left out.
+ * @param surfaceName what the mesh is called whose vertices surface_vertices counts, in UTF-8.
  * @throws InvalidInput: see requireWritable().
  */
-inline void writeGraphml(std::ostream& out, const CurveSkeleton& skeleton)
+inline void writeGraphml(
+	std::ostream& out, const CurveSkeleton& skeleton, const std::string& surfaceName = "")
 {
 	requireWritable(skeleton);
 	const bool hasRadius = !skeleton.radius.empty(), hasSources = !skeleton.node.empty();
@@ -40,7 +61,13 @@ inline void writeGraphml(std::ostream& out, const CurveSkeleton& skeleton)
 	if (hasSources)
 		key("surface_vertices", "node", "string");
 	key("length", "edge", "double");
+	if (!surfaceName.empty())
+		key("surface", "graph", "string");
 	out << "  <graph id=\"skeleton\" edgedefault=\"undirected\">\n";
+	if (!surfaceName.empty()) {
+		data("surface", detail::xmlText(surfaceName));
+		out << '\n';
+	}
 
 	const std::vector<std::vector<int>> sources = sourceVertices(skeleton);
 	for (size_t v = 0; v < skeleton.position.size(); ++v) {

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file Whole files by their names, in any alphabet.
+
+#ifndef MCFSKEL_FILES_H
+#define MCFSKEL_FILES_H
+
+#include <skeleton/errors.h>
+
+#include <QString>
+
+#include <string>
+
+namespace mcfskel {
+
+/// A file cannot be read or written; the text names it and the system's reason.
+class FileError : public vcg::tri::mcf::Error
+{
+public:
+	using Error::Error;
+};
+
+/// @throws FileError
+std::string readFile(const QString& name);
+
+/// Replaces a file, or leaves it as it was. @throws FileError
+void writeFile(const QString& name, const std::string& content);
+
+} // namespace mcfskel
+
+#endif

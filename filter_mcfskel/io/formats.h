@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file The file formats of skeletons: which there are, and layers to files and back. The adapters in
+/// hosts/ offer them in the host's import and export; a new format is a header in io_skeleton/ and a
+/// line in skeletonFormats().
+
+#ifndef MCFSKEL_FORMATS_H
+#define MCFSKEL_FORMATS_H
+
+#include "../layers.h"
+
+#include <io_skeleton/skeleton_file.h>
+
+#include <wrap/io_trimesh/io_mask.h>
+
+#include <QString>
+#include <QStringList>
+
+#include <istream>
+#include <ostream>
+#include <vector>
+
+namespace mcfskel {
+
+struct SkeletonFormat
+{
+	QString extension;
+	QString description;
+	/// Whether the host's import and export list it. Not so where every host has a format of that
+	/// extension already, which it prefers.
+	bool offered;
+	/// Null if it is not written; returns warnings.
+	QStringList (*write)(
+		std::ostream&, const vcg::tri::mcf::CurveSkeleton&, const std::string& surfaceName);
+	/// Null if it is not read.
+	vcg::tri::mcf::SkeletonFile (*read)(std::istream&);
+
+	bool isWritten() const { return offered && write; }
+	bool isRead() const { return offered && read; }
+};
+
+const std::vector<SkeletonFormat>& skeletonFormats();
+
+/// What a file may hold, as the host asks for it.
+constexpr int writtenElements = vcg::tri::io::Mask::IOM_VERTCOORD
+	| vcg::tri::io::Mask::IOM_VERTQUALITY | vcg::tri::io::Mask::IOM_EDGEINDEX;
+
+/**
+ * Writes a skeleton to a file of the format that its name ends with.
+ * @param sources for each vertex of the surface's layer its node; empty: not known.
+ * @return warnings, a sentence each.
+ * @throws FileError, InvalidInput
+ */
+QStringList writeSkeleton(const QString& file, const vcg::tri::mcf::CurveSkeleton& skeleton,
+	const std::vector<int>& sources, const QString& surfaceName);
+
+/// How a reading or writing ended. No exception leaves the two functions below.
+struct FileOutcome
+{
+	/// Empty on success.
+	QString error;
+	QStringList warnings;
+	/// VCG's mask of what a file held.
+	int mask = 0;
+};
+
+/// Writes a skeleton layer.
+FileOutcome saveSkeleton(const QString& file, const MeshModel& layer);
+
+/// Reads a file into an empty layer, which stays empty after an error.
+FileOutcome openSkeleton(const QString& file, MeshModel& layer);
+
+} // namespace mcfskel
+
+#endif
