@@ -59,4 +59,5 @@ for argument in "$@"; do
 	-h | --help) exec "$python" "$ROOT/scripts/bench/bench.py" --help ;;
 	esac
 done
-exec "$python" "$ROOT/scripts/bench/bench.py" --programs "$(build_bench)" "$@"
+programs="$(build_bench)"
+exec "$python" "$ROOT/scripts/bench/bench.py" --programs "$programs" "$@"

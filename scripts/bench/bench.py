@@ -20,11 +20,13 @@ import subprocess
 import sys
 from pathlib import Path
 
+from document import write_docs
 from meshes import meshes_in, subdivided
-from programs import Outcome, Program, python_peers, run_interleaved
-from tables import contraction_table, quality_table, whole_table
+from programs import Program, python_peers, run_interleaved
+from tables import Rows, contraction_table, quality_table, stages_table, whole_table
 
 ROOT = Path(__file__).resolve().parents[2]
+TIMES = {"contraction": contraction_table, "whole": whole_table}
 
 
 def parse_arguments() -> argparse.Namespace:
@@ -37,7 +39,8 @@ def parse_arguments() -> argparse.Namespace:
     parser.add_argument("--json", type=Path, metavar="FILE", help="write all figures")
     parser.add_argument("--runs", type=int, default=3, help="of each program (default 3)")
     parser.add_argument(
-        "--subdivide", type=int, default=0, metavar="K", help="first cut each triangle into 4^K"
+        "--subdivide", type=int, nargs="+", default=[0], metavar="K",
+        help="cut each triangle into 4^K first, for each K",
     )
     parser.add_argument(
         "--threads", type=int, nargs="+", default=[1], metavar="N", help="a row for each number"
@@ -54,6 +57,10 @@ def parse_arguments() -> argparse.Namespace:
         "--no-peers", action="store_true", help="compare with CGAL only, not with PyGEL, skeletor"
     )
     parser.add_argument("--stages", action="store_true", help="time single stages instead")
+    parser.add_argument(
+        "--docs", action="store_true",
+        help="put the tables and the plot of the growth into docs/ (with --quality: those, too)",
+    )
     parser.add_argument(
         "--timeout", type=float, default=900, metavar="S", help="of one run (default 900)"
     )
@@ -115,6 +122,9 @@ def jobs(arguments: argparse.Namespace) -> dict[str, list[Program]]:
             for n in arguments.threads
         ]
         result["whole"] = [*ours, Program("cgal", (cgal,), ("--remesh", density))]
+        if arguments.quality:
+            options = ("--target-length", density, "--no-refine", *extra)
+            result["whole"].append(Program("ours, unrefined", (own,), options, repeats=False))
     return result
 
 
@@ -128,14 +138,16 @@ def run_stages(arguments: argparse.Namespace, meshes: list[Path]) -> int:
 def main() -> int:
     arguments = parse_arguments()
     work = ROOT / "build" / "bench" / "work"
-    meshes = arguments.meshes
-    if arguments.subdivide:
-        meshes = [subdivided(mesh, arguments.subdivide, work / "meshes") for mesh in meshes]
+    meshes = [
+        subdivided(mesh, times, work / "meshes") if times else mesh
+        for mesh in arguments.meshes
+        for times in arguments.subdivide
+    ]
     if arguments.stages:
         return run_stages(arguments, meshes)
 
     report: dict = {"machine": machine(), "meshes": []}
-    everything: dict[str, list[tuple[Path, list[Outcome]]]] = {}
+    everything: dict[str, Rows] = {}
     for job, programs in jobs(arguments).items():
         everything[job] = []
         for mesh in meshes:
@@ -146,19 +158,26 @@ def main() -> int:
             report["meshes"].append(
                 {"mesh": mesh.name, "job": job, "programs": [o.as_json() for o in outcomes]}
             )
-    if "contraction" in everything:
-        print("\n" + contraction_table(everything["contraction"]))
-    if "whole" in everything:
-        print("\n" + whole_table(everything["whole"], arguments.density))
-    if arguments.quality:
-        for job, rows in everything.items():
-            table, figures = quality_table(job, rows)
+    tables: dict[str, str] = {}
+    for job, rows in everything.items():
+        tables[job] = TIMES[job](rows)
+        tables[f"stages of {job}"] = stages_table(rows)
+        if arguments.quality:
+            tables[f"quality of {job}"], figures = quality_table(rows)
             report.setdefault("quality", {})[job] = figures
-            print("\n" + table)
+    for title, table in tables.items():
+        print(f"\n{title}\n\n{table}")
     if arguments.json:
         arguments.json.write_text(json.dumps(report, indent=1) + "\n")
-    failed = [o for rows in everything.values() for _, all_ in rows for o in all_
-              if o.error and o.program.label == "ours"]
+    if arguments.docs:
+        write_docs(ROOT / "docs", tables, everything, report["machine"], arguments.density)
+    failed = [
+        outcome
+        for rows in everything.values()
+        for _, outcomes in rows
+        for outcome in outcomes
+        if outcome.error and outcome.program.label.startswith("ours")
+    ]
     return 1 if failed else 0
 
 

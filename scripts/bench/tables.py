@@ -65,7 +65,7 @@ def ratio(theirs: Outcome | None, ours: Outcome, phases: tuple[str, ...], clock:
 
 
 def contraction_table(rows: Rows) -> str:
-    head = ["contraction of the mesh as it is", "vertices", "threads", "ours s", "CGAL s", "ratio",
+    head = ["mesh", "vertices", "threads", "ours s", "CGAL s", "ratio",
             "iterations", "CGAL", "ours MB", "CGAL MB"]
     peers = [name for name in ("pygel", "skeletor") if any(named(o, name) for _, o in rows)]
     body = []
@@ -84,8 +84,8 @@ def contraction_table(rows: Rows) -> str:
     return markdown(head + [f"{name} s" for name in peers], body)
 
 
-def whole_table(rows: Rows, density: float) -> str:
-    head = [f"whole job, edges of {density:g} %", "vertices", "CGAL", "threads",
+def whole_table(rows: Rows) -> str:
+    head = ["mesh", "vertices", "CGAL", "threads",
             "resample s", "CGAL", "skeleton s", "CGAL", "all s", "CGAL", "ratio",
             "ours MB", "CGAL MB"]
     body = []
@@ -105,22 +105,41 @@ def whole_table(rows: Rows, density: float) -> str:
     return markdown(head, body)
 
 
+STAGES = {
+    "check": "check", "resample": "resample", "poles": "poles", "contraction": "flow",
+    "conversion": "collapse", "refine": "refine",
+}
+
+
+def stages_table(rows: Rows) -> str:
+    """Where the time of this project's program goes, in milliseconds."""
+    head = ["mesh", "vertices", "threads", *(f"{label} ms" for label in STAGES.values())]
+    body = []
+    for mesh, outcomes in rows:
+        for ours in (o for o in outcomes if o.program.label == "ours" and o.reports):
+            times = [ours.seconds((stage,), clock_of(ours)) for stage in STAGES]
+            body.append([
+                mesh.stem, count(ours.median("vertices")), str(ours.program.threads),
+                *(number(1000.0 * t, 3) if t > 5e-6 else "-" for t in times),
+            ])
+    return markdown(head, body)
+
+
 MEASURES = ("medial", "reconstruction", "turning")
 
 
-def quality_table(job: str, rows: Rows) -> tuple[str, dict]:
+def quality_table(rows: Rows) -> tuple[str, dict]:
     """The table, and all measures by mesh and program."""
     from curve import read_curve
     from quality import Shape, measure
 
-    head = [f"quality, {job}", "program", "components", "cycles (genus)", "inside", "tips",
-            "junctions", "spurs", "medial %", "reconstruction %", "turning deg"]
+    head = ["mesh", "program", "components", "cycles (genus)", "inside", "tips", "junctions",
+            "spurs", "medial %", "reconstruction %", "turning deg"]
     body, figures = [], {}
-    quotients: dict[str, list[tuple[float, str]]] = {name: [] for name in MEASURES}
     for mesh, outcomes in rows:
         shape = Shape.read(mesh)
         axis = shape.medial_axis()
-        results = {}
+        results = figures[mesh.stem] = {}
         for outcome in outcomes:
             if outcome.error or outcome.program.label in results:
                 continue
@@ -132,18 +151,30 @@ def quality_table(job: str, rows: Rows) -> tuple[str, dict]:
                 str(result["tips"]), str(result["junctions"]), str(result["spurs"]),
                 *(number(result[name]) for name in MEASURES),
             ])
-        figures[mesh.stem] = results
-        if "ours" in results and "cgal" in results:
-            for name in MEASURES:
-                ours, theirs = results["ours"][name], results["cgal"][name]
-                if ours and theirs:
-                    quotients[name].append((ours / theirs, mesh.stem))
-    notes = []
-    for name, values in quotients.items():
-        if values:
-            mean = math.exp(sum(math.log(q) for q, _ in values) / len(values))
-            worst, where = max(values)
-            notes.append(
-                f"{name}: {mean:.2f} of CGAL's (geometric mean), {worst:.2f} at worst ({where})"
-            )
-    return "\n".join([markdown(head, body), "", *notes]), figures
+    summary = quotients_table(figures)
+    return markdown(head, body) + (f"\n\n{summary}" if summary else ""), figures
+
+
+def quotients_table(figures: dict) -> str:
+    """How this project's measures compare with CGAL's, over all meshes; less is better."""
+    body = []
+    for label in ("ours", "ours, unrefined"):
+        cells = [label]
+        for name in MEASURES:
+            quotients = [
+                (results[label][name] / results["cgal"][name], mesh)
+                for mesh, results in figures.items()
+                if label in results and "cgal" in results
+                and results[label][name] and results["cgal"][name]
+            ]
+            if not quotients:
+                break
+            mean = math.exp(sum(math.log(q) for q, _ in quotients) / len(quotients))
+            worst, where = max(quotients)
+            cells.append(f"{mean:.2f} ({worst:.2f}, {where})")
+        else:
+            body.append(cells)
+    if not body:
+        return ""
+    head = ["quotient to CGAL: geometric mean (worst)", *MEASURES]
+    return markdown(head, body)
