@@ -191,22 +191,28 @@ private:
 		return points;
 	}
 
+	/// Samples in rows parallel to the longest edge, that edge included, the corners left out.
 	void sampleInside(int face, double spacing, std::vector<Point3d>& points)
 	{
-		double longest = 0;
-		for (int k = 0; k < 3; ++k)
-			longest = std::max(longest, surface.squaredLength(3 * face + k));
-		const int pieces = int(std::ceil(std::sqrt(longest) / spacing));
-		const Point3d& a = surface.position[surface.origin(3 * face)];
-		const Point3d ab = surface.position[surface.origin(3 * face + 1)] - a;
-		const Point3d ac = surface.position[surface.origin(3 * face + 2)] - a;
-		for (int i = 0; i <= pieces; ++i)
-			for (int j = 0; i + j <= pieces; ++j) {
-				if ((i == 0) + (j == 0) + (i + j == pieces) > 1)
-					continue; // a corner
-				points.push_back(a + ab * (double(i) / pieces) + ac * (double(j) / pieces));
+		int base = 3 * face;
+		for (int h = base + 1; h < 3 * face + 3; ++h)
+			if (surface.squaredLength(h) > surface.squaredLength(base))
+				base = h;
+		const Point3d& a = surface.position[surface.origin(base)];
+		const Point3d ab = surface.position[surface.target(base)] - a;
+		const Point3d ac = surface.position[surface.apex(base)] - a;
+		const double length = ab.Norm();
+		if (length <= spacing)
+			return;
+		const int rows = std::max(1, int(std::ceil((ab ^ ac).Norm() / length / spacing)));
+		for (int row = 0; row < rows; ++row) {
+			const double up = double(row) / rows;
+			const int pieces = std::max(1, int(std::ceil((1 - up) * length / spacing)));
+			for (int i = row == 0 ? 1 : 0; i <= (row == 0 ? pieces - 1 : pieces); ++i) {
+				points.push_back(a + ac * up + ab * ((1 - up) * i / pieces));
 				faceOfSample.push_back(face);
 			}
+		}
 	}
 
 	/// Shrinks a ball by walking to the point deepest in it, until it holds.

@@ -47,7 +47,7 @@ struct RefineParameters
 	/// Rounds of centring with ten times that smoothness, which free curves that are caught on a
 	/// wrong sheet of the medial axis, then rounds with it before and after the tips are
 	/// extended; >= 0.
-	int stiffRounds = 6, rounds = 3, lastRounds = 2;
+	int stiffRounds = 6, rounds = 3, lastRounds = 4;
 	/// A tip is extended while the balls reach further by at least this part of the way; in (0, 1].
 	double tipGain = 0.2;
 	/// A tip's ball is no smaller than this when it has been extended; fraction of the diagonal, > 0.

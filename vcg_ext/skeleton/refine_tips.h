@@ -60,7 +60,8 @@ inline bool isCovered(const CurveSkeleton& skeleton, const Point3d& point)
  * Extends each tip along its direction, in steps of at most a quarter of its ball, each recentred
  * sideways, as long as the balls reach further by it: (step + r' - r) / step >= leastGain.
  * In a round end the ball shrinks as fast as the tip advances, and it stays; in a tapered or
- * pointed one it goes on to the least radius. None goes where another branch's balls are. A tip outside stays where it is.
+ * pointed one it goes on to the least radius. It never goes where balls are already, nor turns back.
+ * A tip outside stays where it is.
  * @pre radius holds the distances from the surface. @post the same.
  */
 inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, const TipRule& rule)
