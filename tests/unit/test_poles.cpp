@@ -367,7 +367,7 @@ TEST(VoronoiPoles, TellWhatQhullSaysWhenItFails)
 {
 	testing::internal::CaptureStderr();
 	try {
-		detail::delaunayCells(shapes::box().points, "qhull d QV999"); // there is no point 999
+		detail::delaunayTetrahedra(shapes::box().points, "qhull d QV999"); // there is no point 999
 		ADD_FAILURE() << "no exception";
 	}
 	catch (const SolverError& error) {

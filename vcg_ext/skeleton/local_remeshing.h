@@ -33,7 +33,8 @@ inline void mergeVertexState(Stage& stage, int removed, int survivor)
 		stage.poleRadius[survivor] = stage.poleRadius[removed];
 	}
 	stage.fixed[survivor] |= stage.fixed[removed];
-	stage.rank[survivor] = std::max(stage.rank[survivor], stage.rank[removed]);
+	if (!stage.rank.empty())
+		stage.rank[survivor] = std::max(stage.rank[survivor], stage.rank[removed]);
 }
 
 } // namespace detail
@@ -169,7 +170,8 @@ inline void splitWideAngles(Stage& stage, const Parameters& parameters, MergeFor
 		stage.poleRadius.push_back(-1);
 		stage.fixed.push_back(0);
 		stage.component.push_back(stage.component[a]);
-		stage.rank.push_back(-1);
+		if (!stage.rank.empty())
+			stage.rank.push_back(-1);
 		mesh.forEachOutgoing(m, [&](int e) {
 			queue.push(e);
 			queue.push(SurfaceMesh::next(e));
