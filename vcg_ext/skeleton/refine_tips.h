@@ -60,14 +60,14 @@ inline bool isCovered(const CurveSkeleton& skeleton, const Point3d& point)
  * Extends each tip along its direction, in steps of at most a quarter of its ball, each recentred
  * sideways, as long as the balls reach further by it: (step + r' - r) / step >= leastGain.
  * In a round end the ball shrinks as fast as the tip advances, and it stays; in a tapered or
- * pointed one it goes on to the least radius. It never goes where balls are already, nor turns back.
+ * pointed one it goes on to the least radius. It never goes farther than three radii, nor where balls
+ * are already, nor turns back: a sheet would lead it round its rim.
  * A tip outside stays where it is.
  * @pre radius holds the distances from the surface. @post the same.
  */
 inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, const TipRule& rule)
 {
-	constexpr int mostSteps = 400;
-	constexpr double farthestTurn = 50 * M_PI / 180;
+	constexpr double farthest = 3, farthestTurn = 50 * M_PI / 180;
 	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
 	const int count = int(neighbours.size());
 	for (int v = 0; v < count; ++v) {
@@ -77,8 +77,9 @@ inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, c
 		if (direction.SquaredNorm() == 0)
 			continue;
 		const Point3d start = direction;
+		double left = farthest * skeleton.radius[v];
 		int tip = v;
-		for (int i = 0; i < mostSteps; ++i) {
+		while (left > 0) {
 			const Point3d x = skeleton.position[tip];
 			const double r = skeleton.radius[tip];
 			const double step = std::min(rule.spacing, r / 4);
@@ -99,6 +100,7 @@ inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, c
 			if (reached < rule.leastRadius || s + reached - r < rule.leastGain * s
 				|| isCovered(skeleton, front) || !isSegmentInside(surface, x, r, y, reached))
 				break;
+			left -= s;
 			const int next = int(skeleton.position.size());
 			skeleton.position.push_back(y);
 			skeleton.radius.push_back(reached);
