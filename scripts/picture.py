@@ -36,17 +36,22 @@ def rotation(axis: np.ndarray, degrees: float) -> np.ndarray:
     return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
 
 
+def upward_axis(centred: np.ndarray) -> int:
+    """y, as most files have it, unless left and right seem to lie along y: then z."""
+    spread = np.maximum(centred.std(axis=0), 1e-300)
+    skewness = np.abs(np.mean((centred / spread) ** 3, axis=0))
+    return 2 if skewness[1] < 0.05 and skewness[2] > 2 * skewness[1] else 1
+
+
 def choose_view(vertices: np.ndarray, up: str, turn: float, tilt: float, pixels: int) -> View:
-    """Looks along the direction in which the shape is thinnest, turned a little for depth."""
+    """Looks along the level direction in which the shape is thinnest, turned a little for depth."""
     centred = vertices - vertices.mean(axis=0)
-    _, directions = np.linalg.eigh(centred.T @ centred)
-    towards = directions[:, 0]
-    up_axis = {"x": 0, "y": 1, "z": 2}.get(up, 1 if abs(towards[1]) < 0.8 else 2)
+    up_axis = "xyz".index(up) if up != "auto" else upward_axis(centred)
     upwards = np.eye(3)[up_axis]
-    if abs(towards @ upwards) > 0.8:
-        towards = directions[:, 1]
-    towards = towards - (towards @ upwards) * upwards
-    towards /= np.linalg.norm(towards)
+    level = np.delete(np.eye(3), up_axis, axis=0)
+    flat = centred @ level.T
+    _, directions = np.linalg.eigh(flat.T @ flat)
+    towards = directions[:, 0] @ level
     # A fixed side of the two, so that pictures of like shapes look alike.
     towards *= np.sign(towards[np.argmax(np.abs(towards))])
     towards = rotation(upwards, turn) @ towards

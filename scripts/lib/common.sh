@@ -6,6 +6,9 @@
 
 # shellcheck shell=bash
 
+# A failure inside $(...) is a failure.
+shopt -s inherit_errexit
+
 ROOT="$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)"
 # Downloads are shared by all checkouts, so they live outside of them.
 CACHE="${MCFSKEL_CACHE:-${XDG_CACHE_HOME:-$HOME/.cache}/mcfskel}"
