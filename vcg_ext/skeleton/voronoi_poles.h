@@ -19,6 +19,7 @@ extern "C" {
 #include <libqhull_r/qhull_ra.h>
 }
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -29,13 +30,8 @@ namespace vcg::tri::mcf {
 
 namespace detail {
 
-/// Delaunay cells: their circumcentres, which are the Voronoi vertices, and the samples on each sphere.
-struct DelaunayCells
-{
-	std::vector<Point3d> centre; ///< #C
-	std::vector<int> start;      ///< #C + 1, into samples
-	std::vector<int> samples;    ///< four a cell, more where cells are cospherical
-};
+/// The vertices of a Delaunay tetrahedron.
+using Tetrahedron = std::array<int, 4>;
 
 /// Qhull's state; frees its memory, also when an exception passes.
 class QhullRun
@@ -68,16 +64,17 @@ inline std::string firstParagraph(FILE* log)
 }
 
 /**
- * The Delaunay cells of the points, without those that reach out to a cube put around them.
+ * The Delaunay tetrahedra of the points, without those that reach out to a cube put around them.
  *
  * The corners of the cube bound the cells of the outermost points, and lend cospherical points,
- * which a sphere's are, the fourth dimension that the lifted points need.
+ * which a sphere's are, the fourth dimension that the lifted points need. Qhull moves the points a
+ * little (QJ): merging the facets of many cospherical points would take a time quadratic in them.
  * @pre the points lie in the cube of half side 1 around the origin, which leaves out NaN: Qhull does
  *      not survive it.
  * @throws SolverError with Qhull's own words.
  */
-inline DelaunayCells delaunayCells(
-	const std::vector<Point3d>& points, const char* command = "qhull d Q12")
+inline std::vector<Tetrahedron> delaunayTetrahedra(
+	const std::vector<Point3d>& points, const char* command = "qhull d QJ")
 {
 	constexpr double halfSide = 3;
 	const int count = int(points.size());
@@ -101,31 +98,35 @@ inline DelaunayCells delaunayCells(
 	if (status != 0)
 		throw SolverError("Qhull could not compute the Voronoi diagram (code "
 			+ std::to_string(status) + "): " + firstParagraph(log.get()));
-	DelaunayCells cells;
-	cells.start.push_back(0);
+	std::vector<Tetrahedron> tetrahedra;
 	facetT* facet;
 	vertexT *vertex, **vertexp;
 	FORALLfacets
 	{
 		if (facet->upperdelaunay)
 			continue;
-		bool reachesOut = false;
+		Tetrahedron tetrahedron;
+		size_t corners = 0;
 		FOREACHvertex_(facet->vertices)
 		{
 			const int id = qh_pointid(qh, vertex->point);
-			reachesOut = reachesOut || id >= count;
-			cells.samples.push_back(id);
+			if (id < count && corners < tetrahedron.size())
+				tetrahedron[corners++] = id;
 		}
-		if (reachesOut) {
-			cells.samples.resize(cells.start.back());
-			continue;
-		}
-		// The facet is the hyperplane n.(x, |x|^2) + o = 0 of the lifted points, a sphere around -n / (2 n3).
-		const coordT* n = facet->normal;
-		cells.centre.push_back(Point3d(n[0], n[1], n[2]) * (-0.5 / n[3]));
-		cells.start.push_back(int(cells.samples.size()));
+		if (corners == tetrahedron.size())
+			tetrahedra.push_back(tetrahedron);
 	}
-	return cells;
+	return tetrahedra;
+}
+
+/// The point at the same distance from all four corners; not finite for a flat tetrahedron.
+inline Point3d circumcentre(const Tetrahedron& t, const std::vector<Point3d>& points)
+{
+	const Point3d& o = points[t[0]];
+	const Point3d a = points[t[1]] - o, b = points[t[2]] - o, c = points[t[3]] - o;
+	const Point3d sum =
+		(b ^ c) * a.SquaredNorm() + (c ^ a) * b.SquaredNorm() + (a ^ b) * c.SquaredNorm();
+	return o + sum / (2 * (a * (b ^ c)));
 }
 
 /// A ball that is gone as soon as a sample is found in it.
@@ -149,19 +150,18 @@ private:
 };
 
 /**
- * Whether a cell's ball is what it claims to be: within the cube, through its samples, and empty.
- * Nearly co-circular neighbourhoods yield centres up to 1e16 diagonals away, and smaller errors.
+ * Whether c is a Voronoi vertex: near enough to be inside, and the centre of an empty ball through
+ * all four corners. Nearly co-circular neighbourhoods yield centres up to 1e16 diagonals away.
  */
-inline bool isDelaunayCell(const DelaunayCells& cells, size_t cell,
+inline bool isVoronoiVertex(const Point3d& c, const Tetrahedron& t,
 	const std::vector<Point3d>& samples, const PointTree& tree, double tolerance)
 {
-	const Point3d& c = cells.centre[cell];
 	for (int k = 0; k < 3; ++k)
 		if (!(std::abs(c[k]) <= 1))
 			return false;
-	const double radius = Distance(c, samples[cells.samples[cells.start[cell]]]);
-	for (int i = cells.start[cell]; i < cells.start[cell + 1]; ++i)
-		if (std::abs(Distance(c, samples[cells.samples[i]]) - radius) > tolerance)
+	const double radius = Distance(c, samples[t[0]]);
+	for (int v : t)
+		if (std::abs(Distance(c, samples[v]) - radius) > tolerance)
 			return false;
 	EmptyBall ball(c, radius - tolerance);
 	tree.search(ball);
@@ -198,15 +198,15 @@ inline PoleSet voronoiPoles(const SurfaceMesh& mesh, const Progress& progress = 
 	const std::vector<Point3d> normals = mesh.vertexNormals();
 	const PointTree tree(samples);
 	const InnerSegments segments(mesh, tree);
-	const detail::DelaunayCells cells = detail::delaunayCells(samples);
-	for (size_t cell = 0; cell < cells.centre.size(); ++cell) {
-		if (cell % 16384 == 0)
-			progress.report(0.8 + 0.2 * double(cell) / double(cells.centre.size()), what);
-		if (!detail::isDelaunayCell(cells, cell, samples, tree, tolerance))
+	const std::vector<detail::Tetrahedron> cells = detail::delaunayTetrahedra(samples);
+	for (size_t i = 0; i < cells.size(); ++i) {
+		if (i % 16384 == 0)
+			progress.report(0.8 + 0.2 * double(i) / double(cells.size()), what);
+		const Point3d c = detail::circumcentre(cells[i], samples);
+		if (!detail::isVoronoiVertex(c, cells[i], samples, tree, tolerance))
 			continue;
-		const Point3d centre = frame.out(cells.centre[cell]);
-		for (int i = cells.start[cell]; i < cells.start[cell + 1]; ++i) {
-			const int v = cells.samples[i];
+		const Point3d centre = frame.out(c);
+		for (int v : cells[i]) {
 			const double radius = Distance(centre, mesh.position[v]);
 			if (radius > poles.radius[v] && (centre - mesh.position[v]) * normals[v] < 0
 				&& segments.staysInside(v, centre, frame.lengthOut(tolerance))) {
