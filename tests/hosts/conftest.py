@@ -21,6 +21,16 @@ COLLAPSE = "generate_curve_skeleton_from_meso_mcf"
 FULL = "generate_curve_skeleton_mcf"
 
 
+# After a filter has failed, pymeshlab goes on writing its log into that document, and crashes if it is
+# gone: documents live as long as the tests.
+ALIVE: list[pymeshlab.MeshSet] = []
+
+
+def new_document() -> pymeshlab.MeshSet:
+    ALIVE.append(pymeshlab.MeshSet())
+    return ALIVE[-1]
+
+
 @pytest.fixture(scope="session", autouse=True)
 def plugin() -> Path:
     """Loads the plugin once: pymeshlab refuses to load a file twice."""
@@ -32,7 +42,7 @@ def plugin() -> Path:
 
 def opened(name: str) -> pymeshlab.MeshSet:
     """A document with one of the project's meshes."""
-    layers = pymeshlab.MeshSet()
+    layers = new_document()
     layers.load_new_mesh(str(MESHES / f"{name}.off"))
     return layers
 
@@ -46,7 +56,7 @@ def arrays(name: str) -> tuple[np.ndarray, np.ndarray]:
 
 def document(*meshes: tuple[Any, Any]) -> pymeshlab.MeshSet:
     """A document with layers made from (vertices, faces) and called mesh_0, mesh_1, ..."""
-    layers = pymeshlab.MeshSet()
+    layers = new_document()
     for i, (vertices, faces) in enumerate(meshes):
         vertices = np.asarray(vertices, float).reshape(-1, 3)
         faces = np.asarray(faces, int).reshape(-1, 3)
