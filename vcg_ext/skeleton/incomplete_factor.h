@@ -27,9 +27,10 @@ using FloatQuads = std::vector<FloatQuad, Eigen::aligned_allocator<FloatQuad>>;
  * Up-looking (Davis 2005): row k of L is the sparse solution of L y = S(0:k, k), found along the
  * elimination tree. Entries that contribute less than `dropTolerance` of their row's diagonal,
  * y_i^2 / d_i < dropTolerance^2 s_kk, are dropped as they appear. On the flow's matrices that leaves
- * a quarter of the full factor; S is a diagonally dominant M-matrix, so that pivots stay positive.
+ * a quarter of the full factor; S is a diagonally dominant M-matrix, so that pivots stay positive,
+ * but for rounding where the shift is tiny: they are kept above 1e-7 of the diagonal.
  *
- * @throws SolverError if a pivot is not positive.
+ * @throws SolverError if a diagonal entry is not positive, or something is not a number.
  * Complexity: linear in the visited part of the full factor, about O(n log n) on surface meshes in
  * a minimum degree order.
  */
@@ -96,10 +97,11 @@ public:
 				chunks[lastChunk[i]].value[slot] = yi * inverseDiagonal[i];
 				++lengths[i];
 			}
-			if (!(pivot > 0))
-				throw SolverError("The contraction's linear system could not be factorised: the mesh "
-								  "has degenerate triangles. Resample it first.");
-			inverseDiagonal[k] = 1 / pivot;
+			if (!(own > 0) || std::isnan(pivot))
+				throw SolverError(
+					"The contraction's linear system could not be factorised: the mesh "
+					"has degenerate triangles. Resample it first.");
+			inverseDiagonal[k] = 1 / std::max(pivot, 1e-7f * own);
 		}
 		flatten(chunks, firstChunk, lengths);
 	}

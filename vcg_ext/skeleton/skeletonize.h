@@ -24,8 +24,10 @@ namespace vcg::tri::mcf {
 /**
  * One iteration of the loop of Fig. 4: weights and contraction, then connectivity, then degeneracy.
  *
- * Convergence: in every component the area changed by less than 1e-4 of the surface's area; the
- * volume is then below 1e-4 of the surface's. A converged stage stays as it is.
+ * Convergence: in every component the area changed by less than 1e-4 of the surface's area, and there
+ * is nothing left to contract: less than 5 % of the volume (in the end it is some 1e-5), or most
+ * vertices are fixed (a body thinner than epsilon keeps its volume). The area alone would take a flow
+ * for finished that a large w_H makes slow. A converged stage stays as it is.
  * @return the next stage; the given one is not changed.
  * @throws SolverError, InvalidParameter, Cancelled.
  */
@@ -73,6 +75,7 @@ inline Stage step(Stage stage, const Parameters& parameters, const Progress& pro
 		stage.converged &= std::abs(area[c] - stage.area[c]) < settled * stage.initialArea[c];
 	stage.area = area;
 	stage.volume = mesh.volume();
+	stage.converged &= stage.volumeFraction() < 0.05 || stage.fixedFraction() > 0.5;
 	++stage.iteration;
 	return stage;
 }
@@ -95,6 +98,7 @@ inline Stage contractToSkeleton(Stage stage, const Parameters& parameters,
 		if (onStage)
 			onStage(stage);
 	}
+	progress.report(1, "Contracting");
 	return stage;
 }
 
