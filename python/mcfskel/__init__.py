@@ -1,0 +1,13 @@
+# SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Curve skeletons of surfaces by mean curvature flow.
+
+Importing this package loads the plugin into pymeshlab and makes its filters methods of
+``pymeshlab.MeshSet``; :data:`FILTERS` lists them. :func:`skeletonize` goes from arrays to a
+:class:`Skeleton` in one call.
+"""
+
+from ._plugin import FILTERS, PLUGIN
+from ._skeleton import Skeleton, SkeletonError, load, skeletonize
+
+__all__ = ["FILTERS", "PLUGIN", "Skeleton", "SkeletonError", "load", "skeletonize"]
