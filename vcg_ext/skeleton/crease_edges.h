@@ -77,7 +77,7 @@ public:
 			return role;
 		role.assign(surface.vertexSlots(), CreaseRole::Smooth);
 		for (int h = 0; h < surface.halfEdgeSlots(); ++h)
-			if (marks[h])
+			if (marks[h] && surface.isHalfEdge(h))
 				role[surface.origin(h)] = roleAt(surface, h);
 		return role;
 	}

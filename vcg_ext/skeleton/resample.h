@@ -27,7 +27,7 @@ namespace vcg::tri::mcf {
  *
  * Each round splits edges longer than 4/3 L, collapses those shorter than 4/5 L, flips edges so
  * that valences approach six, and moves vertices within the surface to the centroid of their
- * triangles. Vertices lie on the triangles of the input, those of creases (sharp edges over 60
+ * triangles. Delaunay flips and one more smoothing end it. Vertices lie on the triangles of the input, those of creases (sharp edges over 60
  * degrees in long chains) on the creases. A surface much denser than L is coarsened first.
  *
  * Genus, orientation, and the number and order of the components are those of the input.
@@ -87,7 +87,9 @@ inline SurfaceMesh resample(const SurfaceMesh& surface,
 		remesher.flipForValence(round.part(0.4, 0.5));
 		remesher.smoothAndProject(round.part(0.5, 1));
 	}
-	remesher.flipForAngles(progress.part(0.95, 1));
+	remesher.flipForAngles(progress.part(0.95, 0.96));
+	remesher.smoothAndProject(progress.part(0.96, 0.99));
+	remesher.flipForAngles(progress.part(0.99, 1));
 	return remesher.take();
 }
 

@@ -78,12 +78,13 @@ void coarsenInStages(SurfaceMesh& mesh, LengthAt&& lengthAt, Allowed&& allowed, 
 } // namespace detail
 
 /**
- * Merges edges shorter than `length` until few are left: the vertices that remain are a subset of
- * those of the input, where they were, and the topology is the same.
+ * Merges edges shorter than a length: the vertices that remain are a subset of those of the input,
+ * where they were, and the topology is the same.
  *
  * An edge is merged into one of its ends if the link condition holds, no triangle turns by more
- * than 70 degrees, and no edge longer than about 1.7 lengths appears. It is done in stages of
- * growing length, which keeps the triangles well shaped.
+ * than 70 degrees, and no edge longer than about 1.7 lengths appears. That is why a quarter of the
+ * edges that remain are still shorter, few by more than half. It is done in stages of growing
+ * length, which keeps the triangles well shaped.
  *
  * @param mesh      becomes coarser in place; its numbering keeps holes, see SurfaceMesh::compact().
  * @param lengthAt  double(vertex): the length below which edges are merged, mesh units.

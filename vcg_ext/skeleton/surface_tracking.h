@@ -46,14 +46,14 @@ inline TrianglePoint closestOnTriangle(
 	if (abB >= 0 && acB <= abB)
 		return at(b, 1);
 	const double areaC = abA * acB - abB * acA;
-	if (areaC <= 0 && abA >= 0 && abB <= 0)
+	if (areaC <= 0 && abA >= 0 && abB <= 0 && abA > abB)
 		return along(a, b, abA, abA - abB, 3);
 	const Point3d cq = q - c;
 	const double abC = ab * cq, acC = ac * cq;
 	if (acC >= 0 && abC <= acC)
 		return at(c, 2);
 	const double areaB = abC * acA - abA * acC;
-	if (areaB <= 0 && acA >= 0 && acC <= 0)
+	if (areaB <= 0 && acA >= 0 && acC <= 0 && acA > acC)
 		return along(a, c, acA, acA - acC, 5);
 	const double areaA = abB * acC - abC * acB;
 	if (areaA <= 0 && acB >= abB && abC >= acC)

@@ -9,9 +9,8 @@
 #include "surface_mesh.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <vector>
+#include <functional>
 
 namespace vcg::tri::mcf {
 
@@ -21,21 +20,34 @@ namespace detail {
 /// length that matters there.
 constexpr double thinness = 1e-3;
 
-/// Whether triangle f is thin where edges of `length` matter; `longest` becomes its longest
-/// half-edge and `shortest` its shortest one.
-inline bool isThin(const SurfaceMesh& mesh, int f, double length, int& shortest, int& longest)
+inline bool isThin(const Point3d& a, const Point3d& b, const Point3d& c, double length)
 {
-	std::array<double, 3> squared;
-	for (int k = 0; k < 3; ++k)
-		squared[k] = mesh.squaredLength(3 * f + k);
-	shortest = int(std::min_element(squared.begin(), squared.end()) - squared.begin());
-	longest = int(std::max_element(squared.begin(), squared.end()) - squared.begin());
-	// height = 2 area / longest edge
-	const double limit =
-		thinness * thinness * squared[longest] * std::min(squared[longest], length * length);
-	shortest += 3 * f;
-	longest += 3 * f;
-	return mesh.areaVector(f).SquaredNorm() <= limit;
+	const double longest =
+		std::max({SquaredDistance(a, b), SquaredDistance(b, c), SquaredDistance(c, a)});
+	// height = |(b - a) x (c - a)| / longest edge
+	return ((b - a) ^ (c - a)).SquaredNorm()
+		<= thinness * thinness * longest * std::min(longest, length * length);
+}
+
+/// The half-edge of triangle f that is least by `less`, which compares squared lengths.
+template <class Less>
+int extremeEdge(const SurfaceMesh& mesh, int f, Less&& less)
+{
+	int best = 3 * f;
+	for (int h = 3 * f + 1; h < 3 * f + 3; ++h)
+		if (less(mesh.squaredLength(h), mesh.squaredLength(best)))
+			best = h;
+	return best;
+}
+
+/// Whether a flip of h, the longest edge of a thin triangle, makes things better: it shortens the
+/// edge, so that flips come to an end, or none of the two new triangles is thin.
+inline bool flipCuresCap(const SurfaceMesh& mesh, int h, double length)
+{
+	const Point3d &a = mesh.position[mesh.origin(h)], &b = mesh.position[mesh.target(h)];
+	const Point3d &c = mesh.position[mesh.apex(h)], &d = mesh.position[mesh.apex(mesh.twin(h))];
+	return SquaredDistance(c, d) < SquaredDistance(a, b)
+		|| !(isThin(d, c, a, length) || isThin(c, d, b, length));
 }
 
 } // namespace detail
@@ -60,23 +72,24 @@ int removeThinTriangles(SurfaceMesh& mesh, LengthAt&& lengthAt)
 		left = 0;
 		bool changed = false;
 		for (int f = 0; f < mesh.faceSlots(); ++f) {
-			int shortest, longest;
-			if (!mesh.isFace(f)
-				|| !detail::isThin(mesh, f, lengthAt(mesh.origin(3 * f)), shortest, longest))
+			if (!mesh.isFace(f))
+				continue;
+			const Triangle t = mesh.triangle(f);
+			const double length = lengthAt(t[0]);
+			if (!detail::isThin(
+					mesh.position[t[0]], mesh.position[t[1]], mesh.position[t[2]], length))
 				continue;
 			++left;
-			const double length =
-				std::min(std::sqrt(mesh.squaredLength(longest)), lengthAt(mesh.origin(longest)));
-			if (std::sqrt(mesh.squaredLength(shortest)) <= 2 * detail::thinness * length) {
+			const int shortest = detail::extremeEdge(mesh, f, std::less<double>());
+			const int longest = detail::extremeEdge(mesh, f, std::greater<double>());
+			const double matters = std::min(std::sqrt(mesh.squaredLength(longest)), length);
+			if (std::sqrt(mesh.squaredLength(shortest)) <= 2 * detail::thinness * matters) {
 				if (!mesh.isCollapsible(shortest))
 					continue;
 				mesh.collapse(shortest);
 			}
 			else {
-				// Each flip shortens an edge: this ends.
-				const double other = SquaredDistance(mesh.position[mesh.apex(longest)],
-					mesh.position[mesh.apex(mesh.twin(longest))]);
-				if (other >= mesh.squaredLength(longest) || !mesh.isFlippable(longest))
+				if (!detail::flipCuresCap(mesh, longest, length) || !mesh.isFlippable(longest))
 					continue;
 				mesh.flip(longest);
 			}
