@@ -1,0 +1,208 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Skeletonizes every mesh of a folder, on this machine or on a Dask cluster.
+
+Each mesh is done in a process of its own: a mesh that is refused, or that takes its process down,
+costs nobody else anything. The table RESULTS/results.csv has a line for each mesh that was tried; a
+second run goes on with the others, and with --retry tries those again that did not go well.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from pathlib import Path
+from typing import Any
+
+MESHES = {".off", ".ply", ".obj", ".stl"}
+FORMATS = ("swc", "cg", "graphml", "json", "ply")
+COLUMNS = ("mesh", "status", "seconds", "skeleton_vertices", "branches", "components", "cycles",
+           "skeleton_length", "converged", "error")
+#: The first argument of the process that does one mesh.
+CHILD = "--child"
+Row = dict[str, Any]
+
+
+def parse_arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=Path, help="folder of closed triangle meshes: "
+                                                  + ", ".join(sorted(MESHES)))
+    parser.add_argument("results", type=Path, help="folder for the skeletons and the table")
+    parser.add_argument("--formats", nargs="+", choices=FORMATS, default=["json"],
+                        help="formats of the skeletons (json)")
+    parser.add_argument("--option", action="append", default=[], metavar="NAME=VALUE",
+                        help="an option of mcfskel.skeletonize(), such as target_length=1%% or w_m=20")
+    parser.add_argument("--workers", type=int, default=os.cpu_count() or 1,
+                        help="meshes at a time on this machine (the number of processors)")
+    parser.add_argument("--timeout", type=float, default=600, metavar="SECONDS",
+                        help="a mesh that takes longer is given up (600)")
+    parser.add_argument("--scheduler", metavar="ADDRESS",
+                        help="of a Dask cluster that does the work, such as tcp://host:8786; its "
+                             "workers need mcfskel, trimesh and the same folders")
+    parser.add_argument("--retry", action="store_true", help="do the meshes that failed again")
+    arguments = parser.parse_args()
+    if not arguments.folder.is_dir():
+        parser.error(f"there is no folder '{arguments.folder}'")
+    if arguments.workers < 1:
+        parser.error("--workers must be at least 1")
+    try:
+        arguments.options = {name: option_value(text) for name, _, text in
+                             (option.partition("=") for option in arguments.option)}
+    except ValueError as error:
+        parser.error(f"--option: {error}")
+    return arguments
+
+
+def option_value(text: str) -> Any:
+    """A number, true or false, a length such as 1%, or a word."""
+    if text.lower() in ("true", "false"):
+        return text.lower() == "true"
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            pass
+    if not text:
+        raise ValueError("expected NAME=VALUE")
+    return text
+
+
+def do_mesh(mesh: str, target: str, formats: list[str], options: dict[str, Any]) -> Row:
+    """Does one mesh; runs in a process of its own."""
+    import mcfskel
+    import trimesh
+
+    skeleton = mcfskel.skeletonize(trimesh.load(mesh, force="mesh"), **options)
+    for kind in formats:
+        skeleton.save(f"{target}.{kind}")
+    return {name: skeleton.results[name] for name in COLUMNS if name in skeleton.results}
+
+
+def child(job: str, answer: str) -> None:
+    """What the process of one mesh runs: a job from a file, its row into another."""
+    try:
+        row = {"status": "ok"} | do_mesh(*json.loads(Path(job).read_text()))
+    except Exception as error:  # whatever it is, it becomes a line of the table
+        row = {"status": "failed", "error": str(error) or type(error).__name__}
+    Path(answer).write_text(json.dumps(row))
+
+
+def in_own_process(mesh: str, target: str, formats: list[str], options: dict[str, Any],
+                   timeout: float) -> Row:
+    """Does one mesh in a new process, and lives on whatever becomes of that."""
+    start = time.monotonic()
+    with tempfile.TemporaryDirectory() as folder:
+        job, answer = Path(folder, "job"), Path(folder, "answer")
+        job.write_text(json.dumps([mesh, target, formats, options]))
+        try:
+            run = subprocess.run([sys.executable, __file__, CHILD, str(job), str(answer)],
+                                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=timeout)
+            if answer.is_file():
+                row = json.loads(answer.read_text())
+            else:
+                row = {"status": "crashed", "error": f"the process ended with {run.returncode}"}
+        except subprocess.TimeoutExpired:
+            row = {"status": "failed", "error": f"given up after {timeout:g} seconds"}
+    return {"mesh": mesh, "seconds": f"{time.monotonic() - start:.2f}"} | row
+
+
+def run_here(jobs: list[tuple], workers: int) -> Iterator[Row]:
+    """The rows of all jobs as they come; each thread waits for one process at a time."""
+    with ThreadPoolExecutor(workers) as pool:
+        for future in as_completed([pool.submit(in_own_process, *job) for job in jobs]):
+            yield future.result()
+
+
+def run_on_cluster(jobs: list[tuple], address: str) -> Iterator[Row]:
+    """The same on the workers of a Dask cluster; what a lost worker did not finish, another does."""
+    from distributed import Client
+    from distributed import as_completed as completed
+
+    with Client(address) as client:
+        client.upload_file(__file__)
+        futures = [client.submit(on_worker, job, pure=False) for job in jobs]
+        names = {future.key: job[0] for future, job in zip(futures, jobs)}
+        for future in completed(futures):
+            error = future.exception()
+            yield future.result() if error is None else {
+                "mesh": names[future.key], "status": "crashed", "seconds": "",
+                "error": f"{type(error).__name__}: {error}"}
+
+
+def on_worker(job: tuple) -> Row:
+    """Runs on a worker, in the copy of this file that it was sent."""
+    import skeletonize_folder
+
+    return skeletonize_folder.in_own_process(*job)
+
+
+def rows_of(table: Path) -> list[Row]:
+    if not table.is_file():
+        return []
+    with open(table, newline="", encoding="utf-8") as lines:
+        # A run that was interrupted may have left half a line.
+        return [row for row in csv.DictReader(lines) if row["mesh"] and row["status"]]
+
+
+def summary(rows: list[Row]) -> str:
+    """The table as text."""
+    lines = [f"{'mesh':32} {'status':8} {'seconds':>8} {'nodes':>6} {'branches':>8} {'cycles':>6}"]
+    for row in sorted(rows, key=lambda row: row["mesh"]):
+        numbers = " ".join(f"{row.get(name) or '-':>{width}}" for name, width in
+                           [("skeleton_vertices", 6), ("branches", 8), ("cycles", 6)])
+        line = f"{Path(row['mesh']).name:32.32} {row['status']:8} {row['seconds']:>8} {numbers}"
+        lines.append(line + (f"  {row['error']}" if row.get("error") else ""))
+    return "\n".join(lines)
+
+
+def main() -> int:
+    arguments = parse_arguments()
+    from tqdm import tqdm
+
+    arguments.results.mkdir(parents=True, exist_ok=True)
+    table = arguments.results / "results.csv"
+    done = {row["mesh"]: row for row in rows_of(table)
+            if row["status"] == "ok" or not arguments.retry}
+    meshes = sorted(str(path.resolve()) for path in arguments.folder.iterdir()
+                    if path.suffix.lower() in MESHES)
+    jobs = [(mesh, str(arguments.results.resolve() / Path(mesh).name), arguments.formats,
+             arguments.options, arguments.timeout) for mesh in meshes if mesh not in done]
+    if not meshes:
+        print(f"error: no meshes in '{arguments.folder}'", file=sys.stderr)
+        return 1
+
+    with open(table.with_suffix(".part"), "w", newline="", encoding="utf-8") as kept:
+        writer = csv.DictWriter(kept, COLUMNS, extrasaction="ignore")
+        writer.writeheader()
+        writer.writerows(done.values())
+    os.replace(table.with_suffix(".part"), table)
+    with open(table, "a", newline="", encoding="utf-8") as lines, \
+            tqdm(total=len(meshes), initial=len(meshes) - len(jobs), unit="mesh") as bar:
+        writer = csv.DictWriter(lines, COLUMNS, extrasaction="ignore")
+        for row in (run_on_cluster(jobs, arguments.scheduler) if arguments.scheduler
+                    else run_here(jobs, arguments.workers)):
+            writer.writerow(row)
+            lines.flush()  # what is done stays done if this run is interrupted
+            done[row["mesh"]] = row
+            bar.set_postfix_str(Path(row["mesh"]).name, refresh=False)
+            bar.update()
+    rows = [row for mesh, row in done.items() if mesh in set(meshes)]
+    print(summary(rows))
+    return 0 if all(row["status"] == "ok" for row in rows) else 1
+
+
+if __name__ == "__main__":
+    if sys.argv[1:2] == [CHILD]:
+        child(*sys.argv[2:])
+        sys.exit()
+    sys.exit(main())

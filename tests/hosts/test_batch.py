@@ -1,0 +1,171 @@
+# SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The example that does a folder of meshes: bad ones, crashes, going on, and a Dask cluster."""
+
+import csv
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from conftest import MESHES, ROOT
+
+SCRIPT = ROOT / "examples" / "skeletonize_folder.py"
+COARSE = ["--option", "target_length=1.2%"]
+
+
+@pytest.fixture
+def environment(plugin) -> dict[str, str]:
+    """The package straight from the checkout, with the plugin under test."""
+    return os.environ | {"MCFSKEL_PLUGIN": str(plugin), "PYTHONPATH": str(ROOT / "python")}
+
+
+@pytest.fixture
+def folder(tmp_path) -> Path:
+    """Three good meshes and one with a hole."""
+    folder = tmp_path / "meshes"
+    folder.mkdir()
+    for name in ["torus", "capsule", "animal450"]:
+        shutil.copy(MESHES / f"{name}.off", folder)
+    lines = (MESHES / "torus.off").read_text().splitlines()
+    counts = lines[1].split()
+    lines[1] = f"{counts[0]} {int(counts[1]) - 1} 0"
+    (folder / "open.off").write_text("\n".join(lines[:-1]) + "\n")
+    (folder / "notes.txt").write_text("no mesh")
+    return folder
+
+
+def run(folder: Path, *arguments: str, env: dict[str, str], **more) -> subprocess.CompletedProcess:
+    return subprocess.run([sys.executable, str(SCRIPT), str(folder), str(folder.parent / "out"),
+                           *COARSE, *arguments], env=env, capture_output=True, text=True, timeout=240,
+                          **more)
+
+
+def table(folder: Path) -> dict[str, dict[str, str]]:
+    with open(folder.parent / "out" / "results.csv", newline="") as lines:
+        rows = list(csv.DictReader(lines))
+    assert len({row["mesh"] for row in rows}) == len(rows), "a mesh is in the table once"
+    return {Path(row["mesh"]).stem: row for row in rows}
+
+
+def test_a_bad_mesh_costs_the_others_nothing(folder, environment):
+    done = run(folder, "--workers", "2", "--formats", "json", "swc", env=environment)
+    assert done.returncode == 1, "a mesh failed"
+    rows = table(folder)
+    assert {name: row["status"] for name, row in rows.items()} == {
+        "torus": "ok", "capsule": "ok", "animal450": "ok", "open": "failed"}
+    assert "Close Holes" in rows["open"]["error"]
+    assert "Close Holes" in done.stdout and "torus.off" in done.stdout
+    assert "4/4" in done.stderr, "the progress bar"
+    for name in ["torus", "capsule", "animal450"]:
+        graph = json.loads((folder.parent / "out" / f"{name}.off.json").read_text())
+        assert len(graph["nodes"]) == int(rows[name]["skeleton_vertices"])
+        assert (folder.parent / "out" / f"{name}.off.swc").is_file()
+    assert rows["torus"]["cycles"] == "1" and rows["capsule"]["cycles"] == "0"
+
+
+def test_goes_on_where_it_stopped(folder, environment):
+    (folder / "torus.off").rename(folder.parent / "torus.off")
+    run(folder, env=environment)
+    first = table(folder)
+    written = (folder.parent / "out" / "capsule.off.json").stat().st_mtime_ns
+    (folder.parent / "torus.off").rename(folder / "torus.off")
+    run(folder, env=environment)
+    second = table(folder)
+    assert {name: second[name] for name in first} == first, "nothing was done again"
+    assert (folder.parent / "out" / "capsule.off.json").stat().st_mtime_ns == written
+    assert second["torus"]["status"] == "ok"
+    shutil.copy(MESHES / "torus.off", folder / "open.off")
+    assert run(folder, env=environment).returncode == 1
+    assert run(folder, "--retry", env=environment).returncode == 0
+    assert table(folder)["open"]["status"] == "ok"
+
+
+def test_a_crash_costs_one_mesh(folder, environment, tmp_path):
+    # A stand-in for the reader that takes the process down on one mesh and hangs on another.
+    (tmp_path / "trimesh.py").write_text(
+        "import importlib.util, os, sys, time\n"
+        "def load(path, **options):\n"
+        "    if 'capsule' in path:\n"
+        "        os.abort()\n"
+        "    if 'animal' in path:\n"
+        "        time.sleep(300)\n"
+        "    sys.path = [p for p in sys.path if p != os.path.dirname(__file__)]\n"
+        "    del sys.modules['trimesh']\n"
+        "    import trimesh\n"
+        "    return trimesh.load(path, **options)\n")
+    env = environment | {"PYTHONPATH": f"{tmp_path}:{environment['PYTHONPATH']}"}
+    done = run(folder, "--timeout", "30", "--workers", "4", env=env)
+    assert done.returncode == 1
+    rows = table(folder)
+    assert rows["capsule"]["status"] == "crashed"
+    assert f"ended with -{int(signal.SIGABRT)}" in rows["capsule"]["error"]
+    assert rows["animal450"]["error"] == "given up after 30 seconds"
+    assert rows["torus"]["status"] == "ok"
+
+
+class Cluster:
+    """A Dask scheduler and two workers on this machine."""
+
+    def __init__(self, folder: Path, env: dict[str, str]) -> None:
+        address = folder / "scheduler.json"
+        self.processes = [self.start("scheduler", "--host", "127.0.0.1", "--port", "0",
+                                     "--no-dashboard", "--scheduler-file", str(address), env=env)]
+        self.wait_for(address.is_file)
+        self.address = json.loads(address.read_text())["address"]
+        for name in "ab":
+            self.processes.append(self.start(
+                "worker", self.address, "--no-nanny", "--no-dashboard", "--nthreads", "1", "--name", name,
+                "--local-directory", str(folder), env=env))
+
+    @staticmethod
+    def start(command: str, *arguments: str, env: dict[str, str]) -> subprocess.Popen:
+        return subprocess.Popen([sys.executable, "-m", "dask", command, *arguments], env=env,
+                                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+    @staticmethod
+    def wait_for(condition) -> None:
+        for _ in range(300):
+            if condition():
+                return
+            time.sleep(0.1)
+        raise TimeoutError
+
+    def stop(self) -> None:
+        for process in reversed(self.processes):
+            process.kill()
+            process.wait()
+
+
+@pytest.fixture
+def cluster(tmp_path, environment):
+    cluster = Cluster(tmp_path, environment)
+    yield cluster
+    cluster.stop()
+
+
+def test_on_a_cluster_that_loses_a_worker(folder, environment, cluster, tmp_path):
+    for i in range(4):
+        shutil.copy(MESHES / "torus.off", folder / f"torus_{i}.off")
+    from distributed import Client
+    with Client(cluster.address) as client:
+        client.wait_for_workers(2, timeout=60)
+    running = subprocess.Popen(
+        [sys.executable, str(SCRIPT), str(folder), str(tmp_path / "out"), *COARSE,
+         "--scheduler", cluster.address], env=environment, stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL, text=True)
+    csv_file = tmp_path / "out" / "results.csv"
+    cluster.wait_for(lambda: csv_file.is_file() and len(csv_file.read_text().splitlines()) > 2)
+    cluster.processes[1].kill()
+    output, _ = running.communicate(timeout=240)
+    assert running.returncode == 1, output
+    rows = table(folder)
+    assert len(rows) == 8
+    assert {name for name, row in rows.items() if row["status"] != "ok"} == {"open"}, output
+    assert "Close Holes" in rows["open"]["error"]
