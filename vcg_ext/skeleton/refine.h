@@ -43,7 +43,7 @@ struct RefineParameters
 	double junctionProminence = 0.5;
 	/// kappa, weight of the smoothness along the branch against that of the centring, for a spacing
 	/// of 0.5 % where the shape's radius is 3.3 %; >= 0. Larger: smoother, less centred.
-	double smoothing = 30;
+	double smoothing = 40;
 	/// Rounds of centring with ten times that smoothness, which free curves that are caught on a
 	/// wrong sheet of the medial axis, then rounds with it before and after the tips are
 	/// extended; >= 0.

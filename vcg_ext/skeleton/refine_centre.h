@@ -22,11 +22,12 @@
 
 namespace vcg::tri::mcf::refining {
 
-/// Where a node touches the surface, and the maximal ball through there.
+/// Where a node touches the surface, the maximal ball through there, and where the node should be.
 struct Contact
 {
 	ClosestSurface::Hit hit;
 	ClosestSurface::Ball ball;
+	Point3d target;
 };
 
 /// Points of the surface that lie this deep in a ball, in distances of its node, do not hold it.
@@ -67,16 +68,22 @@ inline Point3d tangentAt(const CurveSkeleton& skeleton, const std::vector<int>& 
  */
 inline void ascendAside(Contact& contact, const Point3d& tangent, const ClosestSurface& surface)
 {
+	constexpr int mostSteps = 3;
 	constexpr double pace = 0.3, flattest = 150 * M_PI / 180;
-	ClosestSurface::Ball& ball = contact.ball;
-	if (!isMedial(ball) || ball.spokeAngle > flattest)
-		return;
-	Point3d slope = (ball.centre * 2 - contact.hit.point - ball.contact) / (2 * ball.radius);
-	slope -= tangent * (tangent * slope);
-	const Point3d aside = ball.centre + slope * (pace * ball.radius);
-	const ClosestSurface::Hit hit = surface.closest(aside, contact.hit.face);
-	if (hit.distance > ball.radius && surface.isInside(aside, hit))
-		ball.centre = aside;
+	Contact here = contact;
+	for (int i = 0; i < mostSteps; ++i) {
+		const ClosestSurface::Ball& ball = here.ball;
+		if (!isMedial(ball) || ball.spokeAngle > flattest)
+			return;
+		Point3d slope = (ball.centre * 2 - here.hit.point - ball.contact) / (2 * ball.radius);
+		slope -= tangent * (tangent * slope);
+		const Point3d aside = ball.centre + slope * (pace * ball.radius);
+		here.hit = surface.closest(aside, here.hit.face);
+		if (here.hit.distance <= ball.radius || !surface.isInside(aside, here.hit))
+			return;
+		contact.target = aside;
+		here.ball = medialBall(surface, aside, here.hit, ball.face);
+	}
 }
 
 /**
@@ -97,12 +104,14 @@ inline std::vector<Contact> findContacts(
 			Contact& contact = contacts[v];
 			contact.hit = near < 0 ? surface.closest(x) : surface.closest(x, near);
 			contact.ball = {x, 0, -1, 0, x};
+			contact.target = x;
 			near = contact.hit.face;
 			const bool inside = contact.hit.distance > 0 && surface.isInside(x, contact.hit);
 			skeleton.radius[v] = inside ? contact.hit.distance : 0;
 			if (!inside)
 				continue;
 			contact.ball = medialBall(surface, x, contact.hit, nearOpposite);
+			contact.target = contact.ball.centre;
 			nearOpposite = contact.ball.face;
 			if (ascend && !neighbours[v].empty() && neighbours[v].size() <= 2)
 				ascendAside(contact, tangentAt(skeleton, neighbours[v], v), surface);
@@ -125,6 +134,7 @@ inline void followContacts(
 			continue;
 		contact.hit = hit;
 		contact.ball = surface.maximalBallFrom(x, hit, contact.ball);
+		contact.target = contact.ball.centre;
 	}
 }
 
@@ -158,7 +168,7 @@ inline void centre(CurveSkeleton& skeleton, const std::vector<Contact>& contacts
 			weight = std::clamp((contacts[v].ball.spokeAngle - leastSpokeAngle)
 					/ (fullSpokeAngle - leastSpokeAngle),
 				weightWithoutBall, 1.0);
-			target = contacts[v].ball.centre;
+			target = contacts[v].target;
 			if (degree == 1 || degree == 2) {
 				const Point3d tangent = tangentAt(skeleton, neighbours[v], v);
 				target -= tangent * (tangent * (target - x));
