@@ -4,6 +4,7 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 import warnings
@@ -16,7 +17,7 @@ import pytest
 import trimesh
 from plyfile import PlyData
 
-from conftest import (COLLAPSE, FULL, MESHES, STEP, attributes, document, labels, layer, new_document,
+from conftest import (COLLAPSE, FULL, MESHES, ROOT, STEP, attributes, document, labels, layer, new_document,
                       opened, scalars)
 
 COARSE = {"target_length": pymeshlab.PercentageValue(1.2)}
@@ -353,3 +354,13 @@ class TestRefusals:
         rows = [line.split()[1:] for line in (tmp_path / "s.cg").read_text().splitlines()
                 if line.startswith("v ")]
         assert np.array_equal(np.array(rows, float), moved)
+
+
+def test_the_examples_of_the_docs_run(plugin, tmp_path):
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / "formats.md").read_text(), re.DOTALL)
+    script = "\n".join(blocks).replace('"PLUGIN"', repr(str(plugin))).replace(
+        '"meshes/', f'"{MESHES}/')
+    script += "\nassert graph.graph['cycles'] == 3"
+    script += "\nassert layers.current_mesh().label() == 'animal_meso_4'\n"
+    run = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, capture_output=True, text=True)
+    assert run.returncode == 0, run.stderr

@@ -4,6 +4,7 @@
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import textwrap
@@ -188,3 +189,10 @@ def test_without_a_plugin_the_import_says_what_to_do(python, tmp_path):
     done = subprocess.run([str(python), "-c", "import mcfskel"], capture_output=True, text=True,
                           env=os.environ | {"MCFSKEL_PLUGIN": str(tmp_path / "none.so")})
     assert done.returncode != 0 and "pip install ./python" in done.stderr
+
+
+def test_the_examples_of_the_docs_run(run):
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / "python.md").read_text(), re.DOTALL)
+    answer = run("\n".join(blocks).replace('"meshes/', 'MESHES + "/')
+                 + "\nanswer = [len(skeleton.nodes), len(fine.nodes), len(again.nodes), len(graph)]")
+    assert answer[0] == answer[2] == answer[3] < answer[1]
