@@ -34,11 +34,21 @@ vcg::tri::mcf::Progress hostProgress(vcg::CallBackPos* callback)
 	});
 }
 
+QString valueText(const QVariant& value)
+{
+	if (!value.canConvert<Eigen::VectorXd>())
+		return value.toString();
+	QStringList numbers;
+	for (double number : value.value<Eigen::VectorXd>())
+		numbers << QString::number(number);
+	return "(" + numbers.join(' ') + ")";
+}
+
 QString resultsText(const Results& results)
 {
 	QStringList parts;
 	for (const auto& [name, value] : results)
-		parts << QString("%1 = %2").arg(QString::fromStdString(name), value.toString());
+		parts << QString("%1 = %2").arg(QString::fromStdString(name), valueText(value));
 	return parts.join(", ");
 }
 
@@ -64,6 +74,13 @@ const std::vector<FilterSpec>& catalogue()
 		contractionStepFilter(),
 		collapseToCurveFilter(),
 		fullSkeletonizeFilter(),
+		surfacePartsFilter(),
+		pruneSkeletonFilter(),
+		resampleSkeletonFilter(),
+		compareSkeletonsFilter(),
+		measureSkeletonFilter(),
+		medialAxisFilter(),
+		medialBallsFilter(),
 		saveStageFilter(),
 		loadStageFilter(),
 		saveSkeletonFilter(),

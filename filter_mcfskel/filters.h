@@ -87,7 +87,7 @@ private:
 	std::map<QString, QString> texts;
 };
 
-/// Numbers by name: int or double only, since nothing else reaches Python safely.
+/// Numbers by name: int, double or Eigen::VectorXd only, since nothing else reaches Python safely.
 using Results = std::map<std::string, QVariant>;
 
 /// What a filter is given to run.
@@ -118,6 +118,8 @@ struct FilterSpec
 	std::vector<ParameterSpec> parameters;
 	Results (*run)(FilterRun&);
 	bool needsLayer = true;
+	/// MeshModel::MeshElement bits that change on layers that were there before.
+	int changes = MeshModel::MM_NONE;
 };
 
 /// Every filter, in the order in which a user meets them.

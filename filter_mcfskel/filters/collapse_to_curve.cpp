@@ -26,8 +26,9 @@ Results run(FilterRun& run)
 		mcf::collapseToCurve(*found.stage, run.parameters.fraction("epsilon"), run.progress);
 
 	DocumentEdit edit(run.document);
-	edit.addCurve(run.layer(), baseName(run.layer()) + "_skeleton", skeleton.position,
-		skeleton.edges, skeleton.radius);
+	const MeshModel* surface = run.document.getMesh(found.surface.layerId);
+	edit.addCurve(run.layer(), baseName(run.layer()) + "_skeleton",
+		{skeleton, found.surface, surface ? surface->label() : QString()});
 	edit.writeNodes(found.surface, skeleton.node);
 	edit.commit();
 	return curveResults(skeleton);

@@ -127,8 +127,7 @@ Results run(FilterRun& run)
 	const SurfaceLink link = linkTo(*surface, pipeline.surface);
 	for (const auto& stage : pipeline.kept)
 		edit.addStage(input, stageLabel(name, *stage), stage, link);
-	edit.addCurve(input, name + "_skeleton", pipeline.skeleton.position, pipeline.skeleton.edges,
-		pipeline.skeleton.radius);
+	edit.addCurve(input, name + "_skeleton", {pipeline.skeleton, link, surface->label()});
 	if (pipeline.newPoles)
 		edit.writePoles(*surface, pipeline.surface, pipeline.poles);
 	edit.writeNodes(*surface, *pipeline.surface.vertexOfSlot, pipeline.skeleton.node);

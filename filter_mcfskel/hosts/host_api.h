@@ -9,6 +9,13 @@
 
 #if MCFSKEL_HOST_API == 2020
 #include <common/interfaces.h>
+
+#include <Eigen/Core>
+
+#include <QMetaType>
+
+/// Later releases declare it themselves.
+Q_DECLARE_METATYPE(Eigen::VectorXd)
 #else
 #include <common/plugins/interfaces/filter_plugin.h>
 #include <common/plugins/interfaces/io_plugin.h>

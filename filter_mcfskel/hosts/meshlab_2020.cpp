@@ -45,9 +45,9 @@ int FilterMcfskelPlugin::getPreConditions(QAction* action) const
 	return host::filterOf(ID(action)).preConditions;
 }
 
-int FilterMcfskelPlugin::postCondition(QAction*) const
+int FilterMcfskelPlugin::postCondition(QAction* action) const
 {
-	return host::changedElements;
+	return host::filterOf(ID(action)).changes;
 }
 
 void FilterMcfskelPlugin::initParameterSet(

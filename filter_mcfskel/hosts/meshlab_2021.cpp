@@ -77,9 +77,9 @@ int FilterMcfskelPlugin::getPreConditions(const QAction* action) const
 	return host::filterOf(ID(action)).preConditions;
 }
 
-int FilterMcfskelPlugin::postCondition(const QAction*) const
+int FilterMcfskelPlugin::postCondition(const QAction* action) const
 {
-	return host::changedElements;
+	return host::filterOf(ID(action)).changes;
 }
 
 RichParameterList FilterMcfskelPlugin::initParameterList(

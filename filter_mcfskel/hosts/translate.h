@@ -23,9 +23,6 @@ ParameterValues readParameters(
 
 FilterBase::FilterClass filterClass(const FilterSpec& filter);
 
-/// Results are new layers and custom attributes: what the layer had before stays as it was.
-constexpr int changedElements = MeshModel::MM_NONE;
-
 } // namespace mcfskel::host
 
 #endif

@@ -63,7 +63,7 @@ void shrink(TouchingBall& ball, int mostSteps, const Deepest& deepest)
 {
 	constexpr double tolerance = 1e-3;
 	for (int i = 0; i < mostSteps; ++i) {
-		Point3d x;
+		Point3d x(0, 0, 0);
 		if (!deepest(ball.centre(), ball.radius * (1 - tolerance), x))
 			return;
 		const Point3d e = ball.point - x;
@@ -92,7 +92,7 @@ struct DeepestPoint
 {
 	Point3d middle;
 	double distance;
-	Point3d found;
+	Point3d found = Point3d(0, 0, 0);
 	bool any = false;
 
 	const Point3d& centre() const { return middle; }
@@ -156,7 +156,7 @@ inline MedialReference medialReference(const SurfaceMesh& surface, const Closest
 		for (int i = begin; i < end; ++i) {
 			auto ball = detail::TouchingBall::alone(samples[i].position, outward[i], largest);
 			detail::shrink(ball, 12, [&](const Point3d& centre, double reach, Point3d& where) {
-				detail::DeepestPoint search {centre, reach, Point3d()};
+				detail::DeepestPoint search {centre, reach};
 				tree.search(search);
 				where = search.found;
 				return search.any;

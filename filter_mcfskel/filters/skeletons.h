@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file What the filters that take a skeleton share: the skeleton, the surface that goes with it, and
+/// the correspondence between both.
+
+#ifndef MCFSKEL_FILTERS_SKELETONS_H
+#define MCFSKEL_FILTERS_SKELETONS_H
+
+#include "common.h"
+
+#include <skeleton/curve_skeleton.h>
+
+#include <optional>
+#include <vector>
+
+namespace mcfskel {
+
+/// The skeleton on a layer with a radius for each node: from the attribute, else from the quality,
+/// else 0.
+CurveLayer skeletonOn(const MeshModel& layer);
+
+/// The parameter `surface`; its default, the skeleton's own layer, stands for the surface that the
+/// skeleton remembers.
+ParameterSpec surfaceParameter(const QString& whatFor);
+
+/// A surface that goes with a skeleton.
+struct SkeletonSurface
+{
+	MeshModel* layer;
+	SurfaceLayer surface;
+};
+
+/// The surface that the parameter names; none if it names none and the skeleton remembers none that
+/// is still there and unchanged. @throws InvalidInput as readSurface().
+std::optional<SkeletonSurface> findSurface(const FilterRun& run, const CurveLayer& curve);
+
+/// The same where it cannot be done without. @throws InvalidInput saying what to choose.
+SkeletonSurface requireSurface(const FilterRun& run, const CurveLayer& curve);
+
+/**
+ * For each vertex of a surface its node of the skeleton: what the skeleton remembers, carried over from
+ * the nearest vertex if it remembers another surface; else what the attribute mcfskel_node tells; else
+ * empty.
+ */
+std::vector<int> nodesOnSurface(
+	const FilterRun& run, const CurveLayer& curve, const SkeletonSurface& surface);
+
+/// The distance of each node to a surface, mesh units; 0 outside.
+std::vector<double> clearances(
+	const std::vector<vcg::Point3d>& nodes, const vcg::tri::mcf::SurfaceMesh& surface);
+
+/**
+ * Adds a layer NAME_suffix with a skeleton that was made from another one, and writes its
+ * correspondence on the surfaces that tell that of the other one. The radius is measured anew where the
+ * correspondence is known and `measureRadius` is set.
+ * @param curve  the other one, of the current layer.
+ */
+void addDerivedSkeleton(FilterRun& run, const CurveLayer& curve,
+	vcg::tri::mcf::CurveSkeleton skeleton, const char* suffix, bool measureRadius);
+
+} // namespace mcfskel
+
+#endif
