@@ -23,7 +23,7 @@ namespace vcg::tri::mcf {
 template <class Body>
 void forEachBlock(int count, const Progress& progress, const char* what, const Body& body)
 {
-	constexpr int blockSize = 64, blocksPerReport = 128;
+	constexpr int blockSize = 256, blocksPerReport = 32;
 	progress.report(0, what);
 	const int blocks = (count + blockSize - 1) / blockSize;
 	for (int first = 0; first < blocks; first += blocksPerReport) {

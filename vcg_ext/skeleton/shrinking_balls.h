@@ -31,9 +31,9 @@ namespace detail {
  * The ball of radius r has its centre at c = p - r n. A sample q, with e = p - q, lies exactly
  * delta deep where |c - q| = r - delta, that is at
  *     r(q) = (|e|^2 - delta^2) / (2 (e.n - delta)),   e.n > delta,
- * and the balls grow monotonically with r, so the answer is the least r(q) over all q. It does
- * not depend on the order of the visits, to the last bit: the test that skips a sample leaves room
- * for rounding, and what passes is compared by r(q) itself.
+ * and the balls grow monotonically with r, so the answer is the least r(q) over all q. A search
+ * finds it whatever the order of its visits, to the last bit: the test that skips a sample leaves
+ * room for rounding, and what passes is compared by r(q) itself.
  */
 class MaximalBall
 {
@@ -72,10 +72,50 @@ private:
 };
 
 /**
+ * The last balls found by a search. A ball that nearly equals one of them needs no search.
+ *
+ * The distance to the nearest sample changes no faster than the place: in a ball whose centre is d
+ * away from an empty ball's and whose radius is larger by x no sample is deeper than d + x. Without
+ * this, samples of a sphere would all be visited for each of them, and those of a tube's ring again
+ * and again, since all of them touch the same ball.
+ */
+class KnownBalls
+{
+public:
+	/// How deep a sample may be in a ball that was not searched, as a part of its radius.
+	static constexpr double negligible = 0.003;
+
+	void add(const MaximalBall& ball)
+	{
+		balls[added % balls.size()] = {ball.centre(), ball.radius()};
+		++added;
+	}
+
+	bool hold(const MaximalBall& ball) const
+	{
+		for (size_t i = 0; i < std::min(added, balls.size()); ++i)
+			if (Distance(ball.centre(), balls[i].centre) + ball.radius() - balls[i].radius
+				<= negligible * ball.radius())
+				return true;
+		return false;
+	}
+
+private:
+	struct Known
+	{
+		Point3d centre;
+		double radius;
+	};
+
+	std::array<Known, 16> balls;
+	size_t added = 0;
+};
+
+/**
  * Maximal balls at `points`, in the unit frame that the tree's points are in.
  * @param onSamples  whether the tree is of these same points, so that neighbours in its order are
  *                   neighbours on the surface and nearly hold the ball.
- * @param isPole     (place in points, centre in mesh units): whether the ball counts.
+ * @param isPole     (place in points, centre and radius in mesh units): whether the ball counts.
  * @return poles in mesh units.
  */
 template <class IsPole>
@@ -92,6 +132,7 @@ PoleSet maximalBalls(const std::vector<Point3d>& points, const std::vector<Point
 		// What held the balls of the last points will nearly hold the next one.
 		std::array<int, 4> recent = {-1, -1, -1, -1};
 		int oldest = 0;
+		KnownBalls known;
 		for (int i = begin; i < end; ++i) {
 			const int v = order[i];
 			if (!(normals[v].SquaredNorm() > 0))
@@ -104,14 +145,18 @@ PoleSet maximalBalls(const std::vector<Point3d>& points, const std::vector<Point
 				for (int j = std::max(i - neighbours, 0);
 					 j <= std::min(i + neighbours, tree.size() - 1); ++j)
 					ball.visit(j, tree.point(j));
-			tree.search(ball);
-			if (ball.contact() < 0)
-				continue;
+			if (ball.contact() < 0 || !known.hold(ball)) {
+				tree.search(ball);
+				if (ball.contact() < 0)
+					continue;
+				known.add(ball);
+			}
 			recent[oldest] = ball.contact();
 			oldest = (oldest + 1) % int(recent.size());
 			poles.centre[v] = frame.out(ball.centre());
-			if (isPole(v, poles.centre[v]))
-				poles.radius[v] = frame.lengthOut(ball.radius());
+			const double radius = frame.lengthOut(ball.radius());
+			if (isPole(v, poles.centre[v], radius))
+				poles.radius[v] = radius;
 		}
 	});
 	return poles;
@@ -171,7 +216,7 @@ inline PoleSet shrinkingBalls(const std::vector<Point3d>& points,
 	const UnitFrame frame(against);
 	return detail::maximalBalls(frame.in(points), normals, frame, PointTree(frame.in(against)),
 		false, detail::ballTolerance(frame, delta), progress,
-		[](int, const Point3d&) { return true; });
+		[](int, const Point3d&, double) { return true; });
 }
 
 /**
@@ -202,9 +247,11 @@ inline PoleSet shrinkingBallPoles(const SurfaceMesh& mesh, const std::vector<int
 	}
 	const PointTree tree(samples);
 	const InnerSegments segments(mesh, tree);
-	return detail::maximalBalls(
-		points, normals, frame, tree, all, tolerance, progress, [&](int i, const Point3d& centre) {
-			return segments.staysInside(vertices[i], centre, frame.lengthOut(tolerance));
+	return detail::maximalBalls(points, normals, frame, tree, all, tolerance, progress,
+		[&](int i, const Point3d& centre, double radius) {
+			const double depth =
+				frame.lengthOut(tolerance) + detail::KnownBalls::negligible * radius;
+			return segments.staysInside(vertices[i], centre, depth);
 		});
 }
 
