@@ -4,10 +4,15 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from pathlib import Path
 
+import numpy as np
+
+from curve import read_curve
 from programs import RESAMPLING, SKELETON, WHOLE, Outcome
+from quality import Shape, measure
 
 Rows = list[tuple[Path, list[Outcome]]]
 
@@ -128,17 +133,21 @@ def stages_table(rows: Rows) -> str:
 MEASURES = ("medial", "reconstruction", "turning")
 
 
+@functools.cache
+def shape_and_axis(mesh: Path) -> tuple[Shape, np.ndarray]:
+    """The medial axis takes the longest of all, and both jobs have the same meshes."""
+    shape = Shape.read(mesh)
+    return shape, shape.medial_axis()
+
+
 def quality_table(rows: Rows) -> tuple[str, dict]:
     """The table, and all measures by mesh and program."""
-    from curve import read_curve
-    from quality import Shape, measure
 
     head = ["mesh", "program", "components", "cycles (genus)", "inside", "tips", "junctions",
             "spurs", "medial %", "reconstruction %", "turning deg"]
     body, figures = [], {}
     for mesh, outcomes in rows:
-        shape = Shape.read(mesh)
-        axis = shape.medial_axis()
+        shape, axis = shape_and_axis(mesh)
         results = figures[mesh.stem] = {}
         for outcome in outcomes:
             if outcome.error or outcome.program.label in results:
