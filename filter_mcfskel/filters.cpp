@@ -9,6 +9,7 @@
 #include <skeleton/errors.h>
 
 #include <chrono>
+#include <cmath>
 #include <exception>
 #include <new>
 
@@ -61,7 +62,10 @@ Scalarm defaultLength(const ParameterSpec& spec, double diagonal)
 
 void ParameterValues::setLength(const ParameterSpec& spec, Scalarm length, double diagonal)
 {
-	const bool isDefault = length == defaultLength(spec, diagonal);
+	// Hosts may round a percentage to single precision: what is that close was not changed by the user.
+	constexpr double hostPrecision = 1e-6;
+	const double ordinary = double(defaultLength(spec, diagonal));
+	const bool isDefault = std::abs(double(length) - ordinary) <= hostPrecision * ordinary;
 	const double fraction = diagonal > 0 ? double(length) / diagonal : 0;
 	set(spec.name, isDefault ? spec.defaultValue / 100 : fraction);
 }
