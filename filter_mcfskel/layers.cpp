@@ -244,7 +244,8 @@ QString baseName(QString name)
 {
 	static const QRegularExpression copyNumber("\\(\\d+\\)$");
 	static const QRegularExpression fileType("\\.[A-Za-z0-9]{1,5}$");
-	static const QRegularExpression appended("_(resampled|meso_\\d+|skeleton|refined|poles|pruned|smoothed|medial|balls)$");
+	static const QRegularExpression appended(
+		"_(resampled|meso_\\d+|skeleton|refined|poles|pruned|smoothed|medial|balls)$");
 	name.remove(copyNumber);
 	name.remove(fileType);
 	name.remove(appended);
@@ -340,8 +341,8 @@ CurveLayer readCurve(const MeshModel& layer)
 	for (const CEdgeO& e : mesh.edge) {
 		if (e.IsD())
 			continue;
-		const auto ends = std::minmax(nodeOfSlot[vcg::tri::Index(mesh, e.cV(0))],
-			nodeOfSlot[vcg::tri::Index(mesh, e.cV(1))]);
+		const auto ends = std::minmax(
+			nodeOfSlot[vcg::tri::Index(mesh, e.cV(0))], nodeOfSlot[vcg::tri::Index(mesh, e.cV(1))]);
 		if (ends.first == ends.second)
 			throw mcf::InvalidInput("The layer " + label + " has an edge from a vertex to itself.");
 		edges.push_back({ends.first, ends.second});

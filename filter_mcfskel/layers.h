@@ -184,8 +184,8 @@ private:
 SurfaceLink linkTo(const MeshModel& layer, const SurfaceLayer& surface);
 
 /// The link to the layer of a document that has this fingerprint, if there is one.
-SurfaceLink linkTo(const MeshDocument& document, std::uint64_t fingerprint,
-	std::vector<int> vertexOfSlot);
+SurfaceLink linkTo(
+	const MeshDocument& document, std::uint64_t fingerprint, std::vector<int> vertexOfSlot);
 
 } // namespace mcfskel
 

@@ -96,8 +96,7 @@ QList<MeshIOInterface::Format> FilterMcfskelPlugin::exportFormats() const
 	return fileFormats(&SkeletonFormat::isWritten);
 }
 
-void FilterMcfskelPlugin::GetExportMaskCapability(
-	QString&, int& capability, int& defaultBits) const
+void FilterMcfskelPlugin::GetExportMaskCapability(QString&, int& capability, int& defaultBits) const
 {
 	capability = defaultBits = writtenElements;
 }

@@ -66,12 +66,8 @@ ParameterValues readParameters(
 		case ParameterKind::Length: values.setLength(p, list.getAbsPerc(p.name), diagonal); break;
 		case ParameterKind::Choice: values.set(p.name, list.getEnum(p.name)); break;
 		case ParameterKind::Layer: values.set(p.name, layerId(list, p.name)); break;
-		case ParameterKind::FileToOpen:
-			values.setText(p.name, list.getOpenFileName(p.name));
-			break;
-		case ParameterKind::FileToSave:
-			values.setText(p.name, list.getSaveFileName(p.name));
-			break;
+		case ParameterKind::FileToOpen: values.setText(p.name, list.getOpenFileName(p.name)); break;
+		case ParameterKind::FileToSave: values.setText(p.name, list.getSaveFileName(p.name)); break;
 		}
 	return values;
 }

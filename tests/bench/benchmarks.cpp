@@ -58,11 +58,15 @@ struct Prepared
 template <class Work>
 void add(const std::string& name, int vertices, Work work)
 {
-	benchmark::RegisterBenchmark(name.c_str(), [vertices, work](benchmark::State& state) {
-		for (auto _ : state)
-			benchmark::DoNotOptimize(work());
-		state.SetItemsProcessed(state.iterations() * vertices);
-	})->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+	benchmark::RegisterBenchmark(name.c_str(),
+		[vertices, work](benchmark::State& state) {
+			for (auto _ : state)
+				benchmark::DoNotOptimize(work());
+			state.SetItemsProcessed(state.iterations() * vertices);
+		})
+		->Unit(benchmark::kMillisecond)
+		->MeasureProcessCPUTime()
+		->UseRealTime();
 }
 
 void addStages(const std::string& path)
@@ -75,8 +79,8 @@ void addStages(const std::string& path)
 	add(name + "check", in,
 		[data] { return mcf::checkedSurface(data->soup.points, data->soup.triangles); });
 	add(name + "resample", out, [data, parameters] {
-		return mcf::resample(data->surface, mcf::defaultTargetLength(data->surface),
-			parameters.resampleIterations);
+		return mcf::resample(
+			data->surface, mcf::defaultTargetLength(data->surface), parameters.resampleIterations);
 	});
 	add(name + "poles_balls", out,
 		[data] { return mcf::medialPoles(data->resampled, mcf::PoleMethod::Balls); });
@@ -84,7 +88,8 @@ void addStages(const std::string& path)
 		[data] { return mcf::medialPoles(data->resampled, mcf::PoleMethod::Voronoi); });
 	add(name + "laplacian", out, [data] { return mcf::cotangentLaplacian(data->resampled); });
 	add(name + "copy_stage", out, [data] { return mcf::Stage(data->initial); });
-	add(name + "first_step", out, [data, parameters] { return mcf::step(data->initial, parameters); });
+	add(name + "first_step", out,
+		[data, parameters] { return mcf::step(data->initial, parameters); });
 	add(name + "middle_step", data->halfway.mesh.vertexCount(),
 		[data, parameters] { return mcf::step(data->halfway, parameters); });
 	add(name + "contraction", out,
@@ -101,7 +106,8 @@ int main(int argc, char** argv)
 {
 	benchmark::Initialize(&argc, argv);
 	if (argc < 2) {
-		std::cerr << "usage: benchmarks MESH... [--benchmark_filter=REGEX] [--benchmark_out=FILE]\n";
+		std::cerr
+			<< "usage: benchmarks MESH... [--benchmark_filter=REGEX] [--benchmark_out=FILE]\n";
 		return 2;
 	}
 	try {

@@ -145,15 +145,14 @@ void run(const Options& options)
 	Times times;
 	bench::Stopwatch watch;
 	if (options.remesh > 0.0) {
-		PMP::isotropic_remeshing(
-			mesh.faces(), 0.01 * options.remesh * diagonal(mesh), mesh,
+		PMP::isotropic_remeshing(mesh.faces(), 0.01 * options.remesh * diagonal(mesh), mesh,
 			PMP::parameters::number_of_iterations(options.remeshIterations));
 		mesh.collect_garbage();
 		times.remesh = watch.lap();
 	}
-	if (!options.surface.empty() &&
-	    !CGAL::IO::write_polygon_mesh(
-		options.surface, mesh, CGAL::parameters::stream_precision(17)))
+	if (!options.surface.empty()
+		&& !CGAL::IO::write_polygon_mesh(
+			options.surface, mesh, CGAL::parameters::stream_precision(17)))
 		throw std::runtime_error("cannot write " + options.surface);
 
 	bench::Curve curve;

@@ -128,9 +128,9 @@ bench::Curve toCurve(const mcf::CurveSkeleton& skeleton)
 
 void describe(const mcf::Stage& stage)
 {
-	std::cerr << "iteration " << stage.iteration << ": " << stage.mesh.vertexCount() << " vertices, area "
-			  << stage.areaFraction() << ", volume " << stage.volumeFraction() << ", fixed "
-			  << stage.fixedFraction() << '\n';
+	std::cerr << "iteration " << stage.iteration << ": " << stage.mesh.vertexCount()
+			  << " vertices, area " << stage.areaFraction() << ", volume " << stage.volumeFraction()
+			  << ", fixed " << stage.fixedFraction() << '\n';
 }
 
 void run(const Options& options)
@@ -166,8 +166,8 @@ void run(const Options& options)
 		watch.lap();
 		const mcf::PoleSet poles = mcf::medialPoles(surface, parameters.poleMethod);
 		seconds.add("poles", watch.lap());
-		const mcf::Stage stage = mcf::contractToSkeleton(mcf::initialStage(surface, poles), parameters,
-			mcf::Progress(), options.verbose ? describe : nullptr);
+		const mcf::Stage stage = mcf::contractToSkeleton(mcf::initialStage(surface, poles),
+			parameters, mcf::Progress(), options.verbose ? describe : nullptr);
 		seconds.add("contraction", watch.lap());
 		mcf::CurveSkeleton skeleton = mcf::collapseToCurve(stage);
 		seconds.add("conversion", watch.lap());

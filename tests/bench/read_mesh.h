@@ -21,7 +21,8 @@ namespace bench {
 
 class FileVertex;
 class FileFace;
-struct FileTypes : vcg::UsedTypes<vcg::Use<FileVertex>::AsVertexType, vcg::Use<FileFace>::AsFaceType>
+struct FileTypes
+		: vcg::UsedTypes<vcg::Use<FileVertex>::AsVertexType, vcg::Use<FileFace>::AsFaceType>
 {
 };
 class FileVertex : public vcg::Vertex<FileTypes, vcg::vertex::Coord3d, vcg::vertex::BitFlags>

@@ -43,11 +43,12 @@ public:
 
 	Seconds lap()
 	{
-		std::timespec now{};
+		std::timespec now {};
 		clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-		const double cpu = static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+		const double cpu =
+			static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 		const auto wall = std::chrono::steady_clock::now();
-		const Seconds passed{cpu - cpu_, std::chrono::duration<double>(wall - wall_).count()};
+		const Seconds passed {cpu - cpu_, std::chrono::duration<double>(wall - wall_).count()};
 		cpu_ = cpu;
 		wall_ = wall;
 		return passed;
@@ -81,11 +82,17 @@ public:
 		return addRaw(key, text.str());
 	}
 
-	Json& add(const std::string& key, std::size_t value) { return addRaw(key, std::to_string(value)); }
+	Json& add(const std::string& key, std::size_t value)
+	{
+		return addRaw(key, std::to_string(value));
+	}
 	Json& add(const std::string& key, int value) { return addRaw(key, std::to_string(value)); }
 	Json& add(const std::string& key, bool value) { return addRaw(key, value ? "true" : "false"); }
 	Json& add(const std::string& key, const char* value) { return add(key, std::string(value)); }
-	Json& add(const std::string& key, const std::string& value) { return addRaw(key, quoted(value)); }
+	Json& add(const std::string& key, const std::string& value)
+	{
+		return addRaw(key, quoted(value));
+	}
 	Json& add(const std::string& key, const Json& value) { return addRaw(key, value.text()); }
 
 	Json& add(const std::string& key, const Seconds& value)
@@ -104,7 +111,8 @@ private:
 			if (c == '"' || c == '\\')
 				text << '\\' << c;
 			else if (static_cast<unsigned char>(c) < 0x20)
-				text << "\\u00" << std::hex << std::setw(2) << std::setfill('0') << int(c) << std::dec;
+				text << "\\u00" << std::hex << std::setw(2) << std::setfill('0') << int(c)
+					 << std::dec;
 			else
 				text << c;
 		}

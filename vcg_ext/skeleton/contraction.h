@@ -39,7 +39,8 @@ constexpr double publishedWeightUnit = 1.0 / 200;
  * @throws SolverError if the system breaks down or a position stops being finite; Cancelled.
  * Complexity: that of one sparse factorisation, about O(V log V) on a surface mesh.
  */
-inline void contract(Stage& stage, const Parameters& parameters, const Progress& progress = Progress())
+inline void contract(
+	Stage& stage, const Parameters& parameters, const Progress& progress = Progress())
 {
 	SurfaceMesh& mesh = stage.mesh;
 	const double wL = parameters.wL;

@@ -25,10 +25,12 @@ inline void mergeVertexState(Stage& stage, int removed, int survivor)
 {
 	// Of the two poles the one closest to the resulting vertex stays (Sec. 4.5).
 	const Point3d& p = stage.mesh.position[survivor];
-	const bool removedHas = stage.poleRadius[removed] >= 0, survivorHas = stage.poleRadius[survivor] >= 0;
+	const bool removedHas = stage.poleRadius[removed] >= 0,
+			   survivorHas = stage.poleRadius[survivor] >= 0;
 	if (removedHas
 		&& (!survivorHas
-			|| SquaredDistance(p, stage.pole[removed]) < SquaredDistance(p, stage.pole[survivor]))) {
+			|| SquaredDistance(p, stage.pole[removed])
+				< SquaredDistance(p, stage.pole[survivor]))) {
 		stage.pole[survivor] = stage.pole[removed];
 		stage.poleRadius[survivor] = stage.poleRadius[removed];
 	}
@@ -84,8 +86,8 @@ inline std::vector<int> collapseShortEdges(
 			}
 			any = true;
 			const Point3d merged = stage.fixed[a] ? mesh.position[a]
-				: stage.fixed[b]				  ? mesh.position[b]
-												  : Point3d((mesh.position[a] + mesh.position[b]) / 2.0);
+				: stage.fixed[b]                  ? mesh.position[b]
+								 : Point3d((mesh.position[a] + mesh.position[b]) / 2.0);
 			mesh.collapse(h);
 			mesh.position[b] = merged;
 			forest.merge(a, b);

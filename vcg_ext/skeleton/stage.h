@@ -60,7 +60,9 @@ struct Stage
 	double volumeFraction() const { return volume / initialVolume; }
 	double fixedFraction() const
 	{
-		return fixed.empty() ? 1 : double(std::count(fixed.begin(), fixed.end(), 1)) / double(fixed.size());
+		return fixed.empty()
+			? 1
+			: double(std::count(fixed.begin(), fixed.end(), 1)) / double(fixed.size());
 	}
 
 private:
