@@ -67,7 +67,7 @@ inline bool isCovered(const CurveSkeleton& skeleton, const Point3d& point)
  */
 inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, const TipRule& rule)
 {
-	constexpr double farthest = 3, farthestTurn = 50 * M_PI / 180;
+	constexpr double farthest = 3, farthestTurn = 30 * M_PI / 180;
 	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
 	const int count = int(neighbours.size());
 	for (int v = 0; v < count; ++v) {
