@@ -7,6 +7,7 @@
 #define VCG_MCF_ISOTROPIC_REMESHER_H
 
 #include "long_edge_queue.h"
+#include "parallel_blocks.h"
 #include "progress.h"
 #include "shape_tests.h"
 #include "staged_coarsening.h"
@@ -159,11 +160,11 @@ public:
 	/**
 	 * Moves every vertex within its tangent plane to the centroid of its triangles, weighted by
 	 * area, then back onto the input; vertices of creases stay on them. What turned a face over is
-	 * undone.
+	 * undone. The projections run on all cores.
 	 */
 	void smoothAndProject(const Progress& progress)
 	{
-		Ticker ticker(progress, "Smoothing", 2 * mesh.faceSlots() + mesh.vertexSlots());
+		Ticker ticker(progress.part(0, 0.3), "Smoothing", mesh.faceSlots());
 		struct Sum
 		{
 			Point3d normal = Point3d(0, 0, 0), moment = Point3d(0, 0, 0);
@@ -189,21 +190,23 @@ public:
 			}
 		}
 		const std::vector<Point3d> old = mesh.position;
-		for (int v = 0; v < mesh.vertexSlots(); ++v) {
-			ticker.tick();
-			if (!mesh.isVertex(v) || !(sums[v].area > 0) || tracked.roleOf(v) == CreaseRole::Corner)
-				continue;
-			if (tracked.roleOf(v) == CreaseRole::Crease) {
-				tracked.moveOntoSurface(v, middleOnCrease(v, old));
-				continue;
-			}
+		const auto moved = [&](int v) {
+			if (tracked.roleOf(v) == CreaseRole::Crease)
+				return middleOnCrease(v, old);
 			Point3d move = sums[v].moment / sums[v].area - old[v];
 			const double squared = sums[v].normal.SquaredNorm();
 			if (squared > 0)
 				move -= sums[v].normal * (sums[v].normal * move / squared);
-			tracked.moveOntoSurface(v, old[v] + move);
-		}
-		restoreTurnedFaces(areaVectors, old, ticker);
+			return Point3d(old[v] + move);
+		};
+		forEachBlock(
+			mesh.vertexSlots(), progress.part(0.3, 0.8), "Smoothing", [&](int begin, int end) {
+				for (int v = begin; v < end; ++v)
+					if (mesh.isVertex(v) && sums[v].area > 0
+						&& tracked.roleOf(v) != CreaseRole::Corner)
+						tracked.moveOntoSurface(v, moved(v));
+			});
+		restoreTurnedFaces(areaVectors, old, progress.part(0.8, 1));
 	}
 
 	/// @see TrackedMesh::take()
@@ -258,9 +261,10 @@ private:
 	}
 
 	/// Puts vertices of faces that turned over back to where they were until no face is turned.
-	void restoreTurnedFaces(
-		const std::vector<Point3d>& areaVectors, const std::vector<Point3d>& old, Ticker& ticker)
+	void restoreTurnedFaces(const std::vector<Point3d>& areaVectors,
+		const std::vector<Point3d>& old, const Progress& progress)
 	{
+		Ticker ticker(progress, "Smoothing", mesh.faceSlots());
 		bool restored = true;
 		while (restored) {
 			restored = false;
