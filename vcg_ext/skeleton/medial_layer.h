@@ -87,7 +87,7 @@ struct WidestAngle
 inline std::vector<double> poleAngles(
 	const SurfaceMesh& surface, const PoleSet& poles, const Progress& progress = Progress())
 {
-	constexpr double touching = 1e-3; // of the radius
+	constexpr double touching = 0.01; // of the radius: facets of a round surface differ that much
 	const UnitFrame frame(surface.position);
 	const PointTree tree(frame.in(surface.position));
 	std::vector<double> angle(poles.radius.size(), -1);
