@@ -183,7 +183,7 @@ inline bool isVoronoiVertex(const Point3d& c, const Tetrahedron& t,
  */
 inline PoleSet voronoiPoles(const SurfaceMesh& mesh, const Progress& progress = Progress())
 {
-	constexpr double tolerance = 1e-7; // of about the diagonal
+	constexpr double tolerance = 1e-5; // of about the diagonal: what moving the points may cost
 	const char* what = "Poles: Voronoi diagram";
 	progress.report(0, what);
 	PoleSet poles;
