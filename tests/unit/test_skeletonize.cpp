@@ -144,8 +144,7 @@ TEST(Skeletonize, ACapsuleContractsToItsAxis)
 		EXPECT_EQ(s.branches, 1);
 		EXPECT_EQ(s.terminals, 2);
 		EXPECT_EQ(s.junctions, 0);
-		EXPECT_NEAR(
-			s.length, 2, 0.2); // from centre to centre of the end balls, tips a little short
+		EXPECT_NEAR(s.length, 2, 0.2); // between the centres of the end balls; tips end early
 		for (size_t v = 0; v < skeleton.position.size(); ++v)
 			if (std::abs(skeleton.position[v][0]) < 0.8) {
 				EXPECT_NEAR(skeleton.radius[v], 0.35, 0.02);
