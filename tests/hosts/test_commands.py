@@ -73,8 +73,9 @@ class TestResults:
         node = np.asarray(vertex["mcfskel_node"])
         assert np.issubdtype(node.dtype, np.integer)
         distance = np.linalg.norm(vertices - nodes[node], axis=1)
-        mean = np.bincount(node, distance, len(nodes)) / np.maximum(np.bincount(node, minlength=len(nodes)), 1)
-        reached = np.bincount(node, minlength=len(nodes)) > 0
+        count = np.bincount(node, minlength=len(nodes))
+        mean = np.bincount(node, distance, len(nodes)) / np.maximum(count, 1)
+        reached = count > 0
         assert mean[reached] == pytest.approx(radius[reached], rel=1e-5)
         pole = np.column_stack([vertex[f"mcfskel_pole_{axis}"] for axis in "xyz"])
         has = vertex["mcfskel_pole_radius"] >= 0
