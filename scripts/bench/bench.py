@@ -159,16 +159,22 @@ def main() -> int:
                 {"mesh": mesh.name, "job": job, "programs": [o.as_json() for o in outcomes]}
             )
     tables: dict[str, str] = {}
+
+    def show(title: str, table: str) -> None:
+        # Each table when it is there: the measures of quality take minutes.
+        tables[title] = table
+        print(f"\n{title}\n\n{table}", flush=True)
+        if arguments.json:
+            arguments.json.write_text(json.dumps(report, indent=1) + "\n")
+
     for job, rows in everything.items():
-        tables[job] = TIMES[job](rows)
-        tables[f"stages of {job}"] = stages_table(rows)
-        if arguments.quality:
-            tables[f"quality of {job}"], figures = quality_table(rows)
+        show(job, TIMES[job](rows))
+        show(f"stages of {job}", stages_table(rows))
+    if arguments.quality:
+        for job, rows in everything.items():
+            table, figures = quality_table(rows)
             report.setdefault("quality", {})[job] = figures
-    for title, table in tables.items():
-        print(f"\n{title}\n\n{table}")
-    if arguments.json:
-        arguments.json.write_text(json.dumps(report, indent=1) + "\n")
+            show(f"quality of {job}", table)
     if arguments.docs:
         write_docs(ROOT / "docs", tables, everything, report["machine"], arguments.density)
     failed = [
