@@ -10,6 +10,7 @@
 #include "errors.h"
 #include "glued_complex.h"
 #include "progress.h"
+#include "skeleton_radius.h"
 #include "stage.h"
 
 #include <algorithm>
@@ -145,26 +146,7 @@ inline CurveSkeleton collapseToCurve(
 
 	// A node of split vertices only has no surface vertex: it takes the mean of its neighbours' radii.
 	skeleton.radius = meanSurfaceDistance(skeleton.position, *stage.surface, skeleton.node);
-	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
-	for (bool changed = true; changed;) {
-		changed = false;
-		const std::vector<double> before = skeleton.radius;
-		for (size_t v = 0; v < before.size(); ++v) {
-			if (before[v] >= 0)
-				continue;
-			double sum = 0;
-			int count = 0;
-			for (int w : neighbours[v])
-				if (before[w] >= 0) {
-					sum += before[w];
-					++count;
-				}
-			if (count) {
-				skeleton.radius[v] = sum / count;
-				changed = true;
-			}
-		}
-	}
+	fillUnknownRadii(skeleton.radius, skeleton.neighbours());
 	progress.report(1, "Collapsing to curves");
 	return skeleton;
 }
