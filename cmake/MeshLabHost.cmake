@@ -33,7 +33,7 @@ find_path(GLEW_INCLUDE_DIR GL/glew.h REQUIRED)
 
 # A plugin takes MeshLab's functions from the library that its host has already loaded. An empty
 # library of the same name is enough to link against, so that nobody needs to build MeshLab first.
-file(WRITE "${CMAKE_BINARY_DIR}/stub/meshlab_common.c" "")
+file(CONFIGURE OUTPUT "${CMAKE_BINARY_DIR}/stub/meshlab_common.c" CONTENT "")  # keeps its date
 add_library(meshlab_common_stub SHARED "${CMAKE_BINARY_DIR}/stub/meshlab_common.c")
 set_target_properties(meshlab_common_stub PROPERTIES
 	OUTPUT_NAME meshlab-common

@@ -101,6 +101,14 @@ class TestResults:
         assert "Contracting" not in torus[1].stdout
 
 
+def test_a_built_plugin_is_not_built_again(plugin, tmp_path):
+    """Whoever is using it meanwhile would meet half a file."""
+    before = plugin.stat().st_mtime_ns
+    run = skeletonize(MESHES / "capsule.off", tmp_path, "--no-picture", "--target-length", "2%")
+    assert run.returncode == 0, run.stderr
+    assert plugin.stat().st_mtime_ns == before
+
+
 class TestOptions:
     def test_without_resampling_the_surface_is_the_input(self, tmp_path):
         run = skeletonize(MESHES / "capsule.off", tmp_path, "--no-resample", "--no-picture")
