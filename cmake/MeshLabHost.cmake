@@ -7,6 +7,10 @@
 if(MESHLAB_HOST STREQUAL "pymeshlab")
 	set(MESHLAB_SCALAR double)
 	set(MESHLAB_VERSION 2025.07)
+elseif(MESHLAB_HOST MATCHES "^pymeshlab-([0-9]+\\.[0-9]+)$")
+	set(MESHLAB_SCALAR double)
+	# A wheel's version drops the month's leading zero.
+	string(REGEX REPLACE "\\.([0-9])$" ".0\\1" MESHLAB_VERSION "${CMAKE_MATCH_1}")
 elseif(MESHLAB_HOST MATCHES "^meshlab-([0-9]+\\.[0-9]+)$")
 	set(MESHLAB_SCALAR float)
 	set(MESHLAB_VERSION ${CMAKE_MATCH_1})
@@ -19,6 +23,13 @@ if(MESHLAB_VERSION VERSION_LESS 2021.05)
 	set(MESHLAB_API 2020)
 else()
 	set(MESHLAB_API 2021)
+endif()
+
+# Four classes of parameters changed their names with 2023.12.
+if(MESHLAB_VERSION VERSION_LESS 2023.12)
+	set(renamed_parameters 0)
+else()
+	set(renamed_parameters 1)
 endif()
 
 set(host_header_2020 common/interfaces.h)
@@ -44,7 +55,8 @@ target_include_directories(meshlab_host SYSTEM INTERFACE "${MESHLAB_SRC}/src" "$
 target_compile_definitions(meshlab_host INTERFACE
 	MESHLAB_SCALAR=${MESHLAB_SCALAR} MESHLAB_VERSION=${MESHLAB_VERSION}
 	MCFSKEL_HOST_API=${MESHLAB_API}
-	MCFSKEL_PYTHON_HOST=$<STREQUAL:${MESHLAB_HOST},pymeshlab>)
+	MCFSKEL_RENAMED_PARAMETERS=${renamed_parameters}
+	MCFSKEL_PYTHON_HOST=$<STREQUAL:${MESHLAB_SCALAR},double>)
 target_link_libraries(meshlab_host INTERFACE
 	vcg -Wl,--no-as-needed meshlab_common_stub -Wl,--as-needed
 	Qt5::Core Qt5::Gui Qt5::Widgets Qt5::OpenGL Qt5::Xml)

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file What differs between MeshLab's two plugin interfaces, under one name each, so that the
-/// filters and layers are written once. MCFSKEL_HOST_API is 2020 up to release 2020.12, 2021 since.
+/// filters and layers are written once. MCFSKEL_HOST_API is 2020 up to release 2020.12, 2021 since;
+/// MCFSKEL_RENAMED_PARAMETERS is 1 since release 2023.12.
 
 #ifndef MCFSKEL_HOST_API_H
 #define MCFSKEL_HOST_API_H
@@ -28,12 +29,19 @@ Q_DECLARE_METATYPE(Eigen::VectorXd)
 
 namespace mcfskel::host {
 
-#if MCFSKEL_HOST_API == 2020
-
-using FilterBase = MeshFilterInterface;
+#if MCFSKEL_RENAMED_PARAMETERS
+using RichPercentage = ::RichPercentage;
+using RichFileOpen = ::RichFileOpen;
+using RichFileSave = ::RichFileSave;
+#else
 using RichPercentage = ::RichAbsPerc;
 using RichFileOpen = ::RichOpenFile;
 using RichFileSave = ::RichSaveFile;
+#endif
+
+#if MCFSKEL_HOST_API == 2020
+
+using FilterBase = MeshFilterInterface;
 /// The document as a filter's parameters may see it.
 using ParameterDocument = MeshDocument;
 
@@ -72,9 +80,6 @@ inline void removeLayer(MeshDocument& document, int id)
 #else
 
 using FilterBase = FilterPlugin;
-using RichPercentage = ::RichPercentage;
-using RichFileOpen = ::RichFileOpen;
-using RichFileSave = ::RichFileSave;
 using ParameterDocument = const MeshDocument;
 
 template <class Rich, class... Arguments>

@@ -59,8 +59,12 @@ clone_meshlab() {
 # alone. The archive of upstream's source is all we need, and it may be there even where Debian's own
 # part of the package is not: apt then fails, but leaves it.
 debian_meshlab() {
-	local release="$1" work="$2" suite=sid mirror version tarball
-	[ "$release" != 2020.09 ] || suite=bookworm
+	local release="$1" work="$2" suite mirror version tarball
+	case "$release" in
+	2020.09) suite=bookworm ;;
+	2022.02) suite=trixie ;;
+	*) suite=sid ;;
+	esac
 	need_packages xz-utils debian-archive-keyring
 	mirror="$(debian_mirror)"
 	[ -n "$mirror" ] || die "this machine's apt names no Debian mirror; set MESHLAB_SRC to a source tree"
