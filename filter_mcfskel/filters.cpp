@@ -77,6 +77,7 @@ const std::vector<FilterSpec>& catalogue()
 		medialPolesFilter(),
 		contractionStepFilter(),
 		collapseToCurveFilter(),
+		refineSkeletonFilter(),
 		fullSkeletonizeFilter(),
 		surfacePartsFilter(),
 		pruneSkeletonFilter(),

@@ -52,6 +52,10 @@ def parse_arguments(arguments: list[str] | None = None) -> argparse.Namespace:
     flow.add_argument("--target-length", type=length, metavar="LENGTH",
                       help="edge length of the resampling (chosen from the mesh)")
     flow.add_argument("--resample-iterations", type=int, metavar="N", help="rounds of it (5)")
+    flow.add_argument("--no-denoise", dest="denoise", action="store_const", const=False,
+                      help="resample without smoothing the noise first")
+    flow.add_argument("--no-refine", dest="refine", action="store_const", const=False,
+                      help="leave the curve as the paper has it")
     flow.add_argument("--pole-method", choices=["voronoi", "balls"], help="how poles are found")
     flow.add_argument("--max-iterations", type=int, metavar="N", help="cap of the contraction (500)")
     results = parser.add_argument_group("the results")
@@ -78,7 +82,8 @@ def filter_parameters(options: argparse.Namespace) -> dict[str, Any]:
     kinds = {"percent": pymeshlab.PercentageValue, "units": pymeshlab.PureValue}
     parameters = {}
     for name in ["w_l", "w_h", "w_m", "epsilon", "split_angle", "resample", "target_length",
-                 "resample_iterations", "pole_method", "max_iterations", "keep_stages"]:
+                 "resample_iterations", "denoise", "refine", "pole_method", "max_iterations",
+                 "keep_stages"]:
         value = getattr(options, name)
         if isinstance(value, tuple):
             value = kinds[value[0]](value[1])

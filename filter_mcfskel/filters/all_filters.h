@@ -14,6 +14,7 @@ FilterSpec resampleFilter();
 FilterSpec medialPolesFilter();
 FilterSpec contractionStepFilter();
 FilterSpec collapseToCurveFilter();
+FilterSpec refineSkeletonFilter();
 FilterSpec fullSkeletonizeFilter();
 FilterSpec surfacePartsFilter();
 FilterSpec pruneSkeletonFilter();

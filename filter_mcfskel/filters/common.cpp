@@ -3,6 +3,7 @@
 
 #include "common.h"
 
+#include <skeleton/noise.h>
 #include <skeleton/poles.h>
 #include <skeleton/resample.h>
 
@@ -43,6 +44,14 @@ ParameterSpec resampleIterationsParameter()
 		double(mcf::Parameters().resampleIterations), "Resampling rounds",
 		"Rounds of splitting, collapsing, flipping and smoothing. More make the triangles more even; 3 to "
 		"10 are sane."};
+}
+
+ParameterSpec denoiseParameter()
+{
+	return {ParameterKind::Boolean, "denoise", double(mcf::Parameters().denoise), "Smooth noise",
+		"Measures the noise of the surface and, where there is some, smooths it before the resampling, "
+		"so that it does not grow branches; the log says how much was found. Clean surfaces are left "
+		"as they are."};
 }
 
 ParameterSpec poleMethodParameter()
@@ -94,6 +103,7 @@ void readResampling(const ParameterValues& values, mcf::Parameters& parameters)
 {
 	parameters.targetLength = values.fraction("target_length");
 	parameters.resampleIterations = values.integer("resample_iterations");
+	parameters.denoise = values.flag("denoise");
 }
 
 void readFlow(const ParameterValues& values, mcf::Parameters& parameters)
@@ -169,12 +179,27 @@ void logNotes(const FilterRun& run, const SurfaceLayer& surface)
 		run.log(QString::fromStdString(note));
 }
 
-SurfaceLayer resampledSurface(
-	const mcf::SurfaceMesh& mesh, const mcf::Parameters& parameters, const mcf::Progress& progress)
+SurfaceLayer resampledSurface(const FilterRun& run, const mcf::SurfaceMesh& mesh,
+	const mcf::Parameters& parameters, const mcf::Progress& progress)
 {
+	const mcf::NoiseReport noise = mcf::measureNoise(mesh);
+	const bool smooth = parameters.denoise && noise.isNoisy();
+	if (noise.isNoisy())
+		run.log(
+			QString("The surface has noise of %1 % of its diagonal: %2.")
+				.arg(100 * noise.level, 0, 'g', 2)
+				.arg(smooth ? QString("smoothing it in %1 rounds").arg(noise.mostRounds())
+							: QString("it may show in the skeleton; 'denoise' would smooth it")));
+	const mcf::SurfaceMesh calm =
+		smooth ? mcf::smoothed(mesh, noise.rounds, progress.part(0, 0.2)) : mesh;
 	SurfaceLayer result;
-	result.mesh = std::make_shared<const mcf::SurfaceMesh>(mcf::resample(
-		mesh, mcf::defaultTargetLength(mesh, parameters), parameters.resampleIterations, progress));
+	result.mesh = std::make_shared<const mcf::SurfaceMesh>(
+		mcf::resample(calm, mcf::defaultTargetLength(calm, parameters),
+			parameters.resampleIterations, smooth ? progress.part(0.2, 1) : progress));
+	run.log(QString("Resampled to %1 vertices, mean edge length %2 mesh units%3.")
+				.arg(result.mesh->vertexCount())
+				.arg(meanEdgeLength(*result.mesh))
+				.arg(parameters.targetLength == 0 ? " (chosen from the mesh)" : ""));
 	auto identity = std::make_shared<std::vector<int>>(size_t(result.mesh->vertexSlots()));
 	std::iota(identity->begin(), identity->end(), 0);
 	result.vertexOfSlot = identity;

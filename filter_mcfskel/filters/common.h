@@ -28,6 +28,7 @@ QString helpPage(const QString& whatItDoes);
 
 ParameterSpec targetLengthParameter();
 ParameterSpec resampleIterationsParameter();
+ParameterSpec denoiseParameter();
 ParameterSpec poleMethodParameter();
 std::vector<ParameterSpec> weightParameters();
 ParameterSpec epsilonParameter();
@@ -51,8 +52,9 @@ double meanEdgeLength(const vcg::tri::mcf::SurfaceMesh& mesh);
 /// Writes the repairs of a surface into the log, once.
 void logNotes(const FilterRun& run, const SurfaceLayer& surface);
 
-/// Resamples a surface; the result is what a layer made from it will be.
-SurfaceLayer resampledSurface(const vcg::tri::mcf::SurfaceMesh& mesh,
+/// Smooths what noise a surface has, if the parameters say so, and resamples it; says in the log what
+/// was found and done. The result is what a layer made from it will be.
+SurfaceLayer resampledSurface(const FilterRun& run, const vcg::tri::mcf::SurfaceMesh& mesh,
 	const vcg::tri::mcf::Parameters& parameters, const vcg::tri::mcf::Progress& progress);
 
 /// A surface together with its poles.

@@ -8,6 +8,7 @@
 #include <skeleton/errors.h>
 #include <skeleton/point_tree.h>
 #include <skeleton/poles.h>
+#include <skeleton/refine.h>
 #include <skeleton/skeletonize.h>
 
 namespace mcfskel {
@@ -61,15 +62,9 @@ Pipeline skeletonize(FilterRun& run, const mcf::Parameters& parameters)
 	logNotes(run, pipeline.input);
 
 	Stopwatch watch;
-	if (parameters.resample) {
-		pipeline.surface =
-			resampledSurface(*pipeline.input.mesh, parameters, run.progress.part(0, 0.15));
-		run.log(QString("Resampled to %1 vertices, mean edge length %2 mesh units.")
-					.arg(pipeline.surface.mesh->vertexCount())
-					.arg(meanEdgeLength(*pipeline.surface.mesh)));
-	}
-	else
-		pipeline.surface = pipeline.input;
+	pipeline.surface = parameters.resample
+		? resampledSurface(run, *pipeline.input.mesh, parameters, run.progress.part(0, 0.15))
+		: pipeline.input;
 	note("resample", watch.lap());
 
 	if (!parameters.resample)
@@ -82,13 +77,16 @@ Pipeline skeletonize(FilterRun& run, const mcf::Parameters& parameters)
 		run.log("Taking the medial poles that the layer carries.");
 	note("poles", watch.lap());
 
-	contractAll(run, parameters, run.progress.part(0.25, 0.9), pipeline);
+	contractAll(run, parameters, run.progress.part(0.25, 0.85), pipeline);
 	note("contraction", watch.lap());
 
-	pipeline.skeleton =
-		mcf::collapseToCurve(*pipeline.kept.back(), parameters.epsilon, run.progress.part(0.9, 1));
+	pipeline.skeleton = mcf::collapseToCurve(
+		*pipeline.kept.back(), parameters.epsilon, run.progress.part(0.85, 0.9));
 	note("collapse", watch.lap());
-	note("refine", 0);
+	if (parameters.refine)
+		pipeline.skeleton = mcf::refine(pipeline.skeleton, *pipeline.surface.mesh,
+			mcf::RefineParameters(), run.progress.part(0.9, 1));
+	note("refine", watch.lap());
 	return pipeline;
 }
 
@@ -107,6 +105,7 @@ Results run(FilterRun& run)
 {
 	mcf::Parameters parameters;
 	parameters.resample = run.parameters.flag("resample");
+	parameters.refine = run.parameters.flag("refine");
 	readResampling(run.parameters, parameters);
 	readFlow(run.parameters, parameters);
 	parameters.poleMethod = readPoleMethod(run.parameters);
@@ -153,6 +152,7 @@ FilterSpec fullSkeletonizeFilter()
 			"let it leave the shape."},
 		targetLengthParameter(),
 		resampleIterationsParameter().asAdvanced(),
+		denoiseParameter(),
 	};
 	for (const ParameterSpec& weight : weightParameters())
 		parameters.push_back(weight);
@@ -166,13 +166,18 @@ FilterSpec fullSkeletonizeFilter()
 		"does after 10 to 40."}
 							 .asAdvanced());
 	parameters.push_back(poleMethodParameter().asAdvanced());
+	parameters.push_back({ParameterKind::Boolean, "refine", double(defaults.refine),
+		"Refine the skeleton",
+		"Goes beyond the paper at the end: removes spurs, samples the branches evenly, centres and "
+		"smooths them, and extends the tips to the ends of their features. Without, the skeleton is "
+		"the paper's own. Also a filter of its own."});
 	return {"generate_curve_skeleton_mcf", menuName("Full Skeletonize"),
 		helpPage(
 			"Computes the curve skeleton of a closed surface: a graph of nodes and edges in the "
 			"middle of the shape, with one component for each of its components and one cycle for "
 			"each of its handles. Resamples the surface, finds its medial poles, contracts it until "
-			"no volume is left and collapses the result to curves; each of these is a filter of its "
-			"own, too.<br><br>"
+			"no volume is left, collapses the result to curves and refines these; each is a filter of "
+			"its own, too.<br><br>"
 			"New layers: the resampled surface, the last (or every k-th) stage of the contraction, and "
 			"the skeleton. The skeleton's vertex quality is the local thickness; the vertex attribute "
 			"<i>mcfskel_node</i> of the surfaces tells the skeleton vertex of each of their "

@@ -17,20 +17,15 @@ Results run(FilterRun& run)
 	parameters.check();
 	const SurfaceLayer surface = readSurface(run.layer());
 	logNotes(run, surface);
-	const SurfaceLayer resampled = resampledSurface(*surface.mesh, parameters, run.progress);
+	const SurfaceLayer resampled = resampledSurface(run, *surface.mesh, parameters, run.progress);
 	const mcf::SurfaceMesh& mesh = *resampled.mesh;
-	const double meanLength = meanEdgeLength(mesh);
-	run.log(QString("Resampled to %1 vertices, mean edge length %2 mesh units%3.")
-				.arg(mesh.vertexCount())
-				.arg(meanLength)
-				.arg(parameters.targetLength == 0 ? " (chosen from the mesh)" : ""));
 
 	DocumentEdit edit(run.document);
 	MeshModel& layer = edit.addSurface(run.layer(), baseName(run.layer()) + "_resampled", mesh);
 	edit.attachSurface(layer, resampled);
 	edit.commit();
 	return {{"vertices", mesh.vertexCount()}, {"faces", mesh.faceCount()},
-		{"edge_length_mean", meanLength}};
+		{"edge_length_mean", meanEdgeLength(mesh)}};
 }
 
 } // namespace
@@ -45,7 +40,7 @@ FilterSpec resampleFilter()
 			"surface and puts them back onto it; the topology stays.<br><br>"
 			"First stage of the skeletonization. Needs a closed two-manifold triangle mesh."),
 		FilterCategory::Remeshing, MeshModel::MM_FACENUMBER,
-		{targetLengthParameter(), resampleIterationsParameter()}, run};
+		{targetLengthParameter(), resampleIterationsParameter(), denoiseParameter()}, run};
 }
 
 } // namespace mcfskel

@@ -121,6 +121,23 @@ std::vector<int> nodesOnSurface(
 	return nodesFromAttribute(surface, curve.skeleton.position.size());
 }
 
+CurveLayer skeletonOf(const FilterRun& run, CurveLayer curve, const SkeletonSurface& surface)
+{
+	std::vector<int> node = nodesOnSurface(run, curve, surface);
+	if (node.empty()) {
+		run.log(
+			"The skeleton knows nothing of this surface: each of its vertices goes to the nearest "
+			"node.");
+		const mcf::PointTree nodes(curve.skeleton.position);
+		for (const vcg::Point3d& p : surface.surface.mesh->position)
+			node.push_back(nodes.nearest(p));
+	}
+	curve.skeleton.node = std::move(node);
+	curve.surface = linkTo(*surface.layer, surface.surface);
+	curve.surfaceName = surface.layer->label();
+	return curve;
+}
+
 std::vector<double> clearances(
 	const std::vector<vcg::Point3d>& nodes, const mcf::SurfaceMesh& surface)
 {

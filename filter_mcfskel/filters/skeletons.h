@@ -46,6 +46,12 @@ SkeletonSurface requireSurface(const FilterRun& run, const CurveLayer& curve);
 std::vector<int> nodesOnSurface(
 	const FilterRun& run, const CurveLayer& curve, const SkeletonSurface& surface);
 
+/**
+ * The skeleton with the correspondence of a surface, as if it had been made from it: nodesOnSurface(),
+ * and where nothing is known the nearest node of each vertex.
+ */
+CurveLayer skeletonOf(const FilterRun& run, CurveLayer curve, const SkeletonSurface& surface);
+
 /// The distance of each node to a surface, mesh units; 0 outside.
 std::vector<double> clearances(
 	const std::vector<vcg::Point3d>& nodes, const vcg::tri::mcf::SurfaceMesh& surface);

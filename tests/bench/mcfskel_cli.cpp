@@ -9,6 +9,7 @@
 
 #include <skeleton/check_input.h>
 #include <skeleton/collapse_to_curve.h>
+#include <skeleton/noise.h>
 #include <skeleton/parameters.h>
 #include <skeleton/poles.h>
 #include <skeleton/refine.h>
@@ -35,6 +36,7 @@ const char* const usage =
 	"  --no-resample             contract the mesh as it is\n"
 	"  --target-length PCT       edge length of the resampling, in % of the diagonal\n"
 	"  --resample-iterations N   rounds of the resampling\n"
+	"  --no-denoise              resample without smoothing the noise first\n"
 	"  --resample-only           stop after the resampling\n"
 	"  --pole-method METHOD      voronoi or balls\n"
 	"  --w-l W  --w-h W  --w-m W weights of Eq. 6, in the paper's units\n"
@@ -52,7 +54,6 @@ struct Options
 {
 	std::string mesh, skeleton, surface, stage;
 	bool resampleOnly = false;
-	bool refine = true;
 	bool verbose = false;
 	mcf::Parameters parameters;
 	mcf::RefineParameters refinement;
@@ -75,7 +76,8 @@ Options parse(int argc, char** argv)
 	const std::map<std::string, std::function<void()>> flags = {
 		{"--no-resample", [&] { p.resample = false; }},
 		{"--resample-only", [&] { options.resampleOnly = true; }},
-		{"--no-refine", [&] { options.refine = false; }},
+		{"--no-denoise", [&] { p.denoise = false; }},
+		{"--no-refine", [&] { p.refine = false; }},
 		{"--verbose", [&] { options.verbose = true; }},
 	};
 	using Text = const std::string&;
@@ -151,9 +153,14 @@ void run(const Options& options)
 	soup = bench::Soup();
 
 	watch.lap();
-	if (parameters.resample)
+	if (parameters.resample) {
+		const mcf::NoiseReport noise = mcf::measureNoise(checked.mesh);
+		report.add("noise", noise.level);
+		if (parameters.denoise)
+			checked.mesh = mcf::smoothed(std::move(checked.mesh), noise.rounds);
 		checked.mesh = mcf::resample(checked.mesh,
 			mcf::defaultTargetLength(checked.mesh, parameters), parameters.resampleIterations);
+	}
 	seconds.add("resample", watch.lap());
 	const mcf::SurfaceMesh& surface = checked.mesh;
 	int components = 0;
@@ -171,7 +178,7 @@ void run(const Options& options)
 		seconds.add("contraction", watch.lap());
 		mcf::CurveSkeleton skeleton = mcf::collapseToCurve(stage);
 		seconds.add("conversion", watch.lap());
-		if (options.refine)
+		if (parameters.refine)
 			skeleton = mcf::refine(skeleton, surface, options.refinement);
 		seconds.add("refine", watch.lap());
 

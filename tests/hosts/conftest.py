@@ -18,6 +18,7 @@ RESAMPLE = "meshing_isotropic_resampling_mcf"
 POLES = "compute_medial_poles_mcf"
 STEP = "generate_meso_skeleton_mcf"
 COLLAPSE = "generate_curve_skeleton_from_meso_mcf"
+REFINE = "generate_refined_skeleton_mcf"
 FULL = "generate_curve_skeleton_mcf"
 
 

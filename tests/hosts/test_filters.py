@@ -8,9 +8,9 @@ import numpy as np
 import pymeshlab
 import pytest
 
-from conftest import (COLLAPSE, FULL, MESHES, POLES, RESAMPLE, STEP, area, arrays, attributes,
-                      components, diagonal, document, edges_of, euler, labels, layer, opened, points,
-                      scalars, volume)
+from conftest import (COLLAPSE, FULL, MESHES, POLES, REFINE, RESAMPLE, STEP, area, arrays,
+                      attributes, components, diagonal, document, edges_of, euler, failing,
+                      labels, layer, opened, points, scalars, volume)
 
 COARSE = {"target_length": pymeshlab.PercentageValue(1.2)}
 STAGE_NUMBERS = {"iterations", "converged", "volume_fraction", "area_fraction", "fixed_fraction",
@@ -46,7 +46,8 @@ class TestDefaults:
     def test_full(self):
         values = opened("capsule").filter_parameter_values(FULL)
         expected = {"resample": True, "resample_iterations": 5, "w_l": 1.0, "w_h": 20.0, "w_m": 40.0,
-                    "split_angle": 110.0, "keep_stages": 0, "max_iterations": 500}
+                    "split_angle": 110.0, "keep_stages": 0, "max_iterations": 500, "refine": True,
+                    "denoise": True}
         assert {name: values[name] for name in expected} == expected
 
     def test_epsilon_is_a_fifth_of_a_percent_of_the_diagonal(self):
@@ -306,6 +307,100 @@ class TestCollapse:
         assert layers.apply_filter(COLLAPSE)["cycles"] == 1
 
 
+@pytest.fixture(scope="module")
+def letter():
+    """A letter P, refined as a step of its own: the document and the numbers."""
+    layers = opened("letter_p")
+    layers.apply_filter(FULL, refine=False, **COARSE)
+    before = layers.current_mesh().vertex_matrix()
+    results = layers.apply_filter(REFINE)
+    assert np.array_equal(layer(layers, "letter_p_skeleton").vertex_matrix(), before)
+    return layers, results
+
+
+class TestRefine:
+    def test_new_layer_of_the_same_topology(self, letter):
+        layers, results = letter
+        curve = layers.current_mesh()
+        assert curve.label() == "letter_p_refined"
+        assert (results["components"], results["cycles"]) == (1, 1)
+        assert results["skeleton_vertices"] == curve.vertex_number()
+        assert components(curve.vertex_number(), curve.edge_matrix()) == 1
+
+    def test_nodes_are_evenly_spaced(self, letter):
+        curve = letter[0].current_mesh()
+        ends = curve.vertex_matrix()[curve.edge_matrix()]
+        length = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
+        spacing = 0.005 * diagonal(letter[0].mesh(0).vertex_matrix())
+        assert np.median(length) == pytest.approx(spacing, rel=0.2)
+        assert length.max() < 2 * spacing
+
+    def test_correspondence_follows_on_both_surfaces(self, letter):
+        layers, _ = letter
+        curve = layers.current_mesh()
+        for name in ["letter_p.off", "letter_p_resampled"]:
+            surface = layer(layers, name)
+            node = scalars(surface, "mcfskel_node").astype(int)
+            assert node.min() >= 0 and node.max() < curve.vertex_number()
+            nodes = curve.vertex_matrix()
+            gap = np.linalg.norm(surface.vertex_matrix() - nodes[node], axis=1)
+            least = np.array([np.linalg.norm(nodes - p, axis=1).min()
+                              for p in surface.vertex_matrix()[::50]])
+            assert (gap[::50] <= 1.5 * least).mean() > 0.95
+
+    def test_of_a_skeleton_from_elsewhere_in_a_surface_that_is_named(self):
+        layers = opened("capsule")
+        size = diagonal(layers.mesh(0).vertex_matrix())
+        x = layers.mesh(0).vertex_matrix()[:, 0]
+        straight = np.linspace(x.min() / 2, x.max() / 2, 20)
+        aside = np.column_stack([straight, np.full(20, 0.02 * size), np.zeros(20)])
+        edges = np.column_stack([np.arange(19), np.arange(1, 20)])
+        layers.add_mesh(pymeshlab.Mesh(vertex_matrix=aside, edge_matrix=edges), "drawn")
+        assert "surface" in failing(layers, REFINE)
+        layers.apply_filter(REFINE, surface=0)
+        nodes = layers.current_mesh().vertex_matrix()
+        assert np.abs(nodes[:, 1:]).max() < 0.002 * size, "centred"
+        assert np.ptp(nodes[:, 0]) > np.ptp(straight), "extended to the ends"
+        assert scalars(layers.mesh(0), "mcfskel_node").max() == len(nodes) - 1
+
+    def test_of_something_else(self):
+        layers = opened("capsule")
+        assert "faces" in failing(layers, REFINE)
+
+
+@pytest.fixture(scope="module")
+def surfaces():
+    """A torus, bumpy by 0.3 % of its diagonal: its resampling as it is and smoothed."""
+    vertices, faces = arrays("torus")
+    bumps = np.random.default_rng(1).normal(size=vertices.shape) * 0.003 * diagonal(vertices)
+    result = []
+    for denoise in [False, True]:
+        layers = document((vertices + bumps, faces))
+        layers.apply_filter(RESAMPLE, denoise=denoise, **COARSE)
+        result.append(layers.current_mesh().vertex_matrix())
+    return result
+
+
+class TestDenoise:
+    def test_brings_a_noisy_surface_nearer_to_the_clean_one(self, surfaces):
+        record = json.loads((MESHES / "torus.json").read_text())["skeleton"]
+        circle, tube = np.array(record["nodes"]), np.mean(record["radius"])
+
+        def error(points: np.ndarray) -> float:
+            gap = np.linalg.norm(points[:, None] - circle[None], axis=2).min(axis=1)
+            return np.sqrt(np.mean((gap - tube) ** 2))
+        raw, smooth = surfaces
+        assert error(smooth) < 0.6 * error(raw)
+
+    def test_leaves_a_clean_surface_alone(self):
+        results = []
+        for denoise in [False, True]:
+            layers = opened("torus")
+            layers.apply_filter(RESAMPLE, denoise=denoise, **COARSE)
+            results.append(layers.current_mesh().vertex_matrix())
+        assert np.array_equal(*results)
+
+
 class TestFull:
     def test_layers(self, torus_run):
         layers, results, before = torus_run
@@ -369,9 +464,17 @@ class TestFull:
         for _ in range(results["iterations"]):
             singly.apply_filter(STEP)
         singly.apply_filter(COLLAPSE)
-        for mesh in layers:
+        unrefined = opened("torus")
+        unrefined.apply_filter(FULL, keep_stages=2, refine=False, **COARSE)
+        assert labels(unrefined) == labels(layers)
+        for mesh in unrefined:
             if mesh.label() != "torus.off":
                 assert same_layer(mesh, layer(singly, mesh.label())), mesh.label()
+        singly.apply_filter(REFINE)
+        for mesh in layers:
+            if mesh.label() != "torus.off":
+                label = mesh.label().replace("_skeleton", "_refined")
+                assert same_layer(mesh, layer(singly, label)), label
 
     def test_same_input_same_bits(self, torus_run):
         layers, _, _ = torus_run

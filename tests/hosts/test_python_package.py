@@ -105,7 +105,7 @@ def test_options_reach_the_filter(run):
     answer = run("""
         import mcfskel, pymeshlab, trimesh
         mesh = trimesh.load(MESHES + "/capsule.off", process=False)
-        coarse = dict(target_length="1.2%")
+        coarse = dict(target_length="1.2%", refine=False)
         answer = [len(mcfskel.skeletonize(mesh, epsilon=e, **coarse).nodes)
                   for e in ("0.2%", "0.6%", pymeshlab.PercentageValue(0.6))]
         answer.append(mcfskel.skeletonize(mesh, max_iterations=2, **coarse).results["iterations"])

@@ -139,10 +139,8 @@ struct NoiseReport
 	/// Rounds of smoothed() for each component.
 	std::vector<int> rounds;
 
-	bool isNoisy() const
-	{
-		return std::any_of(rounds.begin(), rounds.end(), [](int r) { return r > 0; });
-	}
+	int mostRounds() const { return *std::max_element(rounds.begin(), rounds.end()); }
+	bool isNoisy() const { return mostRounds() > 0; }
 };
 
 /**

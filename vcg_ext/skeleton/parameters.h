@@ -44,6 +44,10 @@ struct Parameters
 	double targetLength = 0;
 	/// Rounds of the resampling; >= 0.
 	int resampleIterations = 5;
+	/// Measure the noise of the surface and smooth it before the resampling: see noise.h.
+	bool denoise = true;
+	/// Refine the curve at the end: see refine.h. Without, it is the paper's own.
+	bool refine = true;
 
 	/// @throws InvalidParameter naming the first parameter that is out of its range.
 	void check() const
