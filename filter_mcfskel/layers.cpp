@@ -3,6 +3,8 @@
 
 #include "layers.h"
 
+#include "fields.h"
+
 #include <skeleton/check_input.h>
 #include <skeleton/errors.h>
 
@@ -429,6 +431,7 @@ void fillCurve(MeshModel& layer, const std::vector<vcg::Point3d>& nodes,
 	if (!radius.empty()) {
 		writeScalars(layer, radiusAttribute, radius);
 		writeQuality(layer, radius);
+		setVertexColours(layer, radius, 0, *std::max_element(radius.begin(), radius.end()));
 	}
 	host::updateBoxAndNormals(layer);
 }
@@ -488,12 +491,14 @@ DocumentEdit::~DocumentEdit()
 
 MeshModel& DocumentEdit::addLayer(const MeshModel& source, const QString& label)
 {
+	sources.push_back(source.id());
 	return addLayer(Matrix44m(source.cm.Tr), label);
 }
 
 MeshModel& DocumentEdit::addLayer(const SurfaceLink& surface, const QString& label)
 {
 	const MeshModel* source = surface.layerId < 0 ? nullptr : document.getMesh(surface.layerId);
+	sources.push_back(surface.layerId);
 	return addLayer(source ? Matrix44m(source->cm.Tr) : Matrix44m::Identity(), label);
 }
 
@@ -535,6 +540,7 @@ MeshModel& DocumentEdit::addCurve(
 	const MeshModel& source, const QString& label, const CurveLayer& curve)
 {
 	MeshModel& layer = addLayer(source, label);
+	sources.push_back(curve.surface.layerId);
 	fillCurve(layer, curve);
 	return layer;
 }
@@ -550,6 +556,7 @@ MeshModel& DocumentEdit::addStage(const MeshModel& source, const QString& label,
 	std::shared_ptr<const mcf::Stage> stage, const SurfaceLink& surface)
 {
 	MeshModel& layer = addLayer(source, label);
+	sources.push_back(surface.layerId);
 	fillStage(layer, std::move(stage), surface);
 	return layer;
 }
@@ -608,8 +615,19 @@ void DocumentEdit::writeNodes(const SurfaceLink& surface, const std::vector<int>
 void DocumentEdit::commit()
 {
 	committed = true;
-	if (!added.empty())
-		document.setCurrentMesh(added.back());
+	if (added.empty())
+		return;
+	document.setCurrentMesh(added.back());
+	if (host::hasWindow())
+		showLastOnly();
+}
+
+void DocumentEdit::showLastOnly()
+{
+	sources.insert(sources.end(), added.begin(), added.end() - 1);
+	for (int id : sources)
+		if (id >= 0 && document.getMesh(id))
+			document.setVisible(id, false);
 }
 
 } // namespace mcfskel

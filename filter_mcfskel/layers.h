@@ -135,7 +135,7 @@ public:
 	MeshModel& addPoints(
 		const MeshModel& source, const QString& label, const std::vector<vcg::Point3d>& points);
 
-	/// A new layer of nodes and edges in the frame of `source`; the radius is also the quality.
+	/// A new layer of nodes and edges in the frame of `source`; the radius is also quality and colour.
 	MeshModel& addCurve(const MeshModel& source, const QString& label,
 		const std::vector<vcg::Point3d>& nodes, const std::vector<std::array<int, 2>>& edges,
 		const std::vector<double>& radius);
@@ -166,17 +166,25 @@ public:
 	/// As above for a surface known by its link, if that layer is still there and unchanged.
 	void writeNodes(const SurfaceLink& surface, const std::vector<int>& node);
 
-	/// Keeps the changes and makes the layer added last the current one.
+	/**
+	 * Keeps the changes and makes the layer added last the current one. In MeshLab's window that one
+	 * is seen at once: it lies inside the layers that it was made from, so these are hidden, and so
+	 * are the other new ones. Where there is no window all layers stay visible, since scripts use
+	 * visibility to say which layers a filter works on.
+	 */
 	void commit();
 
 private:
 	MeshModel& addLayer(const MeshModel& source, const QString& label);
 	MeshModel& addLayer(const SurfaceLink& surface, const QString& label);
 	MeshModel& addLayer(const Matrix44m& frame, const QString& label);
+	void showLastOnly();
 
 	MeshDocument& document;
 	int previousLayer;
 	std::vector<int> added;
+	/// The layers that the added ones were made from.
+	std::vector<int> sources;
 	bool committed = false;
 };
 

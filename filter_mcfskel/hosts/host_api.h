@@ -24,10 +24,22 @@ Q_DECLARE_METATYPE(Eigen::VectorXd)
 #include <common/parameters/rich_parameter_list.h>
 #endif
 
+#include <QApplication>
+#include <QWidget>
+
+#include <algorithm>
 #include <utility>
 #include <vector>
 
 namespace mcfskel::host {
+
+/// Whether somebody looks at the layers: in MeshLab's main window, which scripts do not have.
+inline bool hasWindow()
+{
+	const QWidgetList windows = QApplication::topLevelWidgets();
+	return std::any_of(windows.begin(), windows.end(),
+		[](const QWidget* window) { return window->inherits("QMainWindow"); });
+}
 
 #if MCFSKEL_RENAMED_PARAMETERS
 using RichPercentage = ::RichPercentage;
