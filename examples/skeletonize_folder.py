@@ -5,21 +5,25 @@
 
 Each mesh is done in a process of its own: a mesh that is refused, or that takes its process down,
 costs nobody else anything. The table RESULTS/results.csv has a line for each mesh that was tried; a
-second run goes on with the others, and with --retry tries those again that did not go well.
+second run, after Ctrl-C or worse, goes on with the others, and with --retry tries those again that
+did not go well.
 """
 
 from __future__ import annotations
 
 import argparse
 import csv
+import io
 import json
 import os
+import signal
 import subprocess
 import sys
 import tempfile
 import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -90,10 +94,11 @@ def do_mesh(mesh: str, target: str, formats: list[str], options: dict[str, Any])
 
 def child(job: str, answer: str) -> None:
     """What the process of one mesh runs: a job from a file, its row into another."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C does not wait for a filter to end
     try:
         row = {"status": "ok"} | do_mesh(*json.loads(Path(job).read_text()))
     except Exception as error:  # whatever it is, it becomes a line of the table
-        row = {"status": "failed", "error": str(error) or type(error).__name__}
+        row = {"status": "failed", "error": " ".join(str(error).split()) or type(error).__name__}
     Path(answer).write_text(json.dumps(row))
 
 
@@ -118,9 +123,12 @@ def in_own_process(mesh: str, target: str, formats: list[str], options: dict[str
 
 def run_here(jobs: list[tuple], workers: int) -> Iterator[Row]:
     """The rows of all jobs as they come; each thread waits for one process at a time."""
-    with ThreadPoolExecutor(workers) as pool:
+    pool = ThreadPoolExecutor(workers)
+    try:
         for future in as_completed([pool.submit(in_own_process, *job) for job in jobs]):
             yield future.result()
+    finally:
+        pool.shutdown(cancel_futures=True)  # after Ctrl-C nothing new is begun
 
 
 def run_on_cluster(jobs: list[tuple], address: str) -> Iterator[Row]:
@@ -128,7 +136,11 @@ def run_on_cluster(jobs: list[tuple], address: str) -> Iterator[Row]:
     from distributed import Client
     from distributed import as_completed as completed
 
-    with Client(address) as client:
+    try:
+        client = Client(address)
+    except (OSError, ValueError) as error:
+        raise SystemExit(f"error: no Dask scheduler at '{address}': {error}") from None
+    with client:
         client.upload_file(__file__)
         futures = [client.submit(on_worker, job, pure=False) for job in jobs]
         names = {future.key: job[0] for future, job in zip(futures, jobs)}
@@ -149,9 +161,9 @@ def on_worker(job: tuple) -> Row:
 def rows_of(table: Path) -> list[Row]:
     if not table.is_file():
         return []
-    with open(table, newline="", encoding="utf-8") as lines:
-        # A run that was interrupted may have left half a line.
-        return [row for row in csv.DictReader(lines) if row["mesh"] and row["status"]]
+    text = table.read_text(encoding="utf-8")
+    # A run that was killed may have left half a line.
+    return list(csv.DictReader(io.StringIO(text[:text.rfind("\n") + 1])))
 
 
 def summary(rows: list[Row]) -> str:
@@ -186,23 +198,28 @@ def main() -> int:
         writer.writeheader()
         writer.writerows(done.values())
     os.replace(table.with_suffix(".part"), table)
-    with open(table, "a", newline="", encoding="utf-8") as lines, \
+    rows = (run_on_cluster(jobs, arguments.scheduler) if arguments.scheduler
+            else run_here(jobs, arguments.workers))
+    with open(table, "a", newline="", encoding="utf-8") as lines, closing(rows), \
             tqdm(total=len(meshes), initial=len(meshes) - len(jobs), unit="mesh") as bar:
         writer = csv.DictWriter(lines, COLUMNS, extrasaction="ignore")
-        for row in (run_on_cluster(jobs, arguments.scheduler) if arguments.scheduler
-                    else run_here(jobs, arguments.workers)):
+        for row in rows:
             writer.writerow(row)
             lines.flush()  # what is done stays done if this run is interrupted
             done[row["mesh"]] = row
             bar.set_postfix_str(Path(row["mesh"]).name, refresh=False)
             bar.update()
-    rows = [row for mesh, row in done.items() if mesh in set(meshes)]
-    print(summary(rows))
-    return 0 if all(row["status"] == "ok" for row in rows) else 1
+    tried = [done[mesh] for mesh in meshes]
+    print(summary(tried))
+    return 0 if all(row["status"] == "ok" for row in tried) else 1
 
 
 if __name__ == "__main__":
     if sys.argv[1:2] == [CHILD]:
         child(*sys.argv[2:])
         sys.exit()
-    sys.exit(main())
+    try:
+        sys.exit(main())
+    except KeyboardInterrupt:
+        print("interrupted; the same command goes on from here", file=sys.stderr)
+        sys.exit(130)

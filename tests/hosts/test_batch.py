@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from conftest import MESHES, ROOT
+from conftest import MESHES, ROOT, opened
 
 SCRIPT = ROOT / "examples" / "skeletonize_folder.py"
 COARSE = ["--option", "target_length=1.2%"]
@@ -85,6 +85,33 @@ def test_goes_on_where_it_stopped(folder, environment):
     assert run(folder, env=environment).returncode == 1
     assert run(folder, "--retry", env=environment).returncode == 0
     assert table(folder)["open"]["status"] == "ok"
+
+
+@pytest.mark.parametrize("way, status", [(signal.SIGINT, 130), (signal.SIGKILL, -signal.SIGKILL)])
+def test_goes_on_after_an_interruption(folder, environment, way, status):
+    (folder / "open.off").unlink()
+    shutil.copy(folder / "torus.off", folder / "torus.ply.off")  # names that differ in the middle
+    opened("torus").save_current_mesh(str(folder / "torus.ply"))  # and in the end only
+    out = folder.parent / "out"
+    running = subprocess.Popen([sys.executable, str(SCRIPT), str(folder), str(out), *COARSE,
+                                "--workers", "1"], env=environment, start_new_session=True,
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    Cluster.wait_for(lambda: (out / "results.csv").is_file() and len(
+        (out / "results.csv").read_text().splitlines()) > 2)
+    os.killpg(running.pid, way)  # as the terminal does for Ctrl-C
+    assert running.wait(timeout=30) == status
+    with open(out / "results.csv", newline="") as lines:
+        first = {row["mesh"]: row for row in csv.DictReader(lines)}
+    assert 1 < len(first) < 5 and {row["status"] for row in first.values()} == {"ok"}
+    with open(out / "results.csv", "a", newline="") as lines:
+        lines.write(f"{folder / 'torus.off'},ok,1.")  # what a kill in the middle of a line leaves
+    assert run(folder, env=environment).returncode == 0
+    with open(out / "results.csv", newline="") as lines:
+        second = {row["mesh"]: row for row in csv.DictReader(lines)}
+    assert len(second) == 5 and first.items() <= second.items(), "nothing was done again"
+    for mesh, row in second.items():
+        graph = json.loads((out / f"{Path(mesh).name}.json").read_text())
+        assert len(graph["nodes"]) == int(row["skeleton_vertices"])
 
 
 def test_a_crash_costs_one_mesh(folder, environment, tmp_path):
