@@ -5,6 +5,7 @@
 #include "common.h"
 
 #include <skeleton/errors.h>
+#include <skeleton/first_stage.h>
 #include <skeleton/skeletonize.h>
 
 namespace mcfskel {
@@ -21,7 +22,7 @@ struct Start
 	SurfaceLink link;
 };
 
-Start startOf(FilterRun& run)
+Start startOf(FilterRun& run, const mcf::Parameters& parameters)
 {
 	Start start;
 	if (const StageLayer found = readStage(run.layer())) {
@@ -33,9 +34,9 @@ Start startOf(FilterRun& run)
 		run.log(
 			"This layer was a stage of the contraction, but its state is gone or its geometry was "
 			"changed: it is taken as a surface of its own.");
-	start.surface = surfaceWithPoles(run, mcf::Parameters().poleMethod, run.progress.part(0, 0.1));
-	start.stage = std::make_shared<const mcf::Stage>(
-		mcf::initialStage(*start.surface.surface.mesh, *start.surface.poles));
+	start.surface = surfaceWithPoles(run, parameters.poleMethod, run.progress.part(0, 0.08));
+	start.stage = std::make_shared<const mcf::Stage>(mcf::firstStage(*start.surface.surface.mesh,
+		parameters, start.surface.poles.get(), run.progress.part(0.08, 0.1)));
 	start.link = linkTo(run.layer(), start.surface.surface);
 	return start;
 }
@@ -48,7 +49,7 @@ Results run(FilterRun& run)
 	if (steps < 1)
 		throw mcf::InvalidParameter("Parameter steps must be at least 1.");
 	parameters.check();
-	const Start start = startOf(run);
+	const Start start = startOf(run, parameters);
 
 	std::vector<std::shared_ptr<const mcf::Stage>> stages;
 	const mcf::Progress progress = run.progress.part(0.1, 1);

@@ -6,6 +6,7 @@
 
 #include <skeleton/collapse_to_curve.h>
 #include <skeleton/errors.h>
+#include <skeleton/first_stage.h>
 #include <skeleton/point_tree.h>
 #include <skeleton/poles.h>
 #include <skeleton/refine.h>
@@ -43,8 +44,9 @@ void contractAll(FilterRun& run, const mcf::Parameters& parameters, const mcf::P
 			pipeline.kept.push_back(last);
 		}
 	};
-	mcf::Stage end = mcf::contractToSkeleton(
-		mcf::initialStage(*pipeline.surface.mesh, *pipeline.poles), parameters, progress, onStage);
+	mcf::Stage end = mcf::contractToSkeleton(mcf::firstStage(*pipeline.surface.mesh, parameters,
+												 pipeline.poles.get(), progress.part(0, 0.03)),
+		parameters, progress.part(0.03, 1), onStage);
 	if (!end.converged)
 		run.log(
 			QString("The contraction has not converged after %1 iterations.").arg(end.iteration));

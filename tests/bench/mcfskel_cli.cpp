@@ -9,14 +9,15 @@
 
 #include <skeleton/check_input.h>
 #include <skeleton/collapse_to_curve.h>
+#include <skeleton/first_stage.h>
 #include <skeleton/noise.h>
 #include <skeleton/parameters.h>
-#include <skeleton/poles.h>
 #include <skeleton/refine.h>
 #include <skeleton/resample.h>
 #include <skeleton/skeletonize.h>
 #include <skeleton/target_length.h>
 
+#include <algorithm>
 #include <exception>
 #include <functional>
 #include <iostream>
@@ -171,10 +172,12 @@ void run(const Options& options)
 
 	if (!options.resampleOnly) {
 		watch.lap();
-		const mcf::PoleSet poles = mcf::medialPoles(surface, parameters.poleMethod);
+		mcf::Stage start = mcf::firstStage(surface, parameters);
+		const auto polesMissing = std::count_if(
+			start.poleRadius.begin(), start.poleRadius.end(), [](double r) { return r < 0; });
 		seconds.add("poles", watch.lap());
-		const mcf::Stage stage = mcf::contractToSkeleton(mcf::initialStage(surface, poles),
-			parameters, mcf::Progress(), options.verbose ? describe : nullptr);
+		const mcf::Stage stage = mcf::contractToSkeleton(
+			std::move(start), parameters, mcf::Progress(), options.verbose ? describe : nullptr);
 		seconds.add("contraction", watch.lap());
 		mcf::CurveSkeleton skeleton = mcf::collapseToCurve(stage);
 		seconds.add("conversion", watch.lap());
@@ -183,7 +186,7 @@ void run(const Options& options)
 		seconds.add("refine", watch.lap());
 
 		const mcf::SkeletonStatistics counts = mcf::statistics(skeleton);
-		report.add("poles_missing", poles.missing())
+		report.add("poles_missing", size_t(polesMissing))
 			.add("iterations", stage.iteration)
 			.add("converged", stage.converged)
 			.add("area_fraction", stage.areaFraction())

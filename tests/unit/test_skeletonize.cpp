@@ -6,7 +6,7 @@
 #include "shapes.h"
 
 #include "skeleton/collapse_to_curve.h"
-#include "skeleton/poles.h"
+#include "skeleton/first_stage.h"
 #include "skeleton/skeletonize.h"
 
 #include <gtest/gtest.h>
@@ -25,8 +25,9 @@ namespace {
 
 Stage stageOf(const shapes::Soup& soup, PoleMethod method = PoleMethod::Balls)
 {
-	const SurfaceMesh mesh = soup.mesh();
-	return initialStage(mesh, medialPoles(mesh, method));
+	Parameters parameters;
+	parameters.poleMethod = method;
+	return firstStage(soup.mesh(), parameters);
 }
 
 struct NamedShape

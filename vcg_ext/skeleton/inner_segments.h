@@ -42,15 +42,20 @@ public:
 		origin = all.Center();
 		slack = FourBoxes::slack(all.Diag());
 		double longest = 0;
-		std::vector<Box3d> boxes(faces.size());
-		for (size_t i = 0; i < faces.size(); ++i)
+		std::vector<Box3d> boxes((faces.size() + 3) / 4);
+		levels.emplace_back(boxes.size());
+		for (size_t i = 0; i < faces.size(); ++i) {
+			Box3d box;
 			for (int k = 0; k < 3; ++k) {
 				const int h = 3 * faces[i] + k;
-				boxes[i].Add(mesh.position[mesh.origin(h)]);
+				box.Add(mesh.position[mesh.origin(h)]);
 				longest = std::max(longest, mesh.squaredLength(h));
 			}
+			levels.back()[i / 4].set(i % 4, box, origin);
+			boxes[i / 4].Add(box);
+		}
 		largestPower = longest / 3;
-		do {
+		while (boxes.size() > 1) {
 			std::vector<FourBoxes> level((boxes.size() + 3) / 4);
 			std::vector<Box3d> above(level.size());
 			for (size_t i = 0; i < boxes.size(); ++i) {
@@ -59,7 +64,7 @@ public:
 			}
 			levels.push_back(std::move(level));
 			boxes = std::move(above);
-		} while (boxes.size() > 1);
+		}
 	}
 
 	/**

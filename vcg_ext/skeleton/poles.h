@@ -13,6 +13,8 @@
 #include "surface_mesh.h"
 #include "voronoi_poles.h"
 
+#include <vector>
+
 namespace vcg::tri::mcf {
 
 /**
@@ -26,6 +28,24 @@ inline PoleSet medialPoles(
 {
 	return method == PoleMethod::Voronoi ? voronoiPoles(mesh, progress)
 										 : shrinkingBallPoles(mesh, progress);
+}
+
+/**
+ * medialPoles() of some vertices: against all vertices of the mesh, in the order of `vertices`.
+ * Shrinking balls are searched for these vertices only; the Voronoi diagram is always that of all.
+ */
+inline PoleSet polesAt(const SurfaceMesh& mesh, const std::vector<int>& vertices, PoleMethod method,
+	const Progress& progress = Progress())
+{
+	if (method == PoleMethod::Balls)
+		return shrinkingBallPoles(mesh, vertices, 0, progress);
+	const PoleSet all = voronoiPoles(mesh, progress);
+	PoleSet poles;
+	for (int v : vertices) {
+		poles.centre.push_back(all.centre[v]);
+		poles.radius.push_back(all.radius[v]);
+	}
+	return poles;
 }
 
 } // namespace vcg::tri::mcf

@@ -111,40 +111,47 @@ private:
 	size_t added = 0;
 };
 
+/// A point at which a maximal ball is wanted, in the unit frame that the tree's points are in.
+struct Touch
+{
+	Point3d point;
+	Point3d normal; ///< outward, unit length; zero: no ball
+	int place;      ///< in the results
+	int slot;       ///< of the point itself in the tree, -1 if it is none of the samples
+};
+
 /**
- * Maximal balls at `points`, in the unit frame that the tree's points are in.
- * @param onSamples  whether the tree is of these same points, so that neighbours in its order are
- *                   neighbours on the surface and nearly hold the ball.
- * @param isPole     (place in points, centre and radius in mesh units): whether the ball counts.
- * @return poles in mesh units.
+ * Maximal balls at `touches`, the best in an order in which neighbours are near each other.
+ * @param count      of the results.
+ * @param isPole     (place, centre and radius in mesh units): whether the ball counts.
+ * @return poles in mesh units, each at the place of its touch.
  */
 template <class IsPole>
-PoleSet maximalBalls(const std::vector<Point3d>& points, const std::vector<Point3d>& normals,
-	const UnitFrame& frame, const PointTree& tree, bool onSamples, double delta,
-	const Progress& progress, const IsPole& isPole)
+PoleSet maximalBalls(const std::vector<Touch>& touches, size_t count, const UnitFrame& frame,
+	const PointTree& tree, double delta, const Progress& progress, const IsPole& isPole)
 {
 	constexpr int neighbours = 8;
 	PoleSet poles;
-	poles.centre.assign(points.size(), Point3d(0, 0, 0));
-	poles.radius.assign(points.size(), -1);
-	const std::vector<int> order = onSamples ? tree.order() : PointTree(points).order();
-	forEachBlock(int(points.size()), progress, "Poles: shrinking balls", [&](int begin, int end) {
+	poles.centre.assign(count, Point3d(0, 0, 0));
+	poles.radius.assign(count, -1);
+	const int size = int(touches.size());
+	forEachBlock(size, progress, "Poles: shrinking balls", [&](int begin, int end) {
 		// What held the balls of the last points will nearly hold the next one.
 		std::array<int, 4> recent = {-1, -1, -1, -1};
 		int oldest = 0;
 		KnownBalls known;
 		for (int i = begin; i < end; ++i) {
-			const int v = order[i];
-			if (!(normals[v].SquaredNorm() > 0))
+			const Touch& touch = touches[i];
+			if (!(touch.normal.SquaredNorm() > 0))
 				continue;
-			MaximalBall ball(points[v], normals[v], delta, frame.diagonal());
+			MaximalBall ball(touch.point, touch.normal, delta, frame.diagonal());
 			for (int slot : recent)
 				if (slot >= 0)
 					ball.visit(slot, tree.point(slot));
-			if (onSamples)
-				for (int j = std::max(i - neighbours, 0);
-					 j <= std::min(i + neighbours, tree.size() - 1); ++j)
-					ball.visit(j, tree.point(j));
+			if (touch.slot >= 0) // neighbours on the surface nearly hold the ball, too
+				for (int j = std::max(i - neighbours, 0); j <= std::min(i + neighbours, size - 1);
+					 ++j)
+					ball.visit(touches[j].slot, touches[j].point);
 			if (ball.contact() < 0 || !known.hold(ball)) {
 				tree.search(ball);
 				if (ball.contact() < 0)
@@ -153,38 +160,34 @@ PoleSet maximalBalls(const std::vector<Point3d>& points, const std::vector<Point
 			}
 			recent[oldest] = ball.contact();
 			oldest = (oldest + 1) % int(recent.size());
-			poles.centre[v] = frame.out(ball.centre());
+			poles.centre[touch.place] = frame.out(ball.centre());
 			const double radius = frame.lengthOut(ball.radius());
-			if (isPole(v, poles.centre[v], radius))
-				poles.radius[v] = radius;
+			if (isPole(touch.place, poles.centre[touch.place], radius))
+				poles.radius[touch.place] = radius;
 		}
 	});
 	return poles;
 }
 
 /**
- * Unit normals that are exact where the neighbours of a vertex lie on a sphere with it: cross products
- * over the squared lengths of both edges (Max, "Weights for computing vertex normals from facet
- * normals", Journal of Graphics Tools 4(2), 1999); zero where they are not defined.
+ * The unit normal of a vertex that is exact where its neighbours lie on a sphere with it: cross
+ * products over the squared lengths of both edges (Max, "Weights for computing vertex normals from
+ * facet normals", Journal of Graphics Tools 4(2), 1999); zero where it is not defined.
  * A tilt by t makes the ball against a neighbour at distance h on a surface of curvature k smaller
  * by a factor of 1 + 2 t / (h k): on a fine mesh the tilt of area-weighted normals costs a fifth.
  */
-inline std::vector<Point3d> osculatingNormals(const SurfaceMesh& mesh)
+inline Point3d osculatingNormal(const SurfaceMesh& mesh, int v)
 {
-	std::vector<Point3d> normals(mesh.vertexSlots(), Point3d(0, 0, 0));
-	for (int h = 0; h < mesh.halfEdgeSlots(); ++h) {
-		const int v = mesh.origin(h);
+	Point3d normal(0, 0, 0);
+	mesh.forEachOutgoing(v, [&](int h) {
 		const Point3d a = mesh.position[mesh.target(h)] - mesh.position[v];
 		const Point3d b = mesh.position[mesh.apex(h)] - mesh.position[v];
 		const double aa = a.SquaredNorm(), bb = b.SquaredNorm();
 		if (aa > 0 && bb > 0)
-			normals[v] += (a ^ b) / aa / bb;
-	}
-	for (Point3d& n : normals) {
-		const double length = n.Norm();
-		n = length > 0 && std::isfinite(length) ? Point3d(n / length) : Point3d(0, 0, 0);
-	}
-	return normals;
+			normal += (a ^ b) / aa / bb;
+	});
+	const double length = normal.Norm();
+	return length > 0 && std::isfinite(length) ? Point3d(normal / length) : Point3d(0, 0, 0);
 }
 
 inline double ballTolerance(const UnitFrame& frame, double delta)
@@ -214,8 +217,13 @@ inline PoleSet shrinkingBalls(const std::vector<Point3d>& points,
 	const Progress& progress = Progress())
 {
 	const UnitFrame frame(against);
-	return detail::maximalBalls(frame.in(points), normals, frame, PointTree(frame.in(against)),
-		false, detail::ballTolerance(frame, delta), progress,
+	std::vector<detail::Touch> touches;
+	touches.reserve(points.size());
+	const PointTree order(points); // near each other in it: near each other in space
+	for (int i : order.order())
+		touches.push_back({frame.in(points[i]), normals[i], i, -1});
+	return detail::maximalBalls(touches, points.size(), frame, PointTree(frame.in(against)),
+		detail::ballTolerance(frame, delta), progress,
 		[](int, const Point3d&, double) { return true; });
 }
 
@@ -224,7 +232,7 @@ inline PoleSet shrinkingBalls(const std::vector<Point3d>& points,
  *
  * A ball whose centre cannot be seen from its vertex through the inside reached out through a coarse
  * triangle: it gives no pole.
- * @param vertices  ids, #P.
+ * @param vertices  ids, #P, each at most once.
  * @param delta     as in shrinkingBalls().
  * @pre mesh is compact.
  * @return poles, #P, in the order of `vertices`; radius -1 where there is none.
@@ -236,18 +244,20 @@ inline PoleSet shrinkingBallPoles(const SurfaceMesh& mesh, const std::vector<int
 {
 	const UnitFrame frame(mesh.position);
 	const double tolerance = detail::ballTolerance(frame, delta);
-	const std::vector<Point3d> samples = frame.in(mesh.position);
-	const std::vector<Point3d> allNormals = detail::osculatingNormals(mesh);
-	std::vector<Point3d> points, normals;
-	bool all = vertices.size() == samples.size();
-	for (size_t i = 0; i < vertices.size(); ++i) {
-		points.push_back(samples[vertices[i]]);
-		normals.push_back(allNormals[vertices[i]]);
-		all = all && vertices[i] == int(i);
+	const PointTree tree(frame.in(mesh.position));
+	std::vector<int> place(mesh.vertexSlots(), -1);
+	for (size_t i = 0; i < vertices.size(); ++i)
+		place[vertices[i]] = int(i);
+	std::vector<detail::Touch> touches;
+	touches.reserve(vertices.size());
+	for (int slot = 0; slot < tree.size(); ++slot) {
+		const int v = tree.order()[slot];
+		if (place[v] >= 0)
+			touches.push_back(
+				{tree.point(slot), detail::osculatingNormal(mesh, v), place[v], slot});
 	}
-	const PointTree tree(samples);
 	const InnerSegments segments(mesh, tree);
-	return detail::maximalBalls(points, normals, frame, tree, all, tolerance, progress,
+	return detail::maximalBalls(touches, vertices.size(), frame, tree, tolerance, progress,
 		[&](int i, const Point3d& centre, double radius) {
 			const double depth =
 				frame.lengthOut(tolerance) + detail::KnownBalls::negligible * radius;
