@@ -13,6 +13,8 @@ set -euo pipefail
 . "$ROOT/scripts/lib/build.sh"
 # shellcheck source=lib/python_env.sh
 . "$ROOT/scripts/lib/python_env.sh"
+# shellcheck source=lib/hosts.sh
+. "$ROOT/scripts/lib/hosts.sh"
 
 case "${1:-}" in
 -h | --help)
@@ -24,6 +26,14 @@ esac
 need_packages libgtest-dev
 python="$(python_env)"
 build_host pymeshlab -DMCFSKEL_TESTS=ON -DMCFSKEL_PYTHON="$python" >&2
+# What cannot be had on this machine is skipped by its tests, by name.
+for host in meshlab-2025.07 meshlab-2020.09; do
+	if place="$(host_with_plugin "$host")" && [ -x "$place/bin/meshlab" ]; then
+		declare -x "MCFSKEL_HOST_$(tr 'a-z.-' 'A-Z__' <<<"$host")=$place"
+	else
+		say "$host could not be set up: its tests are skipped"
+	fi
+done
 folder="$ROOT/build/pymeshlab"
 rm -rf "$folder/pytest" "$folder/ctest.xml"
 say "testing"

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws the pictures of docs/tools.md: what each filter on skeletons makes of one of the shapes."""
+"""Draws the pictures of docs/tools.md and docs/filters.md: what each filter makes of one of the shapes."""
 
 import argparse
 import io
 from pathlib import Path
-from typing import Callable, NamedTuple, Optional
+from typing import Callable, NamedTuple, Optional, Sequence
 
 import matplotlib
 import numpy as np
@@ -34,12 +34,15 @@ class Curve(NamedTuple):
 
 
 class Panel(NamedTuple):
-    """One picture of a row: translucent surfaces, opaque ones with a colour a face, curves."""
+    """One picture of a row: translucent surfaces, opaque ones with a colour a face, curves, surfaces
+    whose triangles show, points with a value each."""
 
     title: str
     translucent: list
     opaque: list
     curves: list
+    triangles: Sequence = ()
+    points: Sequence = ()
 
 
 def percent(value: float) -> pymeshlab.PercentageValue:
@@ -56,14 +59,15 @@ def shaded(points: np.ndarray, faces: np.ndarray, colours: np.ndarray) -> np.nda
 
 
 def draw_faces(axes: plt.Axes, view: View, points: np.ndarray, faces: np.ndarray,
-               colours: np.ndarray, alpha: float) -> None:
+               colours: np.ndarray, alpha: float, edges: str = "") -> None:
     at = view.project(points)
     order = np.argsort(at[faces, 2].mean(axis=1), kind="stable")
     turned = points @ view.axes.T
-    rgb = shaded(turned, faces, colours)[order]
+    rgb = np.clip(shaded(turned, faces, colours), 0, 1)[order]
     axes.add_collection(PolyCollection(
         at[faces[order], :2], facecolors=np.column_stack([rgb, np.full(len(rgb), alpha)]),
-        edgecolors=rgb if alpha == 1 else "none", linewidths=0.3, antialiaseds=alpha == 1))
+        edgecolors=edges or (rgb if alpha == 1 else "none"), linewidths=0.3,
+        antialiaseds=alpha == 1))
 
 
 def draw_panel(axes: plt.Axes, view: View, panel: Panel) -> None:
@@ -72,6 +76,13 @@ def draw_panel(axes: plt.Axes, view: View, panel: Panel) -> None:
         draw_faces(axes, view, mesh.vertex_matrix(), faces, np.tile(PALE, (len(faces), 1)), 0.06)
     for mesh, colours in panel.opaque:
         draw_faces(axes, view, mesh.vertex_matrix(), mesh.face_matrix(), colours, 1)
+    for mesh in panel.triangles:
+        faces = mesh.face_matrix()
+        draw_faces(axes, view, mesh.vertex_matrix(), faces, np.tile(PALE * 1.4, (len(faces), 1)), 1,
+                   edges="#1b2430")
+    for points, values in panel.points:
+        at = view.project(points)
+        axes.scatter(*at[:, :2].T, s=1.2, c=values, cmap="turbo", vmin=0, linewidths=0, zorder=2)
     for curve in panel.curves:
         at = view.project(curve.mesh.vertex_matrix())[:, :2]
         edges = curve.mesh.edge_matrix()
@@ -195,6 +206,44 @@ def balls(scene: Scene) -> list[Panel]:
                   [(union, np.tile(PALE * 1.2, (union.face_number(), 1)))], [])]
 
 
+def vertex_colours(mesh: pymeshlab.Mesh) -> np.ndarray:
+    return mesh.vertex_color_matrix()[mesh.face_matrix()].mean(axis=1)[:, :3]
+
+
+def resample(scene: Scene) -> list[Panel]:
+    coarse = scene.run("meshing_isotropic_resampling_mcf", scene.layers.mesh(0),
+                       target_length=percent(3.5))
+    fine = scene.run("meshing_isotropic_resampling_mcf", scene.layers.mesh(0),
+                     target_length=percent(1.6))
+    return [Panel(title, [], [], [], triangles=[mesh]) for title, mesh in [
+        ("surface", scene.layers.mesh(0)), ("target_length 3.5 %", coarse), ("target_length 1.6 %", fine)]]
+
+
+def poles(scene: Scene) -> list[Panel]:
+    mesh = scene.surface
+    radius = mesh.vertex_custom_scalar_attribute_array("mcfskel_pole_radius")
+    centres = mesh.vertex_custom_point_attribute_matrix("mcfskel_pole")
+    return [Panel("medial poles", [mesh], [], [], points=[(centres[radius >= 0], radius[radius >= 0])])]
+
+
+def stages(scene: Scene) -> list[Panel]:
+    last = scene.surface
+    panels = []
+    for steps in [2, 3, 5, 30]:
+        last = scene.run("generate_meso_skeleton_mcf", last, steps=steps)
+        panels.append(Panel(f"step {last.label().rsplit('_', 1)[1]}", [scene.surface],
+                            [(last, vertex_colours(last))], []))
+    return panels
+
+
+def curve(scene: Scene) -> list[Panel]:
+    last = next(m for m in scene.layers if "_meso_" in m.label())
+    plain = scene.run("generate_curve_skeleton_from_meso_mcf", last)
+    return [Panel("last stage", [scene.surface], [], [], triangles=[last]),
+            Panel("collapsed", [scene.surface], [], [Curve(plain)]),
+            Panel("refined", [scene.surface], [], [Curve(scene.skeleton)])]
+
+
 PICTURES: dict[str, tuple[str, Callable[[Scene], list[Panel]]]] = {
     "parts": ("animal", parts),
     "prune": ("hand", prune),
@@ -203,6 +252,10 @@ PICTURES: dict[str, tuple[str, Callable[[Scene], list[Panel]]]] = {
     "measure": ("animal", measure),
     "medial_axis": ("hand", medial_axis),
     "balls": ("animal", balls),
+    "filters/resample": ("animal450", resample),
+    "filters/poles": ("animal", poles),
+    "filters/stages": ("hand", stages),
+    "filters/curve": ("animal", curve),
 }
 
 
@@ -210,19 +263,21 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--plugin", type=Path,
                         default=ROOT / "build/pymeshlab/filter_mcfskel/libfilter_mcfskel.so")
-    parser.add_argument("--folder", type=Path, default=ROOT / "docs/tools")
+    parser.add_argument("--folder", type=Path, default=ROOT / "docs")
     parser.add_argument("--up", choices=["auto", "x", "y", "z"], default="auto")
     parser.add_argument("names", nargs="*", metavar="NAME", default=list(PICTURES),
                         help=f"which to draw: {', '.join(PICTURES)} (default: all)")
     options = parser.parse_args()
     pymeshlab.load_plugin(str(options.plugin.resolve()))
-    options.folder.mkdir(parents=True, exist_ok=True)
     for name in options.names:
         shape, make = PICTURES[name]
         scene = Scene(shape)
         panels = make(scene)
-        draw_row(options.folder / f"{name}.png", scene.surface.vertex_matrix(), panels, options.up)
-        print(options.folder / f"{name}.png")
+        # Those of tools.md are at home in a folder of that name.
+        path = options.folder / (f"{name}.png" if "/" in name else f"tools/{name}.png")
+        path.parent.mkdir(parents=True, exist_ok=True)
+        draw_row(path, scene.surface.vertex_matrix(), panels, options.up)
+        print(path)
 
 
 if __name__ == "__main__":

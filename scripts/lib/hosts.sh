@@ -6,8 +6,9 @@
 
 # shellcheck shell=bash
 
-# What it takes to show a MeshLab window where there is no display, and to work in it.
-DISPLAY_PACKAGES=(xvfb xauth libgl1-mesa-dri xdotool imagemagick)
+# What it takes to show a MeshLab window where there is no display, to work in it, and to read it.
+DISPLAY_PACKAGES=(xvfb xauth libgl1-mesa-dri xdotool imagemagick dbus at-spi2-core python3-gi
+	gir1.2-atspi-2.0)
 MESHLAB_BUILD_PACKAGES=(libglu1-mesa-dev)
 # Of MeshLab's own plugins those that its window cannot do without.
 MESHLAB_PLUGINS=(io_base decorate_base filter_layer)
@@ -23,6 +24,29 @@ host_folder() {
 	meshlab-2025.07) built_meshlab 2025.07 ;;
 	*) die "unknown host '$1'" ;;
 	esac
+}
+
+# host_with_plugin HOST: builds the plugin, gets the host and puts the one into the other, without a
+# trace in what the user has installed; prints a folder: programs are under bin/, and data/ is what
+# XDG_DATA_HOME has to be.
+host_with_plugin() {
+	local host="$1" folder plugin place="data/VCG/MeshLab_64bit_fp/MeshLabExtraPlugins/${1#meshlab-}"
+	folder="$(host_folder "$host" | tail -n 1)"
+	plugin="$(build_host "$host" | tail -n 1)"
+	case "$host" in
+	meshlab-2020.09)
+		# This release has no folder for a user's plugins.
+		place="$(cd "$folder" && find lib -path '*/meshlab/plugins' -type d | head -n 1)"
+		;;
+	*)
+		mkdir -p "$ROOT/build/$host/host"
+		ln -sfn "$folder/bin" "$ROOT/build/$host/host/bin"
+		folder="$ROOT/build/$host/host"
+		;;
+	esac
+	mkdir -p "$folder/$place"
+	ln -sf "$plugin" "$folder/$place/libfilter_mcfskel.so"
+	echo "$folder"
 }
 
 # packaged_meshlab FOLDER: Debian's MeshLab and meshlabserver 2020.09 in a folder of their own, into

@@ -4,6 +4,7 @@
 
 import hashlib
 import os
+import re
 from pathlib import Path
 from typing import Any
 
@@ -160,3 +161,11 @@ def components(count: int, edges: np.ndarray) -> int:
 
 def diagonal(vertices: np.ndarray) -> float:
     return float(np.linalg.norm(np.ptp(vertices, axis=0)))
+
+
+def gui_host(name: str) -> Path:
+    """The folder of a MeshLab for the tests; the test is skipped, by name, where there is none."""
+    folder = os.environ.get("MCFSKEL_HOST_" + re.sub(r"\W", "_", name).upper())
+    if not folder:
+        pytest.skip(f"{name} could not be set up on this machine")
+    return Path(folder)
