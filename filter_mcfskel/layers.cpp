@@ -619,11 +619,15 @@ void DocumentEdit::commit()
 		return;
 	document.setCurrentMesh(added.back());
 	if (host::hasWindow())
-		showLastOnly();
+		present();
 }
 
-void DocumentEdit::showLastOnly()
+void DocumentEdit::present()
 {
+	// Curves and points have no normals; with the shading that comes of it they would be all but black.
+	for (int id : added)
+		if (MeshModel& layer = *document.getMesh(id); layer.cm.fn == 0)
+			layer.clearDataMask(MeshModel::MM_VERTNORMAL);
 	sources.insert(sources.end(), added.begin(), added.end() - 1);
 	for (int id : sources)
 		if (id >= 0 && document.getMesh(id))

@@ -169,8 +169,9 @@ public:
 	/**
 	 * Keeps the changes and makes the layer added last the current one. In MeshLab's window that one
 	 * is seen at once: it lies inside the layers that it was made from, so these are hidden, and so
-	 * are the other new ones. Where there is no window all layers stay visible, since scripts use
-	 * visibility to say which layers a filter works on.
+	 * are the other new ones; curves and points are drawn in their colours, without shading. Where
+	 * there is no window all layers stay visible, since scripts use visibility to say which layers a
+	 * filter works on.
 	 */
 	void commit();
 
@@ -178,7 +179,7 @@ private:
 	MeshModel& addLayer(const MeshModel& source, const QString& label);
 	MeshModel& addLayer(const SurfaceLink& surface, const QString& label);
 	MeshModel& addLayer(const Matrix44m& frame, const QString& label);
-	void showLastOnly();
+	void present();
 
 	MeshDocument& document;
 	int previousLayer;
