@@ -7,7 +7,7 @@ import argparse
 import re
 import sys
 from pathlib import Path
-from typing import Callable
+from typing import Callable, Optional
 
 from PIL import Image
 
@@ -35,6 +35,7 @@ def skeleton(window: Window) -> None:
     window.open_filter(PREFIX + "Full Skeletonize")
     apply(window, "Full Skeletonize")
     window.close(PREFIX + "Full Skeletonize")
+    window.turn(60, -190)
 
 
 def stages(window: Window) -> None:
@@ -50,6 +51,17 @@ def error(window: Window) -> None:
     window.open_filter(PREFIX + "Collapse to Curve")
     window.press(re.escape(PREFIX), "Apply")
     window.wait(lambda: [w for w in window.view() if "Filter Failure" in w.name], "the error")
+
+
+def dialogs(window: Window) -> Optional[tuple[int, int, int, int]]:
+    """The part of the screen that dialogs and boxes take; the whole screen if none is open."""
+    boxes = [w.box for w in window.view()
+             if w.name.startswith(PREFIX) and w.role == "frame" or w.name == "Filter Failure"]
+    if not boxes:
+        return None
+    left, top = (min(box[k] for box in boxes) for k in (0, 1))
+    right, bottom = (max(box[k] + box[k + 2] for box in boxes) for k in (0, 1))
+    return left, top, right - left, bottom - top
 
 
 PICTURES: dict[str, tuple[str, Callable[[Window], None]]] = {
@@ -77,8 +89,7 @@ def main() -> None:
         with Window(options.host / "bin" / "meshlab", ROOT / "meshes" / f"{mesh}.off",
                     data=options.data) as window:
             act(window)
-            shown = window.dialog(f"{PREFIX}Full Skeletonize")
-            window.still_picture(path, shown.box if shown else None)
+            window.still_picture(path, dialogs(window))
         Image.open(path).convert("RGB").quantize(COLOURS).save(path, optimize=True)
         print(path)
 

@@ -26,9 +26,11 @@ esac
 need_packages libgtest-dev
 python="$(python_env)"
 build_host pymeshlab -DMCFSKEL_TESTS=ON -DMCFSKEL_PYTHON="$python" >&2
-# What cannot be had on this machine is skipped by its tests, by name.
+# A host that cannot be had on this machine is skipped by its tests, by name.
 for host in meshlab-2025.07 meshlab-2020.09; do
-	if place="$(host_with_plugin "$host")" && [ -x "$place/bin/meshlab" ]; then
+	if place="$(host_folder "$host")" && meshlab_sources "$(headers_of "$host")" >/dev/null; then
+		plugin="$(build_host "$host")"
+		place="$(with_plugin "$host" "$place" "$plugin")"
 		declare -x "MCFSKEL_HOST_$(tr 'a-z.-' 'A-Z__' <<<"$host")=$place"
 	else
 		say "$host could not be set up: its tests are skipped"

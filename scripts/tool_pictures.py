@@ -231,7 +231,9 @@ def stages(scene: Scene) -> list[Panel]:
     panels = []
     for steps in [2, 3, 5, 30]:
         last = scene.run("generate_meso_skeleton_mcf", last, steps=steps)
-        panels.append(Panel(f"step {last.label().rsplit('_', 1)[1]}", [scene.surface],
+        # The last stage is there already, so that its name gets a number behind it.
+        step = last.label().rsplit("_", 1)[1].split("(")[0]
+        panels.append(Panel(f"step {step}", [scene.surface],
                             [(last, vertex_colours(last))], []))
     return panels
 

@@ -51,7 +51,6 @@ def collect(widget: Any, parent: int, depth: int, found: list[dict]) -> None:
     found.append({
         "role": role, "name": widget.get_name(), "tooltip": widget.get_description(),
         "box": [box.x, box.y, box.width, box.height] if box else [0, 0, 0, 0],
-        "checked": states.contains(Atspi.StateType.CHECKED),
         "content": content(widget, role), "parent": parent})
     for i in range(widget.get_child_count()):
         child = widget.get_child_at_index(i)

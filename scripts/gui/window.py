@@ -17,7 +17,6 @@ from typing import Any, Callable, Optional, TypeVar
 
 SIZE = (1280, 900)
 PATIENCE = 90.0  # seconds: a busy machine is slow, and nothing is gained by giving up early
-PROGRAMS = ["Xvfb", "dbus-daemon", "xdotool", "import"]
 
 T = TypeVar("T")
 
@@ -28,7 +27,6 @@ class Widget:
     name: str
     tooltip: str
     box: tuple[int, int, int, int]  # left, top, width, height, in pixels of the screen
-    checked: bool
     content: str
     parent: int
 
@@ -237,6 +235,14 @@ class Window:
 
     def click(self, widget: Widget) -> None:
         self.call("xdotool", "mousemove", *map(str, widget.centre), "click", "1")
+
+    def turn(self, right: int, down: int) -> None:
+        """Turns the view by dragging the mouse over it that many pixels."""
+        x, y = self.view().all("layered pane")[0].centre
+        self.call("xdotool", "mousemove", str(x), str(y), "mousedown", "1")
+        for step in range(1, 11):
+            self.call("xdotool", "mousemove", str(x + right * step // 10), str(y + down * step // 10))
+        self.call("xdotool", "mouseup", "1")
 
     def open_filter(self, name: str) -> Widget:
         """Searches for a filter and opens it; returns its dialog."""

@@ -26,26 +26,22 @@ host_folder() {
 	esac
 }
 
-# host_with_plugin HOST: builds the plugin, gets the host and puts the one into the other, without a
-# trace in what the user has installed; prints a folder: programs are under bin/, and data/ is what
+# with_plugin HOST FOLDER PLUGIN: puts the plugin into a host that host_folder got, without a trace in
+# what the user has installed; prints a folder: programs are under bin/, and data/ is what
 # XDG_DATA_HOME has to be.
-host_with_plugin() {
-	local host="$1" folder plugin place="data/VCG/MeshLab_64bit_fp/MeshLabExtraPlugins/${1#meshlab-}"
-	folder="$(host_folder "$host" | tail -n 1)"
-	plugin="$(build_host "$host" | tail -n 1)"
-	case "$host" in
-	meshlab-2020.09)
+with_plugin() {
+	local host="$1" folder="$2" plugin="$3" place
+	if [ "$host" = meshlab-2020.09 ]; then
 		# This release has no folder for a user's plugins.
-		place="$(cd "$folder" && find lib -path '*/meshlab/plugins' -type d | head -n 1)"
-		;;
-	*)
+		place="$(find "$folder/lib" -path '*/meshlab/plugins' -type d | head -n 1)"
+	else
 		mkdir -p "$ROOT/build/$host/host"
 		ln -sfn "$folder/bin" "$ROOT/build/$host/host/bin"
 		folder="$ROOT/build/$host/host"
-		;;
-	esac
-	mkdir -p "$folder/$place"
-	ln -sf "$plugin" "$folder/$place/libfilter_mcfskel.so"
+		place="$folder/data/VCG/MeshLab_64bit_fp/MeshLabExtraPlugins/${host#meshlab-}"
+	fi
+	mkdir -p "$place"
+	ln -sf "$plugin" "$place/libfilter_mcfskel.so"
 	echo "$folder"
 }
 

@@ -205,10 +205,10 @@ def test_an_error_is_a_box_and_costs_nothing(window: Window) -> None:
     assert "Close Holes" in text, "the box names the cure"
     window.press("Filter Failure", "OK")
     window.wait(lambda: not error_box(window), "the box to close")
+    window.close(PREFIX + "Full Skeletonize")
     layers = window.layers()
     assert names(layers) == ["open"] and visible(window, layers) == ["open"]
     # And MeshLab goes on working.
-    window.close(PREFIX + "Full Skeletonize")
     window.open_filter(PREFIX + "Collapse to Curve")
     window.press(re.escape(PREFIX), "Apply")
     window.wait(lambda: [w for w in error_box(window) if "Contraction Step" in w.name],
