@@ -94,6 +94,8 @@ std::map<std::string, QVariant> FilterMcfskelPlugin::applyFilter(const QAction* 
 	const RichParameterList& parameters, MeshDocument& document, unsigned int&,
 	vcg::CallBackPos* callback)
 {
+	// The host's exporters may have been loaded after this plugin.
+	jsonExport_.claim();
 	const FilterSpec& filter = host::filterOf(ID(action));
 	const ParameterValues values = host::readParameters(parameters, filter, document);
 	const Outcome outcome = runFilter(
@@ -128,9 +130,19 @@ std::list<FileFormat> FilterMcfskelPlugin::exportFormats() const
 }
 
 void FilterMcfskelPlugin::exportMaskCapability(
-	const QString&, int& capability, int& defaultBits) const
+	const QString& format, int& capability, int& defaultBits) const
 {
-	capability = defaultBits = writtenElements;
+	if (const IOPlugin* other = jsonExport_.exporterOf(format))
+		other->exportMaskCapability(format, capability, defaultBits);
+	else
+		capability = defaultBits = writtenElements;
+}
+
+RichParameterList FilterMcfskelPlugin::initSaveParameter(
+	const QString& format, const MeshModel& layer) const
+{
+	const IOPlugin* other = jsonExport_.exporterOf(format, layer);
+	return other ? other->initSaveParameter(format, layer) : RichParameterList();
 }
 
 void FilterMcfskelPlugin::open(const QString&, const QString& file, MeshModel& layer, int& mask,
@@ -144,9 +156,13 @@ void FilterMcfskelPlugin::open(const QString&, const QString& file, MeshModel& l
 		throw MLException(outcome.error);
 }
 
-void FilterMcfskelPlugin::save(const QString&, const QString& file, MeshModel& layer, const int,
-	const RichParameterList&, vcg::CallBackPos*)
+void FilterMcfskelPlugin::save(const QString& format, const QString& file, MeshModel& layer,
+	const int mask, const RichParameterList& parameters, vcg::CallBackPos* callback)
 {
+	if (IOPlugin* other = jsonExport_.exporterOf(format, layer)) {
+		other->save(format, file, layer, mask, parameters, callback);
+		return;
+	}
 	const FileOutcome outcome = saveSkeleton(file, layer);
 	for (const QString& warning : outcome.warnings)
 		log(GLLogStream::WARNING, warning.toStdString());

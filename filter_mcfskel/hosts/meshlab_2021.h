@@ -8,6 +8,7 @@
 #define MCFSKEL_MESHLAB_2021_H
 
 #include "../filters.h"
+#include "json_export.h"
 
 class FilterMcfskelPlugin : public QObject, public FilterPlugin, public IOPlugin
 {
@@ -37,11 +38,16 @@ public:
 	std::list<FileFormat> exportFormats() const override;
 	void exportMaskCapability(
 		const QString& format, int& capability, int& defaultBits) const override;
+	RichParameterList initSaveParameter(
+		const QString& format, const MeshModel& layer) const override;
 	using IOPlugin::open;
 	void open(const QString& format, const QString& file, MeshModel& layer, int& mask,
 		const RichParameterList& parameters, vcg::CallBackPos* callback) override;
 	void save(const QString& format, const QString& file, MeshModel& layer, const int mask,
 		const RichParameterList& parameters, vcg::CallBackPos* callback) override;
+
+private:
+	mcfskel::host::JsonExport jsonExport_ {this};
 };
 
 #endif

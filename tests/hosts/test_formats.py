@@ -136,6 +136,16 @@ class TestCg:
         assert np.array_equal(sorted_edges(again.current_mesh().edge_matrix()),
                               sorted_edges(skeleton.edge_matrix()))
 
+    def test_another_reader(self, plate, skeleton, tmp_path):
+        plate[0].save_current_mesh(str(tmp_path / "s.cg"))
+        rows = [line.split() for line in (tmp_path / "s.cg").read_text().splitlines()[1:]]
+        nodes = np.array([row[1:] for row in rows if row[0] == "v"], float)
+        graph = networkx.parse_edgelist([" ".join(row[1:]) for row in rows if row[0] == "e"],
+                                        nodetype=int)
+        assert np.array_equal(nodes, skeleton.vertex_matrix())
+        assert np.array_equal(sorted_edges(np.array(list(graph.edges)) - 1),
+                              sorted_edges(skeleton.edge_matrix()))
+
 
 class TestGraphs:
     """GraphML and JSON, both read by networkx."""
@@ -164,14 +174,39 @@ class TestGraphs:
                    for _, d in graph.nodes(data=True)]
         self.check(graph, positions, plate, skeleton, sources)
 
-    def test_json(self, plate, skeleton, tmp_path):
-        plate[0].apply_filter("save_skeleton_mcf", file=str(tmp_path / "s.json"))
+    @pytest.mark.parametrize("save", [
+        lambda layers, file: layers.save_current_mesh(file),
+        lambda layers, file: layers.apply_filter("save_skeleton_mcf", file=file),
+    ], ids=["export", "filter"])
+    def test_json(self, plate, skeleton, tmp_path, save):
+        save(plate[0], str(tmp_path / "s.json"))
         content = json.loads((tmp_path / "s.json").read_text())
         graph = networkx.node_link_graph(content, edges="edges")
         positions = np.array([d["position"] for _, d in graph.nodes(data=True)])
         sources = [d["surface_vertices"] for _, d in graph.nodes(data=True)]
         self.check(graph, positions, plate, skeleton, sources)
         assert content["graph"]["cycles"] == 3
+
+    def test_the_host_still_writes_json_of_meshes(self, plugin, tmp_path):
+        """As it does without the plugin, to the last byte and with the same parameters."""
+        script = ("import pymeshlab, sys\n"
+                  "mesh, file, plugin = sys.argv[1:]\n"
+                  "if plugin:\n"
+                  "    pymeshlab.load_plugin(plugin)\n"
+                  "layers = pymeshlab.MeshSet()\n"
+                  "layers.load_new_mesh(mesh)\n"
+                  "layers.compute_normal_per_vertex()\n"
+                  "layers.save_current_mesh(file + '.json')\n"
+                  "layers.save_current_mesh(file + '_bare.json', save_vertex_normal=False)\n"
+                  "layers.generate_simplified_point_cloud(samplenum=9)\n"
+                  "layers.save_current_mesh(file + '_points.json')\n")
+        for name, path in [("with", str(plugin)), ("without", "")]:
+            subprocess.run([sys.executable, "-c", script, str(MESHES / "box8.off"),
+                            str(tmp_path / name), path], check=True, stdout=subprocess.DEVNULL)
+        for kind in ["", "_bare", "_points"]:
+            ours = (tmp_path / f"with{kind}.json").read_bytes()
+            assert ours == (tmp_path / f"without{kind}.json").read_bytes()
+            assert b"MeshLab JSON Exporter" in ours
 
     def test_source_vertices_of_a_layer_of_choice(self, plate, skeleton, tmp_path):
         layers, _ = plate
