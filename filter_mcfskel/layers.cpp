@@ -42,6 +42,8 @@ struct LayerState
 	StageLayer stage;
 	/// Skeletons.
 	std::shared_ptr<const CurveLayer> curve;
+	/// What 100 % of a Length meant where a skeleton was made; 0: not known.
+	double diagonal = 0;
 };
 
 using StatePointer = std::shared_ptr<const LayerState>;
@@ -231,7 +233,10 @@ bool sameInHost(const mcf::PoleSet& exact, const mcf::PoleSet& shown)
 double referenceDiagonal(const MeshModel& layer)
 {
 	vcg::Box3d box;
-	if (const StatePointer state = findState(layer.cm); state && state->stage)
+	const StatePointer state = findState(layer.cm);
+	if (state && state->diagonal > 0 && validState(layer))
+		return state->diagonal;
+	if (state && state->stage)
 		for (const vcg::Point3d& p : *state->stage.stage->surface)
 			box.Add(p);
 	else
@@ -453,12 +458,22 @@ void fillStage(
 
 } // namespace
 
-void fillCurve(MeshModel& layer, const CurveLayer& curve)
+namespace {
+
+void fillCurve(MeshModel& layer, const CurveLayer& curve, double diagonal)
 {
 	fillCurve(layer, curve.skeleton.position, curve.skeleton.edges, curve.skeleton.radius);
 	LayerState state;
 	state.curve = std::make_shared<const CurveLayer>(curve);
+	state.diagonal = diagonal;
 	setState(layer, std::move(state));
+}
+
+} // namespace
+
+void fillCurve(MeshModel& layer, const CurveLayer& curve)
+{
+	fillCurve(layer, curve, 0);
 }
 
 SurfaceLink linkTo(
@@ -541,7 +556,7 @@ MeshModel& DocumentEdit::addCurve(
 {
 	MeshModel& layer = addLayer(source, label);
 	sources.push_back(curve.surface.layerId);
-	fillCurve(layer, curve);
+	fillCurve(layer, curve, referenceDiagonal(source));
 	return layer;
 }
 

@@ -71,8 +71,8 @@ struct CurveLayer
 };
 
 /**
- * The length, in mesh units, that 100 % of a Length means on this layer: the bounding box diagonal,
- * of a stage that of its surface, so that a length means the same at every step.
+ * The length, in mesh units, that 100 % of a Length means on this layer: the bounding box diagonal; of
+ * a stage, or a skeleton as a filter made it, that of its surface: the same at every step.
  */
 double referenceDiagonal(const MeshModel& layer);
 

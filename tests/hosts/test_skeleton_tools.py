@@ -246,9 +246,8 @@ class TestPrune:
 
 
 class TestResampleSkeleton:
-    def test_default_is_a_thousandth_of_the_diagonal(self, y_tube):
-        before = y_tube.current_mesh()
-        size = diagonal(before.vertex_matrix())
+    def test_default_is_a_thousandth_of_the_surfaces_diagonal(self, y_tube):
+        size = diagonal(y_tube.mesh(0).vertex_matrix())
         values = y_tube.filter_parameter_values(RESAMPLE_SKELETON)
         assert values["longest_edge"] == pytest.approx(0.001 * size)
         results = y_tube.apply_filter(RESAMPLE_SKELETON)
@@ -258,6 +257,22 @@ class TestResampleSkeleton:
         assert results["edge_length_max"] == pytest.approx(lengths.max())
         assert results["edge_length_min"] == pytest.approx(lengths.min())
         assert y_tube.current_mesh().label() == "y_tube_smoothed"
+
+    def test_percent_are_of_the_surface_as_long_as_it_is_known(self, y_tube):
+        surface = diagonal(y_tube.mesh(0).vertex_matrix())
+        first = y_tube.current_mesh()
+        own = diagonal(first.vertex_matrix())
+        assert own < 0.99 * surface
+        y_tube.apply_filter(RESAMPLE_SKELETON, longest_edge=percent(0.5))
+        derived = y_tube.current_mesh_id()
+        for start in [first.id(), derived]:
+            y_tube.set_current_mesh(start)
+            y_tube.apply_filter(RESAMPLE_SKELETON, longest_edge=percent(1))
+            assert edge_lengths(y_tube.current_mesh()).max() == pytest.approx(0.01 * surface, rel=0.005)
+        add_curve(y_tube, first.vertex_matrix(), first.edge_matrix(),
+                  scalars(first, "mcfskel_radius"), "elsewhere")
+        y_tube.apply_filter(RESAMPLE_SKELETON, longest_edge=percent(1))
+        assert edge_lengths(y_tube.current_mesh()).max() == pytest.approx(0.01 * own, rel=0.005)
 
     @pytest.mark.parametrize("name", ["y_tube", "torus", "plate3"])
     def test_ends_junctions_and_cycles_stay(self, name):
@@ -497,10 +512,3 @@ class TestDocs:
         run = subprocess.run([sys.executable, "-c", script.replace('"PLUGIN"', repr(str(plugin)))],
                              cwd=ROOT, capture_output=True, text=True, timeout=900)
         assert run.returncode == 0, run.stderr
-
-    def test_every_filter_is_described_and_shown(self):
-        text = (ROOT / "docs/tools.md").read_text()
-        for name in ALL + [MEDIAL_AXIS]:
-            assert f"`{name}`" in text
-        for picture in re.findall(r"\]\((tools/\w+\.png)\)", text):
-            assert (ROOT / "docs" / picture).exists()
