@@ -59,9 +59,7 @@ Results loadSkeleton(FilterRun& run, const mcf::PlyFile& ply, const QString& nam
 
 Results run(FilterRun& run)
 {
-	const QString name = run.parameters.text("file");
-	if (name.isEmpty())
-		throw mcf::InvalidParameter("Parameter file must name the file to read.");
+	const QString name = requiredName(run.parameters.text("file"), "to read");
 	try {
 		std::istringstream in(readFile(name));
 		const mcf::PlyFile ply = mcf::readBinaryPly(in);

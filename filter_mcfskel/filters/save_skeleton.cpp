@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+#include "../io/files.h"
 #include "../io/formats.h"
 #include "all_filters.h"
 #include "common.h"
@@ -15,9 +16,7 @@ namespace {
 
 Results run(FilterRun& run)
 {
-	const QString file = run.parameters.text("file");
-	if (file.isEmpty())
-		throw mcf::InvalidParameter("Parameter file must name the file to write.");
+	const QString file = requiredName(run.parameters.text("file"), "to write");
 	const CurveLayer curve = readCurve(run.layer());
 	std::vector<int> sources = curve.nodeOfLayerVertex();
 	QString surfaceName = curve.surfaceName;
@@ -51,7 +50,8 @@ FilterSpec saveSkeletonFilter()
 			"Writes the current layer, a skeleton, to a file in the format that its name ends with: "
 			".swc (trees: each cycle is cut at its thinnest edge, and the log lists the cuts), .cg, "
 			".graphml, .json and .ply (with edges). GraphML and JSON keep the radius and the surface "
-			"vertices of each node. All but .json and .ply are also found under File > Export."),
+			"vertices of each node. All but .ply are also found under File > Export (in MeshLab "
+			"2020.09 all but .json and .ply)."),
 		FilterCategory::Remeshing, MeshModel::MM_NONE,
 		{{ParameterKind::FileToSave, "file", 0, "File",
 			 "Name of the file to write; it ends with .swc, .cg, .graphml, .json or .ply.",

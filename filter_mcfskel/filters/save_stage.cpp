@@ -19,9 +19,7 @@ namespace {
 
 Results run(FilterRun& run)
 {
-	const QString file = run.parameters.text("file");
-	if (file.isEmpty())
-		throw mcf::InvalidParameter("Parameter file must name the file to write.");
+	const QString file = requiredName(run.parameters.text("file"), "to write");
 	const StageLayer found = readStage(run.layer());
 	if (!found && run.layer().cm.fn > 0)
 		throw mcf::InvalidInput("The current layer '" + run.layer().label().toStdString()

@@ -18,6 +18,14 @@ FileError fileError(const char* what, const QString& name, const QFileDevice& fi
 
 } // namespace
 
+QString requiredName(const QString& name, const char* purpose)
+{
+	if (name.isEmpty())
+		throw vcg::tri::mcf::InvalidParameter(
+			std::string("Parameter file must name the file ") + purpose + ".");
+	return name;
+}
+
 std::string readFile(const QString& name)
 {
 	QFile file(name);

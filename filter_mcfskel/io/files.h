@@ -21,6 +21,10 @@ public:
 	using Error::Error;
 };
 
+/// The name of a file that a filter was given; `purpose` as in "to read".
+/// @throws InvalidParameter if it was given none.
+QString requiredName(const QString& name, const char* purpose);
+
 /// @throws FileError
 std::string readFile(const QString& name);
 
