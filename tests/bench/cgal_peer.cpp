@@ -188,16 +188,5 @@ void run(const Options& options)
 
 int main(int argc, char** argv)
 {
-	try {
-		run(parse(argc, argv));
-		return 0;
-	}
-	catch (const std::invalid_argument& error) {
-		std::cerr << "cgal_peer: " << error.what() << '\n' << usage;
-		return 2;
-	}
-	catch (const std::exception& error) {
-		std::cerr << "cgal_peer: " << error.what() << '\n';
-		return 1;
-	}
+	return bench::runProgram("cgal_peer", usage, [&] { run(parse(argc, argv)); });
 }

@@ -214,16 +214,5 @@ void run(const Options& options)
 
 int main(int argc, char** argv)
 {
-	try {
-		run(parse(argc, argv));
-		return 0;
-	}
-	catch (const std::invalid_argument& error) {
-		std::cerr << "mcfskel_cli: " << error.what() << '\n' << usage;
-		return 2;
-	}
-	catch (const std::exception& error) {
-		std::cerr << "mcfskel_cli: " << error.what() << '\n';
-		return 1;
-	}
+	return bench::runProgram("mcfskel_cli", usage, [&] { run(parse(argc, argv)); });
 }

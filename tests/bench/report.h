@@ -14,6 +14,7 @@
 #include <ctime>
 #include <fstream>
 #include <iomanip>
+#include <iostream>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -148,6 +149,25 @@ inline void writeObj(const Curve& curve, const std::string& path)
 		out << "l " << e.first + 1 << ' ' << e.second + 1 << '\n';
 	if (!out.flush())
 		throw std::runtime_error("cannot write " + path);
+}
+
+/// Runs a program's work; returns its exit status: 2 for std::invalid_argument, which is about how it
+/// was called, 1 for any other exception.
+template <class Work>
+int runProgram(const char* name, const char* usage, Work&& work)
+{
+	try {
+		work();
+		return 0;
+	}
+	catch (const std::invalid_argument& error) {
+		std::cerr << name << ": " << error.what() << '\n' << usage;
+		return 2;
+	}
+	catch (const std::exception& error) {
+		std::cerr << name << ": " << error.what() << '\n';
+		return 1;
+	}
 }
 
 } // namespace bench

@@ -9,7 +9,9 @@
 #include "skeleton/curve_skeleton.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace curves {
@@ -28,6 +30,17 @@ inline void addEdge(CurveSkeleton& s, int a, int b)
 {
 	s.edges.push_back({std::min(a, b), std::max(a, b)});
 	std::sort(s.edges.begin(), s.edges.end());
+}
+
+/// A graph whose node i stands at (i, 0, 0), with radius 1.
+inline CurveSkeleton graph(int nodes, std::vector<std::array<int, 2>> edges)
+{
+	CurveSkeleton s;
+	for (int i = 0; i < nodes; ++i)
+		addNode(s, Point3d(i, 0, 0), 1);
+	std::sort(edges.begin(), edges.end());
+	s.edges = std::move(edges);
+	return s;
 }
 
 /// From node `from` straight on to `to` in `count` edges; returns the last node.

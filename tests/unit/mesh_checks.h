@@ -168,6 +168,20 @@ inline int genus(const SurfaceMesh& mesh)
 	return components - mesh.eulerCharacteristic() / 2;
 }
 
+/// Sum of the solid angles of all triangles over 4 pi: 1 inside, 0 outside.
+inline double windingNumber(const SurfaceMesh& mesh, const Point3d& x)
+{
+	double sum = 0;
+	for (const Triangle& t : mesh.triangles()) {
+		const Point3d a = mesh.position[t[0]] - x, b = mesh.position[t[1]] - x,
+					  c = mesh.position[t[2]] - x;
+		const double la = a.Norm(), lb = b.Norm(), lc = c.Norm();
+		sum +=
+			2 * std::atan2(a * (b ^ c), la * lb * lc + (a * b) * lc + (b * c) * la + (c * a) * lb);
+	}
+	return sum / (4 * M_PI);
+}
+
 } // namespace checks
 
 #endif

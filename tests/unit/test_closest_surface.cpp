@@ -3,6 +3,7 @@
 
 // Closest points, insides and maximal balls, against brute force and shapes with known answers.
 
+#include "mesh_checks.h"
 #include "shapes.h"
 
 #include "skeleton/closest_surface.h"
@@ -36,20 +37,6 @@ double distanceByBruteForce(const SurfaceMesh& mesh, const Point3d& x)
 				mesh.position[t[0]], mesh.position[t[1]], mesh.position[t[2]], x)
 				.squaredDistance);
 	return std::sqrt(least);
-}
-
-/// Sum of the solid angles of all triangles over 4 pi: 1 inside, 0 outside.
-double windingNumber(const SurfaceMesh& mesh, const Point3d& x)
-{
-	double sum = 0;
-	for (const Triangle& t : mesh.triangles()) {
-		const Point3d a = mesh.position[t[0]] - x, b = mesh.position[t[1]] - x,
-					  c = mesh.position[t[2]] - x;
-		const double la = a.Norm(), lb = b.Norm(), lc = c.Norm();
-		sum +=
-			2 * std::atan2(a * (b ^ c), la * lb * lc + (a * b) * lc + (b * c) * la + (c * a) * lb);
-	}
-	return sum / (4 * M_PI);
 }
 
 std::vector<Point3d> randomPoints(const SurfaceMesh& mesh, int count)
@@ -97,7 +84,7 @@ TEST_P(OnShapes, InsideIsThatOfTheWindingNumber)
 	for (const Point3d& x : randomPoints(mesh, 200)) {
 		if (distanceByBruteForce(mesh, x) < 1e-3)
 			continue;
-		const bool isInside = windingNumber(mesh, x) > 0.5;
+		const bool isInside = checks::windingNumber(mesh, x) > 0.5;
 		EXPECT_EQ(closest.clearance(x) > 0, isInside);
 		++(isInside ? inside : outside);
 	}

@@ -1,28 +1,19 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+#include "curves.h"
+
 #include "skeleton/curve_skeleton.h"
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <vector>
 
 using namespace vcg::tri::mcf;
+using curves::graph;
 using vcg::Point3d;
 
 namespace {
-
-/// A skeleton with the given edges, node i at (i, 0, 0).
-CurveSkeleton graph(int nodes, std::vector<std::array<int, 2>> edges)
-{
-	CurveSkeleton s;
-	for (int i = 0; i < nodes; ++i)
-		s.position.emplace_back(i, 0, 0);
-	s.radius.assign(nodes, 1);
-	s.edges = std::move(edges);
-	return s;
-}
 
 void expectCounts(const CurveSkeleton& skeleton, int components, int cycles, int branches,
 	int terminals, int junctions)

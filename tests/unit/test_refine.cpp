@@ -79,25 +79,13 @@ std::vector<Point3d> zigzag(double from, double to, double aside, double amount,
 	return points;
 }
 
-double windingNumber(const SurfaceMesh& mesh, const Point3d& x)
-{
-	double sum = 0;
-	for (const Triangle& t : mesh.triangles()) {
-		const Point3d a = mesh.position[t[0]] - x, b = mesh.position[t[1]] - x,
-					  c = mesh.position[t[2]] - x;
-		const double la = a.Norm(), lb = b.Norm(), lc = c.Norm();
-		sum +=
-			2 * std::atan2(a * (b ^ c), la * lb * lc + (a * b) * lc + (b * c) * la + (c * a) * lb);
-	}
-	return sum / (4 * M_PI);
-}
-
 /// Whether all nodes and three points of each edge are inside.
 bool isInside(const CurveSkeleton& s, const SurfaceMesh& mesh)
 {
 	for (const auto& [a, b] : s.edges)
 		for (double t : {0.0, 0.25, 0.5, 0.75, 1.0})
-			if (windingNumber(mesh, s.position[a] + (s.position[b] - s.position[a]) * t) < 0.5)
+			if (checks::windingNumber(mesh, s.position[a] + (s.position[b] - s.position[a]) * t)
+				< 0.5)
 				return false;
 	return true;
 }

@@ -3,6 +3,8 @@
 
 // Branches of hand-made graphs, the measure of spurs, and merging nodes.
 
+#include "curves.h"
+
 #include "skeleton/skeleton_branches.h"
 #include "skeleton/skeleton_radius.h"
 
@@ -10,29 +12,16 @@
 
 #include <algorithm>
 #include <array>
-#include <initializer_list>
 #include <map>
 #include <random>
 #include <set>
-#include <utility>
 #include <vector>
 
 using namespace vcg::tri::mcf;
+using curves::graph;
 using vcg::Point3d;
 
 namespace {
-
-/// A graph whose node i stands at (i, 0, 0).
-CurveSkeleton graph(int nodes, std::initializer_list<std::array<int, 2>> edges)
-{
-	CurveSkeleton s;
-	for (int i = 0; i < nodes; ++i)
-		s.position.emplace_back(i, 0, 0);
-	s.radius.assign(nodes, 1);
-	s.edges = edges;
-	std::sort(s.edges.begin(), s.edges.end());
-	return s;
-}
 
 std::set<std::vector<int>> asSet(const std::vector<Branch>& branches)
 {
