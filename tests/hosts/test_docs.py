@@ -79,6 +79,13 @@ def test_every_filter_has_its_section():
     assert set(sections()) == set(filters())
 
 
+def test_every_filter_is_shown():
+    for page in (ROOT / "docs").glob("*.md"):
+        for section in re.split(r"^## ", page.read_text(), flags=re.MULTILINE)[1:]:
+            heading = section.splitlines()[0]
+            assert "_mcf`" not in heading or "![" in section, heading
+
+
 def test_every_parameter_is_explained(capfd: pytest.CaptureFixture[str]):
     listed = parameters(capfd)
     assert len(listed) >= 40
