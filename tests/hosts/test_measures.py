@@ -68,7 +68,7 @@ def by_the_bench(name: str, skeleton: Curve) -> dict[str, float]:
 
 
 @pytest.mark.parametrize("name, skeleton", [
-    ("animal450", known_skeleton), ("plate3", known_skeleton), ("y_tube", with_a_spur),
+    ("animal450", known_skeleton), ("torus_capsule", known_skeleton), ("y_tube", with_a_spur),
     ("bent_tube", half_outside),
 ], ids=["limbs", "cycles", "spur", "half outside"])
 def test_agrees_with_the_bench(name, skeleton):

@@ -267,12 +267,12 @@ class TestResampleSkeleton:
         derived = y_tube.current_mesh_id()
         for start in [first.id(), derived]:
             y_tube.set_current_mesh(start)
-            y_tube.apply_filter(RESAMPLE_SKELETON, longest_edge=percent(1))
-            assert edge_lengths(y_tube.current_mesh()).max() == pytest.approx(0.01 * surface, rel=0.005)
+            y_tube.apply_filter(RESAMPLE_SKELETON, longest_edge=percent(0.05))
+            assert edge_lengths(y_tube.current_mesh()).max() == pytest.approx(0.0005 * surface, rel=0.004)
         add_curve(y_tube, first.vertex_matrix(), first.edge_matrix(),
                   scalars(first, "mcfskel_radius"), "elsewhere")
-        y_tube.apply_filter(RESAMPLE_SKELETON, longest_edge=percent(1))
-        assert edge_lengths(y_tube.current_mesh()).max() == pytest.approx(0.01 * own, rel=0.005)
+        y_tube.apply_filter(RESAMPLE_SKELETON, longest_edge=percent(0.05))
+        assert edge_lengths(y_tube.current_mesh()).max() == pytest.approx(0.0005 * own, rel=0.004)
 
     @pytest.mark.parametrize("name", ["y_tube", "torus", "plate3"])
     def test_ends_junctions_and_cycles_stay(self, name):
