@@ -49,6 +49,7 @@ const char* const usage =
 	"  --smoothing K             smoothness of the refined branches\n"
 	"  --spur-prominence R       tips that stick out less are removed\n"
 	"  --junction-prominence R   junctions that stick out less are merged\n"
+	"  --tip-distinctness R      branches into corners that gain less are removed\n"
 	"  --verbose                 a line for each iteration, and the notes of the input check\n";
 
 struct Options
@@ -98,6 +99,7 @@ Options parse(int argc, char** argv)
 		{"--spacing", [&](Text t) { r.spacing = std::stod(t) / 100; }},
 		{"--smoothing", [&](Text t) { r.smoothing = std::stod(t); }},
 		{"--spur-prominence", [&](Text t) { r.spurProminence = std::stod(t); }},
+		{"--tip-distinctness", [&](Text t) { r.tipDistinctness = std::stod(t); }},
 		{"--junction-prominence", [&](Text t) { r.junctionProminence = std::stod(t); }},
 	};
 	for (int i = 1; i < argc; ++i) {

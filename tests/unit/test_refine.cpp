@@ -272,6 +272,52 @@ TEST(Refine, EndsInTheCentreOfARoundEnd)
 		EXPECT_NEAR(std::abs(tip[0]), 1.5, 0.05);
 }
 
+TEST(Refine, LeavesNoBranchInTheCornersOfABox)
+{
+	// The curve edges of a bar's medial axis: from its axis to all eight corners.
+	const SurfaceMesh mesh = shapes::cells(30, 10, 10, [](int, int, int) { return true; }).mesh();
+	CurveMaker maker;
+	const Point3d ends[] = {{5, 5, 5}, {25, 5, 5}};
+	maker.line(ends[0], ends[1]);
+	for (int i = 0; i < 8; ++i) {
+		const Point3d corner(i & 1 ? 30 : 0, i & 2 ? 10 : 0, i & 4 ? 10 : 0);
+		maker.line(ends[i & 1], ends[i & 1] * 0.1 + corner * 0.9, 8);
+	}
+	const CurveSkeleton s = refine(maker.in(mesh), mesh);
+	EXPECT_TRUE(isInside(s, mesh));
+	const std::vector<Point3d> found = tips(s);
+	ASSERT_EQ(found.size(), 2u);
+	EXPECT_EQ(statistics(s).junctions, 0);
+	for (const Point3d& tip : found)
+		EXPECT_LE(std::min(Distance(tip, ends[0]), Distance(tip, ends[1])), 1)
+			<< "an end is the centre of the last ball of full size";
+}
+
+TEST(Refine, CutsAnEndOffThatTurnsIntoACorner)
+{
+	const SurfaceMesh mesh = shapes::cells(30, 10, 10, [](int, int, int) { return true; }).mesh();
+	const CurveSkeleton s = refine(
+		CurveMaker().line({5, 5, 5}, {25, 5, 5}).line({25, 5, 5}, {29, 9, 9}, 8).in(mesh), mesh);
+	EXPECT_NEAR(farthest(tips(s), 0), 25, 1);
+	EXPECT_LE(farthest(tips(s), 1), 6);
+}
+
+TEST(Refine, KeepsAShortPointedFeatureOfALargeBody)
+{
+	// A cone of 40 degrees on a ball of radius 1, its tip at 1.6.
+	std::vector<std::pair<double, double>> profile;
+	const double slope = std::tan(20 * M_PI / 180), apex = 1.6;
+	for (int i = 0; i <= 200; ++i) {
+		const double x = -1 + (apex + 1) * i / 200;
+		const double ball = std::sqrt(std::max(0.0, 1 - x * x));
+		profile.emplace_back(x, i == 0 || i == 200 ? 0 : std::max(ball, (apex - x) * slope));
+	}
+	const SurfaceMesh mesh = shapes::revolved(profile, 48).mesh();
+	const CurveSkeleton s = refine(
+		CurveMaker().line({0, 0, 0}, {1.3, 0, 0}).line({0, 0, 0}, {-0.1, 0, 0}, 2).in(mesh), mesh);
+	EXPECT_GE(farthest(tips(s), 0), 1.5) << "within about a radius of the end";
+}
+
 TEST(Refine, MakesOneJunctionOfSeveralPieces)
 {
 	// Four arms that meet in the middle of a plus, the curve in two junctions.

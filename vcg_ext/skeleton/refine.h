@@ -48,6 +48,9 @@ struct RefineParameters
 	/// wrong sheet of the medial axis, then rounds with it before and after the tips are
 	/// extended; >= 0.
 	int stiffRounds = 6, rounds = 3, lastRounds = 4;
+	/// A terminal branch must be this distinct somewhere, see distinctness(); in [0, 1]. The corners
+	/// of a box have 0.42, pointed ends with an opening angle of 60 degrees 0.5.
+	double tipDistinctness = 0.5;
 	/// A tip is extended while the balls reach further by at least this part of the way; in (0, 1].
 	double tipGain = 0.2;
 	/// A tip's ball is no smaller than this when it has been extended; fraction of the diagonal, > 0.
@@ -62,6 +65,8 @@ struct RefineParameters
 			"between 0 and 1");
 		require(smoothing >= 0 && std::isfinite(smoothing), "smoothing", "at least 0");
 		require(stiffRounds >= 0 && rounds >= 0 && lastRounds >= 0, "rounds", "at least 0");
+		require(
+			tipDistinctness >= 0 && tipDistinctness <= 1, "tip_distinctness", "between 0 and 1");
 		require(tipGain > 0 && tipGain <= 1, "tip_gain", "in (0, 1]");
 		require(tipRadius > 0 && std::isfinite(tipRadius), "tip_radius", "greater than 0");
 	}
@@ -99,10 +104,14 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 			progress.report(double(++done) / total, what);
 		}
 	};
-	const auto tidy = [&](double spurProminence) {
+	const auto tidy = [&](double spurProminence, double tipDistinctness) {
 		measureBranchEnds(skeleton, surface);
-		skeleton = withWholeJunctions(
-			withoutSpurs(std::move(skeleton), spurProminence), parameters.junctionProminence);
+		skeleton = withoutSpurs(std::move(skeleton), spurProminence);
+		if (tipDistinctness > 0) {
+			skeleton = withoutCornerBranches(std::move(skeleton), surface, tipDistinctness);
+			skeleton = withoutCornerEnds(skeleton, surface, tipDistinctness);
+		}
+		skeleton = withWholeJunctions(std::move(skeleton), parameters.junctionProminence);
 		skeleton = evenlySampled(skeleton, surface, parameters.spacing);
 	};
 	const auto extend = [&] {
@@ -114,15 +123,15 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 	moveInside(skeleton, surface);
 	// A stub may be the start of a feature: all but the hopeless are extended before they are judged.
 	constexpr double hopeless = 0;
-	tidy(hopeless);
+	tidy(hopeless, 0);
 	centreRounds(parameters.stiffRounds, stiffer * kappa, false);
 	extend();
-	tidy(parameters.spurProminence);
+	tidy(parameters.spurProminence, parameters.tipDistinctness);
 	centreRounds(parameters.rounds, kappa, true);
 	extend();
-	tidy(parameters.spurProminence);
+	tidy(parameters.spurProminence, parameters.tipDistinctness);
 	centreRounds(parameters.lastRounds, kappa, true);
-	tidy(parameters.spurProminence);
+	tidy(parameters.spurProminence, parameters.tipDistinctness);
 	return skeleton;
 }
 

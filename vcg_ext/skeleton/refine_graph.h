@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -74,6 +75,108 @@ inline CurveSkeleton withoutSpurs(CurveSkeleton skeleton, double least)
 		std::move(skeleton), least, [](const CurveSkeleton& s, const Branch& branch) {
 			return prominence(s, branch.last(), branch.first());
 		});
+}
+
+/// A terminal branch as the balls on it see it: for each node the way from the first one, and the
+/// distance from the surface.
+struct BranchProfile
+{
+	std::vector<double> along, radius;
+
+	BranchProfile(
+		const CurveSkeleton& skeleton, const ClosestSurface& surface, const Branch& branch)
+	{
+		for (size_t i = 0; i < branch.nodes.size(); ++i) {
+			const Point3d& p = skeleton.position[branch.nodes[i]];
+			along.push_back(
+				i == 0 ? 0 : along.back() + Distance(p, skeleton.position[branch.nodes[i - 1]]));
+			radius.push_back(std::max(surface.clearance(p), 0.0));
+		}
+	}
+
+	size_t last() const { return along.size() - 1; }
+
+	/// How much further the balls reach for the way between two nodes: 1 + (r_to - r_from) / length.
+	double gain(size_t from, size_t to) const
+	{
+		const double length = along[to] - along[from];
+		return length > 0 ? 1 + (radius[to] - radius[from]) / length : 0;
+	}
+
+	/// The first node at least one radius of `from` further on, or past the last node.
+	size_t oneRadiusOn(size_t from) const
+	{
+		return size_t(
+			std::lower_bound(along.begin() + from, along.end(), along[from] + radius[from])
+			- along.begin());
+	}
+};
+
+/**
+ * How clearly a terminal branch leaves what it hangs from: the greatest gain of reach per way over any
+ * stretch as long as the radius at its start. It is 1 along a limb, however short, and 1 - sin(a) on
+ * the way into a corner or a pointed end with a half angle of a, whatever its size; a branch without
+ * such a stretch is taken as a whole.
+ * @param branch from its junction to its tip.
+ */
+inline double distinctness(
+	const CurveSkeleton& skeleton, const ClosestSurface& surface, const Branch& branch)
+{
+	const BranchProfile profile(skeleton, surface, branch);
+	double most = -1;
+	for (size_t from = 0; from < profile.last(); ++from)
+		if (const size_t to = profile.oneRadiusOn(from); to <= profile.last())
+			most = std::max(most, profile.gain(from, to));
+	return most < 0 ? profile.gain(0, profile.last()) : most;
+}
+
+/**
+ * Removes the terminal branches whose distinctness() is below `least`, as withoutSpurs(): they lead
+ * into corners and edges of the surface, of which a shape has many and a skeleton none.
+ */
+inline CurveSkeleton withoutCornerBranches(
+	CurveSkeleton skeleton, const ClosestSurface& surface, double least)
+{
+	return withoutTerminalBranches(
+		std::move(skeleton), least, [&](const CurveSkeleton& s, const Branch& branch) {
+			return distinctness(s, surface, branch);
+		});
+}
+
+/**
+ * Cuts the ends off that lead from a limb into a corner: behind the last stretch of the branch that
+ * gains `least`, see distinctness(), the branch ends where going on gains less, unless what is left is
+ * shorter than half a radius. What had merged there goes to the new tip.
+ */
+inline CurveSkeleton withoutCornerEnds(
+	const CurveSkeleton& skeleton, const ClosestSurface& surface, double least)
+{
+	constexpr double shortest = 0.5;
+	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
+	std::vector<int> target(skeleton.position.size());
+	std::iota(target.begin(), target.end(), 0);
+	for (Branch branch : skeletonBranches(skeleton)) {
+		for (int side = 0; side < 2; ++side) {
+			std::reverse(branch.nodes.begin(), branch.nodes.end());
+			if (neighbours[branch.last()].size() != 1)
+				continue;
+			const BranchProfile profile(skeleton, surface, branch);
+			size_t limb = profile.last();
+			for (size_t from = 0; from < profile.last(); ++from)
+				if (const size_t to = profile.oneRadiusOn(from);
+					to <= profile.last() && profile.gain(from, to) >= least)
+					limb = from;
+			size_t end = limb;
+			for (size_t i = limb; i <= profile.last(); ++i)
+				if (profile.along[i] > profile.along[end] && profile.gain(end, i) >= least)
+					end = i;
+			if (profile.along.back() - profile.along[end] < shortest * profile.radius[end])
+				continue;
+			for (size_t i = end + 1; i <= profile.last(); ++i)
+				target[branch.nodes[i]] = branch.nodes[end];
+		}
+	}
+	return mergeNodes(skeleton, target);
 }
 
 /**
