@@ -25,18 +25,28 @@ def subdivided(mesh: Path, times: int, folder: Path) -> Path:
     target = folder / f"{mesh.stem}_x{4 ** times}.ply"
     if target.exists() and target.stat().st_mtime > mesh.stat().st_mtime:
         return target
-    fine = trimesh.load(mesh, process=False, force="mesh")
-    fine.merge_vertices(merge_tex=True, merge_norm=True)
-    points, triangles = fine.vertices, fine.faces
+    points, triangles = read_mesh(mesh)
     for _ in range(times):
         points, triangles = trimesh.remesh.subdivide(points, triangles)
+    return write_mesh(target, points, triangles)
+
+
+def read_mesh(path: Path) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices, (V, 3), and triangles, (F, 3), coincident vertices made one."""
+    mesh = trimesh.load(path, process=False, force="mesh")
+    mesh.merge_vertices(merge_tex=True, merge_norm=True)
+    return np.asarray(mesh.vertices, float), np.asarray(mesh.faces, int)
+
+
+def write_mesh(path: Path, points: np.ndarray, triangles: np.ndarray) -> Path:
+    """Writes binary PLY with positions in double precision; whole or not at all."""
     vertex = np.empty(len(points), dtype=[("x", "f8"), ("y", "f8"), ("z", "f8")])
     vertex["x"], vertex["y"], vertex["z"] = np.asarray(points).T
     face = np.empty(len(triangles), dtype=[("vertex_indices", "i4", (3,))])
     face["vertex_indices"] = triangles
-    folder.mkdir(parents=True, exist_ok=True)
+    path.parent.mkdir(parents=True, exist_ok=True)
     elements = [PlyElement.describe(vertex, "vertex"), PlyElement.describe(face, "face")]
-    unfinished = target.with_suffix(".part")
+    unfinished = path.with_suffix(".part")
     PlyData(elements).write(str(unfinished))
-    unfinished.rename(target)
-    return target
+    unfinished.rename(path)
+    return path
