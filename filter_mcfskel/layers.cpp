@@ -436,7 +436,6 @@ void fillCurve(MeshModel& layer, const std::vector<vcg::Point3d>& nodes,
 	if (!radius.empty()) {
 		writeScalars(layer, radiusAttribute, radius);
 		writeQuality(layer, radius);
-		setVertexColours(layer, radius, 0, *std::max_element(radius.begin(), radius.end()));
 	}
 	host::updateBoxAndNormals(layer);
 }
@@ -639,10 +638,17 @@ void DocumentEdit::commit()
 
 void DocumentEdit::present()
 {
-	// Curves and points have no normals; with the shading that comes of it they would be all but black.
-	for (int id : added)
-		if (MeshModel& layer = *document.getMesh(id); layer.cm.fn == 0)
-			layer.clearDataMask(MeshModel::MM_VERTNORMAL);
+	for (int id : added) {
+		MeshModel& layer = *document.getMesh(id);
+		if (layer.cm.fn > 0)
+			continue;
+		// Curves and points have no normals; with the shading that comes of it they would be all but
+		// black.
+		layer.clearDataMask(MeshModel::MM_VERTNORMAL);
+		const std::vector<double> values = vertexQuality(layer);
+		if (!values.empty())
+			setVertexColours(layer, values, 0, *std::max_element(values.begin(), values.end()));
+	}
 	sources.insert(sources.end(), added.begin(), added.end() - 1);
 	for (int id : sources)
 		if (id >= 0 && document.getMesh(id))

@@ -135,7 +135,7 @@ public:
 	MeshModel& addPoints(
 		const MeshModel& source, const QString& label, const std::vector<vcg::Point3d>& points);
 
-	/// A new layer of nodes and edges in the frame of `source`; the radius is also quality and colour.
+	/// A new layer of nodes and edges in the frame of `source`; the radius is also the quality.
 	MeshModel& addCurve(const MeshModel& source, const QString& label,
 		const std::vector<vcg::Point3d>& nodes, const std::vector<std::array<int, 2>>& edges,
 		const std::vector<double>& radius);
@@ -169,9 +169,9 @@ public:
 	/**
 	 * Keeps the changes and makes the layer added last the current one. In MeshLab's window that one
 	 * is seen at once: it lies inside the layers that it was made from, so these are hidden, and so
-	 * are the other new ones; curves and points are drawn in their colours, without shading. Where
-	 * there is no window all layers stay visible, since scripts use visibility to say which layers a
-	 * filter works on.
+	 * are the other new ones; curves and points are coloured by their quality, and not shaded. Where
+	 * there is no window nothing of this is done: scripts use visibility to say which layers a filter
+	 * works on, and colours would be saved with the layer.
 	 */
 	void commit();
 

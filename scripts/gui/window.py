@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any, Callable, Optional, TypeVar
 
 SIZE = (1280, 900)
-PATIENCE = 90.0  # seconds: a busy machine is slow, and nothing is gained by giving up early
+PATIENCE = 180.0  # seconds: a busy machine is slow, and nothing is gained by giving up early
 
 T = TypeVar("T")
 

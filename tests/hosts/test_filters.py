@@ -456,6 +456,11 @@ class TestFull:
         curve = torus_run[0].current_mesh()
         assert curve.vertex_scalar_array() == pytest.approx(scalars(curve, "mcfskel_radius"))
 
+    def test_scripts_see_every_layer_and_no_colours(self, torus_run):
+        layers = torus_run[0]
+        assert all(mesh.is_visible() for mesh in layers)
+        assert not layer(layers, "torus_skeleton").has_vertex_color()
+
     def test_is_the_filters_one_by_one(self, torus_run):
         layers, results, _ = torus_run
         singly = opened("torus")
