@@ -264,7 +264,7 @@ QString baseName(const MeshModel& layer)
 	return baseName(layer.label());
 }
 
-SurfaceLayer readSurface(const MeshModel& layer)
+SurfaceLayer readSurface(const MeshModel& layer, const mcf::Progress& progress)
 {
 	requireOwnAttributes(layer);
 	const std::string label = "'" + layer.label().toStdString() + "'";
@@ -280,6 +280,7 @@ SurfaceLayer readSurface(const MeshModel& layer)
 		throw mcf::InvalidInput("The current layer " + label
 			+ " is a curve, edges without faces: make the surface layer current.");
 
+	progress.report(0, "Reading the layer");
 	const std::vector<int> live = liveSlots(mesh);
 	std::vector<int> pointOfSlot(mesh.vert.size(), -1);
 	std::vector<vcg::Point3d> points;
@@ -288,6 +289,7 @@ SurfaceLayer readSurface(const MeshModel& layer)
 		pointOfSlot[size_t(slot)] = int(points.size());
 		points.push_back(toDouble(mesh.vert[size_t(slot)].cP()));
 	}
+	progress.report(0.1, "Reading the layer");
 	std::vector<mcf::Triangle> triangles;
 	triangles.reserve(size_t(mesh.fn));
 	for (const CFaceO& f : mesh.face) {
@@ -298,7 +300,7 @@ SurfaceLayer readSurface(const MeshModel& layer)
 			triangle[size_t(k)] = pointOfSlot[vcg::tri::Index(mesh, f.cV(k))];
 		triangles.push_back(triangle);
 	}
-	mcf::CheckedSurface checked = mcf::checkedSurface(points, triangles);
+	mcf::CheckedSurface checked = mcf::checkedSurface(points, triangles, progress.part(0.2, 1));
 	auto vertexOfSlot = std::make_shared<std::vector<int>>(mesh.vert.size(), -1);
 	for (int slot : live)
 		(*vertexOfSlot)[size_t(slot)] = checked.vertexOfInput[size_t(pointOfSlot[size_t(slot)])];

@@ -85,9 +85,11 @@ QString baseName(const MeshModel& layer);
 /**
  * Reads and checks a surface layer; the layer itself is not changed.
  * @throws InvalidInput if it is empty, has no faces, is a stage of the contraction, is not a closed
- *         two-manifold (see checkedSurface()), or has an attribute mcfskel_* of a foreign type.
+ *         two-manifold (see checkedSurface()), or has an attribute mcfskel_* of a foreign type;
+ *         Cancelled.
  */
-SurfaceLayer readSurface(const MeshModel& layer);
+SurfaceLayer readSurface(
+	const MeshModel& layer, const vcg::tri::mcf::Progress& progress = vcg::tri::mcf::Progress());
 
 /// The stage that a layer holds; false if it is none, or if its geometry was edited since.
 StageLayer readStage(const MeshModel& layer);

@@ -182,7 +182,7 @@ void logNotes(const FilterRun& run, const SurfaceLayer& surface)
 SurfaceLayer resampledSurface(const FilterRun& run, const mcf::SurfaceMesh& mesh,
 	const mcf::Parameters& parameters, const mcf::Progress& progress)
 {
-	const mcf::NoiseReport noise = mcf::measureNoise(mesh);
+	const mcf::NoiseReport noise = mcf::measureNoise(mesh, progress.part(0, 0.1));
 	const bool smooth = parameters.denoise && noise.isNoisy();
 	if (noise.isNoisy())
 		run.log(
@@ -191,11 +191,11 @@ SurfaceLayer resampledSurface(const FilterRun& run, const mcf::SurfaceMesh& mesh
 				.arg(smooth ? QString("smoothing it in %1 rounds").arg(noise.mostRounds())
 							: QString("it may show in the skeleton; 'denoise' would smooth it")));
 	const mcf::SurfaceMesh calm =
-		smooth ? mcf::smoothed(mesh, noise.rounds, progress.part(0, 0.2)) : mesh;
+		smooth ? mcf::smoothed(mesh, noise.rounds, progress.part(0.1, 0.3)) : mesh;
 	SurfaceLayer result;
 	result.mesh = std::make_shared<const mcf::SurfaceMesh>(
 		mcf::resample(calm, mcf::defaultTargetLength(calm, parameters),
-			parameters.resampleIterations, smooth ? progress.part(0.2, 1) : progress));
+			parameters.resampleIterations, progress.part(smooth ? 0.3 : 0.1, 1)));
 	run.log(QString("Resampled to %1 vertices, mean edge length %2 mesh units%3.")
 				.arg(result.mesh->vertexCount())
 				.arg(meanEdgeLength(*result.mesh))
@@ -209,13 +209,13 @@ SurfaceLayer resampledSurface(const FilterRun& run, const mcf::SurfaceMesh& mesh
 PoledSurface surfaceWithPoles(FilterRun& run, mcf::PoleMethod method, const mcf::Progress& progress)
 {
 	PoledSurface result;
-	result.surface = readSurface(run.layer());
+	result.surface = readSurface(run.layer(), progress.part(0, 0.2));
 	logNotes(run, result.surface);
 	result.poles = readPoles(run.layer(), result.surface);
 	if (!result.poles) {
 		run.log("The surface has no medial poles yet: computing them.");
 		result.poles = std::make_shared<const mcf::PoleSet>(
-			mcf::medialPoles(*result.surface.mesh, method, progress));
+			mcf::medialPoles(*result.surface.mesh, method, progress.part(0.2, 1)));
 		result.computed = true;
 	}
 	return result;

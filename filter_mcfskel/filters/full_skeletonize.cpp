@@ -7,6 +7,7 @@
 #include <skeleton/collapse_to_curve.h>
 #include <skeleton/errors.h>
 #include <skeleton/first_stage.h>
+#include <skeleton/parallel_blocks.h>
 #include <skeleton/point_tree.h>
 #include <skeleton/poles.h>
 #include <skeleton/refine.h>
@@ -60,12 +61,12 @@ Pipeline skeletonize(FilterRun& run, const mcf::Parameters& parameters)
 	const auto note = [&](const char* what, double seconds) {
 		pipeline.seconds[std::string("seconds_") + what] = seconds;
 	};
-	pipeline.input = readSurface(run.layer());
+	pipeline.input = readSurface(run.layer(), run.progress.part(0, 0.02));
 	logNotes(run, pipeline.input);
 
 	Stopwatch watch;
 	pipeline.surface = parameters.resample
-		? resampledSurface(run, *pipeline.input.mesh, parameters, run.progress.part(0, 0.15))
+		? resampledSurface(run, *pipeline.input.mesh, parameters, run.progress.part(0.02, 0.15))
 		: pipeline.input;
 	note("resample", watch.lap());
 
@@ -87,19 +88,22 @@ Pipeline skeletonize(FilterRun& run, const mcf::Parameters& parameters)
 	note("collapse", watch.lap());
 	if (parameters.refine)
 		pipeline.skeleton = mcf::refine(pipeline.skeleton, *pipeline.surface.mesh,
-			mcf::RefineParameters(), run.progress.part(0.9, 1));
+			mcf::RefineParameters(), run.progress.part(0.9, 0.98));
 	note("refine", watch.lap());
 	return pipeline;
 }
 
 /// For each vertex of the input the skeleton node of the nearest vertex of the resampled surface.
-std::vector<int> nodesOfInput(const Pipeline& pipeline)
+std::vector<int> nodesOfInput(const Pipeline& pipeline, const mcf::Progress& progress)
 {
 	const mcf::SurfaceMesh& input = *pipeline.input.mesh;
-	const mcf::PointTree tree(pipeline.surface.mesh->position);
+	const mcf::PointTree tree(pipeline.surface.mesh->position, progress.part(0, 0.1));
 	std::vector<int> node(size_t(input.vertexSlots()));
-	for (size_t v = 0; v < node.size(); ++v)
-		node[v] = pipeline.skeleton.node[size_t(tree.nearest(input.position[v]))];
+	mcf::forEachBlock(int(node.size()), progress.part(0.1, 1), "Finding the nodes of the input",
+		[&](int begin, int end) {
+			for (size_t v = size_t(begin); v < size_t(end); ++v)
+				node[v] = pipeline.skeleton.node[size_t(tree.nearest(input.position[v]))];
+		});
 	return node;
 }
 
@@ -117,6 +121,10 @@ Results run(FilterRun& run)
 		throw mcf::InvalidParameter("Parameter keep_stages must be at least 0.");
 	const Pipeline pipeline = skeletonize(run, parameters);
 
+	const std::vector<int> inputNodes = parameters.resample
+		? nodesOfInput(pipeline, run.progress.part(0.98, 1))
+		: std::vector<int>();
+
 	DocumentEdit edit(run.document);
 	MeshModel& input = run.layer();
 	const QString name = baseName(input);
@@ -133,7 +141,7 @@ Results run(FilterRun& run)
 		edit.writePoles(*surface, pipeline.surface, pipeline.poles);
 	edit.writeNodes(*surface, *pipeline.surface.vertexOfSlot, pipeline.skeleton.node);
 	if (parameters.resample)
-		edit.writeNodes(input, *pipeline.input.vertexOfSlot, nodesOfInput(pipeline));
+		edit.writeNodes(input, *pipeline.input.vertexOfSlot, inputNodes);
 	edit.commit();
 
 	Results results = stageResults(*pipeline.kept.back());

@@ -14,10 +14,10 @@ namespace {
 
 Results run(FilterRun& run)
 {
-	const SurfaceLayer surface = readSurface(run.layer());
+	const SurfaceLayer surface = readSurface(run.layer(), run.progress.part(0, 0.2));
 	logNotes(run, surface);
 	const auto poles = std::make_shared<const mcf::PoleSet>(
-		mcf::medialPoles(*surface.mesh, readPoleMethod(run.parameters), run.progress));
+		mcf::medialPoles(*surface.mesh, readPoleMethod(run.parameters), run.progress.part(0.2, 1)));
 	const int without = poles->missing();
 	const int found = int(poles->radius.size()) - without;
 

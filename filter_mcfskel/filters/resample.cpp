@@ -15,9 +15,10 @@ Results run(FilterRun& run)
 	mcf::Parameters parameters;
 	readResampling(run.parameters, parameters);
 	parameters.check();
-	const SurfaceLayer surface = readSurface(run.layer());
+	const SurfaceLayer surface = readSurface(run.layer(), run.progress.part(0, 0.1));
 	logNotes(run, surface);
-	const SurfaceLayer resampled = resampledSurface(run, *surface.mesh, parameters, run.progress);
+	const SurfaceLayer resampled =
+		resampledSurface(run, *surface.mesh, parameters, run.progress.part(0.1, 1));
 	const mcf::SurfaceMesh& mesh = *resampled.mesh;
 
 	DocumentEdit edit(run.document);

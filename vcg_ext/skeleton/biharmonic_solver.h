@@ -44,7 +44,7 @@ inline void solveBiharmonic(const SymmetricRows& M, const std::vector<double>& D
 	std::vector<double> rootD(n);
 	for (int i = 0; i < n; ++i)
 		rootD[i] = std::sqrt(D[i]);
-	const IncompleteFactor factor(M, rootD, dropTolerance);
+	const IncompleteFactor factor(M, rootD, dropTolerance, progress.part(0, 0.5));
 	progress.report(0.5, "Contracting");
 
 	FloatQuads work(n);

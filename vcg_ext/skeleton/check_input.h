@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,29 +29,37 @@ struct CheckedSurface
 	std::vector<std::string> notes;
 };
 
-/// For each vertex the number of its connected component, counted by lowest vertex.
+/// For each vertex the number of its connected component, counted by lowest vertex; -1 for holes in
+/// the numbering. Complexity: about O(V + F).
 inline std::vector<int> connectedComponents(const SurfaceMesh& mesh, int* componentCount = nullptr)
 {
-	std::vector<int> component(mesh.vertexSlots(), -1), stack;
-	int count = 0;
-	for (int seed = 0; seed < mesh.vertexSlots(); ++seed) {
-		if (!mesh.isVertex(seed) || component[seed] >= 0)
-			continue;
-		component[seed] = count;
-		stack.assign(1, seed);
-		while (!stack.empty()) {
-			const int v = stack.back();
-			stack.pop_back();
-			mesh.forEachOutgoing(v, [&](int h) {
-				const int w = mesh.target(h);
-				if (component[w] < 0) {
-					component[w] = count;
-					stack.push_back(w);
-				}
-			});
+	// Sets of vertices that grow face by face, each known by its lowest vertex: unlike a walk over
+	// the surface that reads the mesh in the order in which it lies in memory.
+	std::vector<int> lowest(mesh.vertexSlots());
+	std::iota(lowest.begin(), lowest.end(), 0);
+	const auto find = [&](int v) {
+		while (lowest[v] != v)
+			v = lowest[v] = lowest[lowest[v]];
+		return v;
+	};
+	const auto unite = [&](int v, int w) {
+		v = find(v);
+		w = find(w);
+		lowest[std::max(v, w)] = std::min(v, w);
+	};
+	for (int f = 0; f < mesh.faceSlots(); ++f)
+		if (mesh.isFace(f)) {
+			const Triangle t = mesh.triangle(f);
+			unite(t[0], t[1]);
+			unite(t[1], t[2]);
 		}
-		++count;
-	}
+	std::vector<int> component(mesh.vertexSlots(), -1);
+	int count = 0;
+	for (int v = 0; v < mesh.vertexSlots(); ++v)
+		if (mesh.isVertex(v)) {
+			const int first = find(v);
+			component[v] = first == v ? count++ : component[first];
+		}
 	if (componentCount)
 		*componentCount = count;
 	return component;
@@ -66,11 +75,12 @@ inline std::vector<int> connectedComponents(const SurfaceMesh& mesh, int* compon
  *
  * @param points    one for each input vertex, mesh units.
  * @param triangles corners as indices into `points`.
- * @throws InvalidInput saying what is wrong, how many, where, and which MeshLab filter cures it.
+ * @throws InvalidInput saying what is wrong, how many, where, and which MeshLab filter cures it;
+ *         Cancelled.
  * Complexity: O(V + F); O((V + F) log F) where the connectivity has to be repaired.
  */
-inline CheckedSurface checkedSurface(
-	const std::vector<Point3d>& points, const std::vector<Triangle>& triangles)
+inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
+	const std::vector<Triangle>& triangles, const Progress& progress = Progress())
 {
 	CheckedSurface result;
 	if (points.empty())
@@ -103,57 +113,65 @@ inline CheckedSurface checkedSurface(
 			  "Holes'.");
 	}
 
+	std::optional<SurfaceMesh> ready =
+		SurfaceMesh::ifClosedManifold(points, triangles, progress.part(0, 0.5));
 	RepairedSoup soup;
-	if (SurfaceMesh::isClosedManifold(points.size(), triangles)) {
-		soup.faces = triangles;
-		soup.vertexOfInput.resize(points.size());
-		std::iota(soup.vertexOfInput.begin(), soup.vertexOfInput.end(), 0);
+	std::vector<int>& vertexOfInput = soup.vertexOfInput;
+	const bool asGiven = ready && ready->vertexCount() == ready->vertexSlots();
+	if (ready) {
+		vertexOfInput.resize(points.size());
+		std::iota(vertexOfInput.begin(), vertexOfInput.end(), 0);
+		if (!asGiven)
+			soup.faces = triangles;
 	}
 	else
 		soup = repairedSoup(points, triangles);
-	std::vector<Triangle>& faces = soup.faces;
-	std::vector<int>& vertexOfInput = soup.vertexOfInput;
 	result.notes = std::move(soup.notes);
+	progress.report(0.5, "Checking the surface");
 
-	// Number the referenced vertices in their own order.
-	std::vector<int> number(points.size(), -1);
-	for (const Triangle& t : faces)
-		for (int v : t)
-			number[v] = 0;
-	std::vector<Point3d> used;
-	for (size_t v = 0; v < points.size(); ++v)
-		if (number[v] == 0) {
-			number[v] = int(used.size());
-			used.push_back(points[v]);
-		}
-	for (int& v : vertexOfInput)
-		v = number[v];
-	const size_t unreferenced = size_t(std::count(vertexOfInput.begin(), vertexOfInput.end(), -1));
-	if (unreferenced)
-		result.notes.push_back(
-			std::to_string(unreferenced) + " unreferenced vertices were left out.");
-	for (Triangle& t : faces)
-		for (int& v : t)
+	if (!asGiven) {
+		// Number the referenced vertices in their own order.
+		std::vector<int> number(points.size(), -1);
+		for (const Triangle& t : soup.faces)
+			for (int v : t)
+				number[v] = 0;
+		std::vector<Point3d> used;
+		for (size_t v = 0; v < points.size(); ++v)
+			if (number[v] == 0) {
+				number[v] = int(used.size());
+				used.push_back(points[v]);
+			}
+		for (int& v : vertexOfInput)
 			v = number[v];
+		const size_t unreferenced =
+			size_t(std::count(vertexOfInput.begin(), vertexOfInput.end(), -1));
+		if (unreferenced)
+			result.notes.push_back(
+				std::to_string(unreferenced) + " unreferenced vertices were left out.");
+		for (Triangle& t : soup.faces)
+			for (int& v : t)
+				v = number[v];
+		ready = SurfaceMesh(std::move(used), soup.faces, progress.part(0.5, 0.8));
+	}
 
 	// Each component must enclose a volume, and is turned so that the volume is positive.
-	SurfaceMesh mesh(used, faces);
+	SurfaceMesh& mesh = *ready;
 	int components = 0;
 	const std::vector<int> component = connectedComponents(mesh, &components);
 	std::vector<Point3d> middle(components, Point3d(0, 0, 0));
 	std::vector<double> volume(components, 0), area(components, 0);
 	std::vector<int> size(components, 0);
 	for (int v = 0; v < mesh.vertexSlots(); ++v) {
-		middle[component[v]] += used[v];
+		middle[component[v]] += mesh.position[v];
 		++size[component[v]];
 	}
 	for (int c = 0; c < components; ++c)
 		middle[c] /= double(size[c]);
 	for (int f = 0; f < mesh.faceSlots(); ++f) {
-		const int c = component[faces[f][0]];
+		const int first = mesh.origin(3 * f), c = component[first];
 		const Point3d n = mesh.areaVector(f);
 		area[c] += n.Norm() / 2;
-		volume[c] += (used[faces[f][0]] - middle[c]) * n / 6;
+		volume[c] += (mesh.position[first] - middle[c]) * n / 6;
 	}
 	int insideOut = 0;
 	std::vector<Point3d> flat;
@@ -170,16 +188,18 @@ inline CheckedSurface checkedSurface(
 			+ detail::countAndPlaces(flat.size(), "encloses no volume", "enclose no volume", flat)
 			+ ". Scale or remove the flat part ('Remove Isolated pieces (wrt Diameter)').");
 	if (insideOut) {
+		std::vector<Triangle> faces = mesh.triangles();
 		for (Triangle& t : faces)
 			if (volume[component[t[0]]] < 0)
 				std::swap(t[1], t[2]);
-		mesh = SurfaceMesh(std::move(used), faces);
+		mesh = SurfaceMesh(std::move(mesh.position), faces, progress.part(0.8, 1));
 		result.notes.push_back(insideOut == components
 				? std::string("The mesh was inside out and has been turned.")
 				: std::to_string(insideOut) + " of " + std::to_string(components)
 					+ " connected components were inside out; each is taken as a solid of its own "
 					  "(a cavity inside a body is not subtracted from it).");
 	}
+	progress.report(1, "Checking the surface");
 	result.mesh = std::move(mesh);
 	result.vertexOfInput = std::move(vertexOfInput);
 	return result;

@@ -47,6 +47,7 @@ inline void contract(
 	const double wH2 = std::pow(parameters.wH * publishedWeightUnit, 2);
 	const double wM2 = std::pow(parameters.wM * publishedWeightUnit, 2);
 
+	progress.report(0, "Contracting");
 	const std::vector<int> vertexOfUnknown = eliminationOrder(stage);
 	const int n = int(vertexOfUnknown.size());
 	std::vector<int> unknown(mesh.vertexSlots(), -1);
@@ -54,7 +55,9 @@ inline void contract(
 		unknown[vertexOfUnknown[i]] = i;
 	progress.report(0, "Contracting");
 	const std::vector<double> weight = cotangentWeights(mesh);
+	progress.report(0.05, "Contracting");
 	const std::vector<Point3d> normal = mesh.vertexNormals();
+	progress.report(0.1, "Contracting");
 
 	// w_L L restricted to the unknowns is M; what the fixed neighbours add is the known part g.
 	// Positions are taken relative to the middle: far from the origin, no digits are lost.
@@ -99,7 +102,8 @@ inline void contract(
 	for (int i = 0; i < n; ++i)
 		b[i] -= Mg[i];
 	constexpr double tolerance = 1e-2;
-	solveBiharmonic(M, D, b, x, tolerance, progress);
+	progress.report(0.2, "Contracting");
+	solveBiharmonic(M, D, b, x, tolerance, progress.part(0.2, 1));
 	for (int i = 0; i < n; ++i) {
 		const Point3d p = x[i] + middle;
 		if (!(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])))

@@ -8,6 +8,7 @@
 
 #include "cotangent_laplacian.h"
 #include "errors.h"
+#include "progress.h"
 
 #include <Eigen/Core>
 
@@ -40,8 +41,10 @@ public:
 	/**
 	 * @param M     symmetric, by rows.
 	 * @param shift added to M's diagonal, #rows, > 0.
+	 * @throws Cancelled, and what the class says.
 	 */
-	IncompleteFactor(const SymmetricRows& M, const std::vector<double>& shift, float dropTolerance)
+	IncompleteFactor(const SymmetricRows& M, const std::vector<double>& shift, float dropTolerance,
+		const Progress& progress = Progress())
 	{
 		const int n = M.size();
 		inverseDiagonal.resize(n);
@@ -50,7 +53,10 @@ public:
 		std::vector<int> firstChunk(n, -1), lastChunk(n, -1), lengths(n, 0);
 		std::vector<Chunk> chunks;
 		chunks.reserve(2 * size_t(n));
+		constexpr int reportEvery = 1 << 13; // the last rows of a large system cost the most
 		for (int k = 0; k < n; ++k) {
+			if (k % reportEvery == 0)
+				progress.report(double(k) / n, "Contracting");
 			visited[k] = k;
 			int top = n;
 			for (int e = M.start[k]; e < M.start[k + 1]; ++e) {

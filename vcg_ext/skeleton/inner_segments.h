@@ -8,6 +8,7 @@
 
 #include "four_boxes.h"
 #include "point_tree.h"
+#include "progress.h"
 #include "surface_mesh.h"
 
 #include <algorithm>
@@ -33,11 +34,17 @@ public:
 	 * @param mesh   kept by reference.
 	 * @param tree   of its vertices; gives the triangles an order in space.
 	 * @pre mesh is compact.
-	 * Complexity: O(F).
+	 * @throws Cancelled. Complexity: O(F).
 	 */
-	InnerSegments(const SurfaceMesh& mesh, const PointTree& tree) : mesh(mesh)
+	InnerSegments(
+		const SurfaceMesh& mesh, const PointTree& tree, const Progress& progress = Progress()) :
+			mesh(mesh)
 	{
+		constexpr size_t reportEvery = 1 << 16;
+		const char* const what = "Sorting the surface";
+		progress.report(0, what);
 		sortFaces(tree.order());
+		progress.report(0.5, what);
 		const Box3d all = mesh.bounds();
 		origin = all.Center();
 		slack = FourBoxes::slack(all.Diag());
@@ -45,6 +52,8 @@ public:
 		std::vector<Box3d> boxes((faces.size() + 3) / 4);
 		levels.emplace_back(boxes.size());
 		for (size_t i = 0; i < faces.size(); ++i) {
+			if (i % reportEvery == 0)
+				progress.report(0.5 + 0.5 * double(i) / double(faces.size()), what);
 			Box3d box;
 			for (int k = 0; k < 3; ++k) {
 				const int h = 3 * faces[i] + k;

@@ -7,6 +7,7 @@
 #define VCG_MCF_POINT_TREE_H
 
 #include "four_boxes.h"
+#include "progress.h"
 
 #include <vcg/space/box3.h>
 #include <vcg/space/point3.h>
@@ -32,8 +33,8 @@ namespace vcg::tri::mcf {
 class PointTree
 {
 public:
-	/// @pre the points are finite. Complexity: O(n log n).
-	explicit PointTree(const std::vector<Point3d>& points) :
+	/// @pre the points are finite. @throws Cancelled. Complexity: O(n log n).
+	explicit PointTree(const std::vector<Point3d>& points, const Progress& progress = Progress()) :
 			ids(points.size()), sorted(points.size())
 	{
 		Box3d box;
@@ -50,7 +51,7 @@ public:
 			width *= 4;
 		}
 		nodes.resize(inner);
-		build(points, 0, 0, int(points.size()));
+		build(points, 0, 0, int(points.size()), progress);
 		for (size_t i = 0; i < ids.size(); ++i)
 			sorted[i] = points[ids[i]];
 		for (int axis = 0; axis < 3; ++axis) {
@@ -206,17 +207,21 @@ private:
 			});
 	}
 
-	void build(const std::vector<Point3d>& points, int node, int begin, int end)
+	void build(
+		const std::vector<Point3d>& points, int node, int begin, int end, const Progress& progress)
 	{
+		constexpr int reportFrom = 1 << 13;
 		if (node >= int(nodes.size()))
 			return;
 		const std::array<int, 5> cuts = quarters(begin, end);
+		if (end - begin >= reportFrom)
+			progress.report(double(begin) / double(points.size()), "Sorting the surface");
 		split(points, begin, cuts[2], end);
 		split(points, begin, cuts[1], cuts[2]);
 		split(points, cuts[2], cuts[3], end);
 		for (int k = 0; k < 4; ++k) {
 			nodes[node].set(k, bounds(points, cuts[k], cuts[k + 1]), origin);
-			build(points, 4 * node + 1 + k, cuts[k], cuts[k + 1]);
+			build(points, 4 * node + 1 + k, cuts[k], cuts[k + 1], progress);
 		}
 	}
 };

@@ -244,7 +244,7 @@ inline PoleSet shrinkingBallPoles(const SurfaceMesh& mesh, const std::vector<int
 {
 	const UnitFrame frame(mesh.position);
 	const double tolerance = detail::ballTolerance(frame, delta);
-	const PointTree tree(frame.in(mesh.position));
+	const PointTree tree(frame.in(mesh.position), progress.part(0, 0.2));
 	std::vector<int> place(mesh.vertexSlots(), -1);
 	for (size_t i = 0; i < vertices.size(); ++i)
 		place[vertices[i]] = int(i);
@@ -256,9 +256,9 @@ inline PoleSet shrinkingBallPoles(const SurfaceMesh& mesh, const std::vector<int
 			touches.push_back(
 				{tree.point(slot), detail::osculatingNormal(mesh, v), place[v], slot});
 	}
-	const InnerSegments segments(mesh, tree);
-	return detail::maximalBalls(touches, vertices.size(), frame, tree, tolerance, progress,
-		[&](int i, const Point3d& centre, double radius) {
+	const InnerSegments segments(mesh, tree, progress.part(0.2, 0.4));
+	return detail::maximalBalls(touches, vertices.size(), frame, tree, tolerance,
+		progress.part(0.4, 1), [&](int i, const Point3d& centre, double radius) {
 			const double depth =
 				frame.lengthOut(tolerance) + detail::KnownBalls::negligible * radius;
 			return segments.staysInside(vertices[i], centre, depth);

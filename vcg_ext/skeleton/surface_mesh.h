@@ -7,6 +7,7 @@
 #define VCG_MCF_SURFACE_MESH_H
 
 #include "errors.h"
+#include "progress.h"
 
 #include <vcg/space/box3.h>
 #include <vcg/space/point3.h>
@@ -15,6 +16,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -43,37 +45,42 @@ public:
 	 * Builds the connectivity of `triangles` (counter-clockwise seen from outside).
 	 * @pre every edge has two triangles of opposite direction, every vertex one fan: see
 	 *      checkedSurface(), which establishes this and explains what is wrong where it cannot.
-	 * @throws InvalidInput if an edge has no twin.
+	 * @throws InvalidInput if an edge has no twin; Cancelled.
 	 * Complexity: O(V + F).
 	 */
-	SurfaceMesh(std::vector<Point3d> points, const std::vector<Triangle>& triangles) :
+	SurfaceMesh(std::vector<Point3d> points, const std::vector<Triangle>& triangles,
+		const Progress& progress = Progress()) :
 			position(std::move(points))
 	{
 		setTriangles(triangles);
-		if (!pairTwins())
+		if (!pairTwins(progress))
 			throw InvalidInput("The mesh is not closed, or its faces are not oriented alike.");
 		chooseOutgoing();
 	}
 
 	/**
-	 * Whether `triangles` are a closed two-manifold, oriented alike, on `vertices` vertices (of which
-	 * not all need be used): each directed edge occurs once, and so does its reverse, and the
-	 * triangles at each vertex form one fan. Complexity: O(V + F).
+	 * The mesh of `triangles` if they are a closed two-manifold, oriented alike (of whose vertices not
+	 * all need be used): each directed edge occurs once, and so does its reverse, and the triangles
+	 * at each vertex form one fan; nothing if they are not.
+	 * @throws Cancelled. Complexity: O(V + F).
 	 */
-	static bool isClosedManifold(size_t vertices, const std::vector<Triangle>& triangles)
+	static std::optional<SurfaceMesh> ifClosedManifold(std::vector<Point3d> points,
+		const std::vector<Triangle>& triangles, const Progress& progress = Progress())
 	{
 		for (const Triangle& t : triangles)
 			if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0])
-				return false;
+				return std::nullopt;
 		SurfaceMesh mesh;
-		mesh.position.resize(vertices);
+		mesh.position = std::move(points);
 		mesh.setTriangles(triangles);
-		if (!mesh.pairTwins())
-			return false;
+		if (!mesh.pairTwins(progress.part(0, 0.6)))
+			return std::nullopt;
 		mesh.chooseOutgoing();
 		// One ring of distinct neighbours at each vertex, and no half-edge outside of these rings.
 		long inRings = 0;
 		for (int v = 0; v < mesh.vertexSlots(); ++v) {
+			if (v % reportEvery == 0)
+				progress.report(0.6 + 0.4 * v / mesh.vertexSlots(), "Checking the surface");
 			if (!mesh.isVertex(v))
 				continue;
 			const int stamp = mesh.nextStamp();
@@ -84,9 +91,17 @@ public:
 				++inRings;
 			});
 			if (!distinct)
-				return false;
+				return std::nullopt;
 		}
-		return inRings == mesh.halfEdgeSlots();
+		if (inRings != mesh.halfEdgeSlots())
+			return std::nullopt;
+		return mesh;
+	}
+
+	/// Whether there is such a mesh of `triangles` on so many vertices.
+	static bool isClosedManifold(size_t vertices, const std::vector<Triangle>& triangles)
+	{
+		return ifClosedManifold(std::vector<Point3d>(vertices), triangles).has_value();
 	}
 
 	// Sizes. The ids run over [0, vertexSlots()) and [0, faceSlots()), holes included.
@@ -512,6 +527,8 @@ public:
 	}
 
 private:
+	static constexpr int reportEvery = 1 << 16;
+
 	std::vector<int> origins;
 	std::vector<int> twins;
 	std::vector<int> outgoings;
@@ -558,7 +575,8 @@ private:
 
 	/// Pairs the half-edges; each lower end has a bucket of those that wait for their twin. O(F).
 	/// @return whether each has found one.
-	bool pairTwins()
+	/// @throws Cancelled
+	bool pairTwins(const Progress& progress)
 	{
 		const int n = int(position.size());
 		std::vector<int> start(n + 1, 0), bucket(origins.size());
@@ -569,6 +587,8 @@ private:
 			start[v + 1] += start[v];
 		std::vector<int> end(start.begin(), start.end() - 1);
 		for (int h = 0; h < halfEdgeSlots(); ++h) {
+			if (h % reportEvery == 0)
+				progress.report(double(h) / halfEdgeSlots(), "Checking the surface");
 			const int low = lower(h);
 			for (int i = start[low]; i < end[low]; ++i) {
 				const int g = bucket[i];

@@ -196,8 +196,8 @@ inline PoleSet voronoiPoles(const SurfaceMesh& mesh, const Progress& progress = 
 		return poles;
 	const std::vector<Point3d> samples = frame.in(mesh.position);
 	const std::vector<Point3d> normals = mesh.vertexNormals();
-	const PointTree tree(samples);
-	const InnerSegments segments(mesh, tree);
+	const PointTree tree(samples, progress.part(0, 0.05));
+	const InnerSegments segments(mesh, tree, progress.part(0.05, 0.1));
 	const std::vector<detail::Tetrahedron> cells = detail::delaunayTetrahedra(samples);
 	for (size_t i = 0; i < cells.size(); ++i) {
 		if (i % 16384 == 0)
