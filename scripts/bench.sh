@@ -59,5 +59,13 @@ for argument in "$@"; do
 	-h | --help) exec "$python" "$ROOT/scripts/bench/bench.py" --help ;;
 	esac
 done
+host=()
+for argument in "$@"; do
+	if [ "$argument" = --host ]; then
+		# shellcheck source=lib/python_env.sh
+		. "$ROOT/scripts/lib/python_env.sh"
+		host=(--plugin "$("$ROOT/scripts/build.sh" pymeshlab | tail -n 1)" --host-python "$(python_env)")
+	fi
+done
 programs="$(build_bench)"
-exec "$python" "$ROOT/scripts/bench/bench.py" --programs "$programs" "$@"
+exec "$python" "$ROOT/scripts/bench/bench.py" --programs "$programs" "${host[@]}" "$@"

@@ -23,7 +23,9 @@ from pathlib import Path
 from document import write_docs
 from meshes import meshes_in, subdivided
 from programs import Program, python_peers, run_interleaved
-from tables import Rows, contraction_table, quality_table, stages_table, whole_table
+from tables import (
+    Rows, contraction_table, host_table, quality_table, stages_table, whole_table,
+)
 
 ROOT = Path(__file__).resolve().parents[2]
 TIMES = {"contraction": contraction_table, "whole": whole_table}
@@ -56,6 +58,10 @@ def parse_arguments() -> argparse.Namespace:
     parser.add_argument(
         "--no-peers", action="store_true", help="compare with CGAL only, not with PyGEL, skeletor"
     )
+    parser.add_argument(
+        "--host", action="store_true",
+        help="run the whole job through pymeshlab as well (builds the plugin)",
+    )
     parser.add_argument("--stages", action="store_true", help="time single stages instead")
     parser.add_argument(
         "--docs", action="store_true",
@@ -69,6 +75,8 @@ def parse_arguments() -> argparse.Namespace:
         help="handed to this project's program, e.g. '--pole-method voronoi'",
     )
     parser.add_argument("--programs", type=Path, help=argparse.SUPPRESS)
+    parser.add_argument("--plugin", type=Path, help=argparse.SUPPRESS)
+    parser.add_argument("--host-python", help=argparse.SUPPRESS)
     arguments = parser.parse_args()
     missing = [str(mesh) for mesh in arguments.meshes if not mesh.is_file()]
     if missing:
@@ -122,6 +130,10 @@ def jobs(arguments: argparse.Namespace) -> dict[str, list[Program]]:
             for n in arguments.threads
         ]
         result["whole"] = [*ours, Program("cgal", (cgal,), ("--remesh", density))]
+        if arguments.host:
+            job = str(Path(__file__).with_name("host_job.py"))
+            command = (arguments.host_python, job, str(arguments.plugin))
+            result["whole"].append(Program("pymeshlab", command, ("--target-length", density)))
         if arguments.quality:
             options = ("--target-length", density, "--no-refine", *extra)
             result["whole"].append(Program("ours, unrefined", (own,), options, repeats=False))
@@ -170,6 +182,8 @@ def main() -> int:
     for job, rows in everything.items():
         show(job, TIMES[job](rows))
         show(f"stages of {job}", stages_table(rows))
+        if job == "whole" and arguments.host:
+            show("host", host_table(rows))
     if arguments.quality:
         for job, rows in everything.items():
             table, figures = quality_table(rows)

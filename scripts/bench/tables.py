@@ -110,6 +110,20 @@ def whole_table(rows: Rows) -> str:
     return markdown(head, body)
 
 
+def host_table(rows: Rows) -> str:
+    """What the same job costs through pymeshlab: copies, layers and attributes."""
+    head = ["mesh", "library s", "pymeshlab s", "host's share %"]
+    body = []
+    for mesh, outcomes in rows:
+        ours, host = named(outcomes, "ours"), named(outcomes, "pymeshlab")
+        if not ours or not host or not ours.reports or not host.reports:
+            continue
+        bare, hosted = ours.seconds(WHOLE, "cpu"), host.seconds(WHOLE, "cpu")
+        share = 100 * (hosted - bare) / hosted
+        body.append([mesh.stem, number(bare), number(hosted), f"{share:.0f}"])
+    return markdown(head, body)
+
+
 STAGES = {
     "check": "check", "resample": "resample", "poles": "poles", "contraction": "flow",
     "conversion": "collapse", "refine": "refine",
