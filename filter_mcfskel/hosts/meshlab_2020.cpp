@@ -117,11 +117,15 @@ bool FilterMcfskelPlugin::save(const QString&, const QString& file, MeshModel& l
 
 bool FilterMcfskelPlugin::finished(const FileOutcome& outcome)
 {
-	for (const QString& warning : outcome.warnings)
+	// meshlabserver shows nothing of what its readers and writers log, nor their errors.
+	for (const QString& warning : outcome.warnings) {
 		MeshIOInterface::Log(GLLogStream::WARNING, warning.toStdString());
+		qWarning("%s", qUtf8Printable(warning));
+	}
 	if (outcome.error.isEmpty())
 		return true;
 	MeshIOInterface::errorMessage = outcome.error;
 	MeshIOInterface::Log(GLLogStream::SYSTEM, outcome.error.toStdString());
+	qCritical("%s", qUtf8Printable(outcome.error));
 	return false;
 }
