@@ -62,12 +62,9 @@ Scalarm defaultLength(const ParameterSpec& spec, double diagonal)
 
 void ParameterValues::setLength(const ParameterSpec& spec, Scalarm length, double diagonal)
 {
-	// Hosts may round a percentage to single precision: what is that close was not changed by the user.
-	constexpr double hostPrecision = 1e-6;
-	const double ordinary = double(defaultLength(spec, diagonal));
-	const bool isDefault = std::abs(double(length) - ordinary) <= hostPrecision * ordinary;
-	const double fraction = diagonal > 0 ? double(length) / diagonal : 0;
-	set(spec.name, isDefault ? spec.defaultValue / 100 : fraction);
+	// A host's single precision must not show: six digits of a percentage are what all hosts agree on.
+	const double percent = diagonal > 0 ? 100 * double(float(length)) / diagonal : 0;
+	set(spec.name, QString::number(percent, 'g', 6).toDouble() / 100);
 }
 
 const std::vector<FilterSpec>& catalogue()

@@ -69,8 +69,8 @@ public:
 	void setText(const QString& name, const QString& value) { texts[name] = value; }
 
 	/**
-	 * Takes a Length in mesh units and keeps it as a fraction of the diagonal. A host that counts in
-	 * float must not disturb a default, or its results would differ from those of the others.
+	 * Takes a Length in mesh units and keeps it as a fraction of the diagonal, rounded so that hosts
+	 * that count in float and in double get the same one, and with it the same results.
 	 */
 	void setLength(const ParameterSpec& spec, Scalarm length, double diagonal);
 

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <type_traits>
 #include <typeindex>
 
@@ -161,6 +162,48 @@ Point3m toHost(const vcg::Point3d& p)
 	return Point3m(Scalarm(p[0]), Scalarm(p[1]), Scalarm(p[2]));
 }
 
+vcg::Box3d liveBounds(const CMeshO& mesh)
+{
+	vcg::Box3d box;
+	for (const CVertexO& v : mesh.vert)
+		if (!v.IsD())
+			box.Add(toDouble(v.cP()));
+	return box;
+}
+
+double toSingle(double x)
+{
+	// Volatile: where GCC 12 vectorises, it drops a conversion to float and back.
+	volatile float single = float(x);
+	return single;
+}
+
+/// Whether single precision resolves a millionth of a surface's diagonal: not far from the origin.
+bool fitsSinglePrecision(const vcg::Box3d& box)
+{
+	double reach = 0;
+	for (int k = 0; k < 3; ++k)
+		reach = std::max({reach, std::abs(box.min[k]), std::abs(box.max[k])});
+	return reach * std::numeric_limits<float>::epsilon() <= 1e-6 * box.Diag();
+}
+
+/// Coordinates of a surface as the pipeline takes them: in single precision, where that resolves it,
+/// also in a host that counts in double. The steps of the contraction amplify the smallest
+/// difference; with the same input bits every host gives the same graph.
+class SurfaceRounding
+{
+public:
+	explicit SurfaceRounding(const vcg::Box3d& box) : single(fitsSinglePrecision(box)) {}
+
+	vcg::Point3d operator()(const vcg::Point3d& p) const
+	{
+		return single ? vcg::Point3d(toSingle(p[0]), toSingle(p[1]), toSingle(p[2])) : p;
+	}
+
+private:
+	bool single;
+};
+
 /// The slots of a layer that are vertices, in order.
 std::vector<int> liveSlots(const CMeshO& mesh)
 {
@@ -239,10 +282,11 @@ double referenceDiagonal(const MeshModel& layer)
 	if (state && state->stage)
 		for (const vcg::Point3d& p : *state->stage.stage->surface)
 			box.Add(p);
-	else
-		for (const CVertexO& v : layer.cm.vert)
-			if (!v.IsD())
-				box.Add(toDouble(v.cP()));
+	else if (box = liveBounds(layer.cm); !box.IsNull()) {
+		const SurfaceRounding rounded(box);
+		box.min = rounded(box.min);
+		box.max = rounded(box.max);
+	}
 	const double diagonal = box.IsNull() ? 0 : box.Diag();
 	return std::isfinite(diagonal) ? diagonal : 0;
 }
@@ -285,9 +329,10 @@ SurfaceLayer readSurface(const MeshModel& layer, const mcf::Progress& progress)
 	std::vector<int> pointOfSlot(mesh.vert.size(), -1);
 	std::vector<vcg::Point3d> points;
 	points.reserve(live.size());
+	const SurfaceRounding rounded(liveBounds(mesh));
 	for (int slot : live) {
 		pointOfSlot[size_t(slot)] = int(points.size());
-		points.push_back(toDouble(mesh.vert[size_t(slot)].cP()));
+		points.push_back(rounded(toDouble(mesh.vert[size_t(slot)].cP())));
 	}
 	progress.report(0.1, "Reading the layer");
 	std::vector<mcf::Triangle> triangles;

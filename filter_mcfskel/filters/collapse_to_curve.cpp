@@ -23,7 +23,7 @@ Results run(FilterRun& run)
 					: "' is not a stage of the contraction")
 			+ ": make a layer NAME_meso_K current, or run 'Contraction Step' first.");
 	const mcf::CurveSkeleton skeleton =
-		mcf::collapseToCurve(*found.stage, run.parameters.fraction("epsilon"), run.progress);
+		mcf::collapseToCurve(*found.stage, readEpsilon(run.parameters), run.progress);
 
 	DocumentEdit edit(run.document);
 	const MeshModel* surface = run.document.getMesh(found.surface.layerId);

@@ -87,7 +87,7 @@ ParameterSpec epsilonParameter()
 		"Shortest edge epsilon",
 		"Edges shorter than this are collapsed, mesh units or percent of the bounding box diagonal of "
 		"the surface (of each connected component). A larger one gives a coarser skeleton in less "
-		"time; sane are 0.1 to 0.5 %."};
+		"time; sane are 0.1 to 0.5 %. 0 takes the default of 0.2 %."};
 }
 
 ParameterSpec splitAngleParameter()
@@ -106,12 +106,18 @@ void readResampling(const ParameterValues& values, mcf::Parameters& parameters)
 	parameters.denoise = values.flag("denoise");
 }
 
+double readEpsilon(const ParameterValues& values)
+{
+	const double epsilon = values.fraction("epsilon");
+	return epsilon == 0 ? mcf::Parameters().epsilon : epsilon;
+}
+
 void readFlow(const ParameterValues& values, mcf::Parameters& parameters)
 {
 	parameters.wL = values.real("w_l");
 	parameters.wH = values.real("w_h");
 	parameters.wM = values.real("w_m");
-	parameters.epsilon = values.fraction("epsilon");
+	parameters.epsilon = readEpsilon(values);
 	parameters.splitAngle = values.real("split_angle");
 }
 

@@ -37,6 +37,9 @@ ParameterSpec splitAngleParameter();
 // From values to the pipeline's parameters; each reads the ones of its filters.
 
 void readResampling(const ParameterValues& values, vcg::tri::mcf::Parameters& parameters);
+/// epsilon, as a fraction of the diagonal; 0 stands for the default, which a script that serves
+/// meshes of any size cannot know in mesh units.
+double readEpsilon(const ParameterValues& values);
 void readFlow(const ParameterValues& values, vcg::tri::mcf::Parameters& parameters);
 vcg::tri::mcf::PoleMethod readPoleMethod(const ParameterValues& values);
 

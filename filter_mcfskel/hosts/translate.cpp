@@ -16,6 +16,12 @@ struct Tag
 	using Type = T;
 };
 
+/// Six digits, so that 0.1 is the same number in hosts that count in float and in double.
+double toReal(Scalarm value)
+{
+	return QString::number(double(value), 'g', 6).toDouble();
+}
+
 double diagonalOf(const MeshDocument& document)
 {
 	return document.mm() ? referenceDiagonal(*document.mm()) : 0;
@@ -62,7 +68,7 @@ ParameterValues readParameters(
 		switch (p.kind) {
 		case ParameterKind::Boolean: values.set(p.name, list.getBool(p.name)); break;
 		case ParameterKind::Integer: values.set(p.name, list.getInt(p.name)); break;
-		case ParameterKind::Real: values.set(p.name, double(list.getFloat(p.name))); break;
+		case ParameterKind::Real: values.set(p.name, toReal(list.getFloat(p.name))); break;
 		case ParameterKind::Length: values.setLength(p, list.getAbsPerc(p.name), diagonal); break;
 		case ParameterKind::Choice: values.set(p.name, list.getEnum(p.name)); break;
 		case ParameterKind::Layer: values.set(p.name, layerId(list, p.name)); break;

@@ -163,7 +163,7 @@ class TestParameters:
         (STEP, {"w_h": -1.0}, "w_h"),
         (STEP, {"w_m": -1.0}, "w_m"),
         (STEP, {"w_m": float("nan")}, "w_m"),
-        (STEP, {"epsilon": pymeshlab.PercentageValue(0)}, "epsilon"),
+        (STEP, {"epsilon": pymeshlab.PureValue(-0.1)}, "epsilon"),
         (STEP, {"split_angle": 20.0}, "split_angle"),
         (STEP, {"split_angle": 180.0}, "split_angle"),
         (STEP, {"steps": 0}, "steps"),
@@ -195,7 +195,8 @@ class TestForeignAttributes:
 class TestHardButRight:
     """Input that needs care, and gets its skeleton."""
 
-    @pytest.mark.parametrize("scale", [1e-6, 1e6])
+    # Powers of two: others would round the coordinates differently, and end in another graph.
+    @pytest.mark.parametrize("scale", [2.0**-20, 2.0**20])
     def test_scale(self, scale):
         vertices, faces = capsule()
         reference, scaled = document((vertices, faces)), document((vertices * scale, faces))
@@ -204,7 +205,7 @@ class TestHardButRight:
         for key in ["components", "cycles", "terminals", "junctions", "converged"]:
             assert results[key] == expected[key]
         assert results["skeleton_length"] == pytest.approx(
-            scale * expected["skeleton_length"], rel=0.01)
+            scale * expected["skeleton_length"], rel=1e-6)
 
     def test_far_from_the_origin(self):
         vertices, faces = capsule()
