@@ -53,7 +53,9 @@ set_target_properties(meshlab_common_stub PROPERTIES
 add_library(meshlab_host INTERFACE)
 target_include_directories(meshlab_host SYSTEM INTERFACE "${MESHLAB_SRC}/src" "${GLEW_INCLUDE_DIR}")
 target_compile_definitions(meshlab_host INTERFACE
-	MESHLAB_SCALAR=${MESHLAB_SCALAR} MESHLAB_VERSION=${MESHLAB_VERSION}
+	MESHLAB_SCALAR=${MESHLAB_SCALAR}
+	# A target may be for another release with the same interface.
+	MESHLAB_VERSION=$<IF:$<BOOL:$<TARGET_PROPERTY:HOST_RELEASE>>,$<TARGET_PROPERTY:HOST_RELEASE>,${MESHLAB_VERSION}>
 	MCFSKEL_HOST_API=${MESHLAB_API}
 	MCFSKEL_RENAMED_PARAMETERS=${renamed_parameters}
 	MCFSKEL_PYTHON_HOST=$<STREQUAL:${MESHLAB_SCALAR},double>)

@@ -12,8 +12,7 @@ BUILD_PACKAGES=(g++ cmake ninja-build qtbase5-dev libqt5opengl5-dev libglew-dev 
 # headers_of HOST: the MeshLab release with whose headers the plugin for a host is built.
 headers_of() {
 	case "$1" in
-	# Debian never had 2023.12; for a plugin its interface is that of 2025.07.
-	pymeshlab | pymeshlab-2023.12) echo 2025.07 ;;
+	pymeshlab) echo 2025.07 ;;
 	pymeshlab-2022.2) echo 2022.02 ;;
 	meshlab-*) echo "${1#meshlab-}" ;;
 	esac
@@ -21,15 +20,20 @@ headers_of() {
 
 # build_host HOST [CMAKE_OPTION...]: configures and builds; prints the path of the plugin.
 build_host() {
-	local host="$1" folder="$ROOT/build/$1" sources
+	local host="$1" built_as="$1" target=all plugin=filter_mcfskel folder sources
 	shift
-	need_packages "${BUILD_PACKAGES[@]}" >&2
-	sources="$(meshlab_sources "$(headers_of "$host")")"
-	quietly cmake -S "$ROOT" -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release \
-		-DMESHLAB_HOST="$host" -DMESHLAB_SRC="$sources" "$@" || die "could not configure for $host"
-	if ! ninja -C "$folder" -n | grep -q 'no work to do'; then
-		say "building for $host"
-		quietly ninja -C "$folder" -j "$JOBS" || die "could not build for $host"
+	# The same interface as that of today's pymeshlab, so most of the plugin is the same.
+	if [ "$host" = pymeshlab-2023.12 ]; then
+		built_as=pymeshlab target=filter_mcfskel_2023.12 plugin=filter_mcfskel/2023.12
 	fi
-	echo "$folder/filter_mcfskel/libfilter_mcfskel.so"
+	folder="$ROOT/build/$built_as"
+	need_packages "${BUILD_PACKAGES[@]}" >&2
+	sources="$(meshlab_sources "$(headers_of "$built_as")")"
+	quietly cmake -S "$ROOT" -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+		-DMESHLAB_HOST="$built_as" -DMESHLAB_SRC="$sources" "$@" || die "could not configure for $host"
+	if ! ninja -C "$folder" -n "$target" | grep -q 'no work to do'; then
+		say "building for $host"
+		quietly ninja -C "$folder" -j "$JOBS" "$target" || die "could not build for $host"
+	fi
+	echo "$folder/$plugin/libfilter_mcfskel.so"
 }
