@@ -65,7 +65,7 @@ plugin_folder() {
 	case "$host" in
 	meshlab-2020.09)
 		local found
-		found="$(find "$prefix"/lib/ -maxdepth 3 -path '*/meshlab/plugins' -type d | head -n 1)"
+		found="$(find "$prefix/lib" -maxdepth 3 -path '*/meshlab/plugins' -type d 2>/dev/null | head -n 1 || true)"
 		[ -n "$found" ] || die "there is no MeshLab 2020.09 under $prefix; on Debian 12: apt-get install meshlab"
 		echo "$found"
 		;;

@@ -18,7 +18,13 @@ set -euo pipefail
 
 case "${1:-}" in
 -h | --help)
-	echo "usage: scripts/test.sh [CTEST_OPTION...]"
+	cat <<END
+usage: scripts/test.sh [CTEST_OPTION...]
+
+environment:
+  MCFSKEL_TEST_HOSTS  the hosts to test in besides pymeshlab, by name
+                      (default: ${TEST_HOSTS[*]})
+END
 	exit 0
 	;;
 esac
@@ -26,21 +32,29 @@ esac
 need_packages libgtest-dev
 python="$(python_env)"
 build_host pymeshlab -DMCFSKEL_TESTS=ON -DMCFSKEL_PYTHON="$python" >&2
-# A host that cannot be had on this machine is skipped by its tests, by name.
-for host in meshlab-2025.07 meshlab-2020.09; do
-	if place="$(host_folder "$host")" && meshlab_sources "$(headers_of "$host")" >/dev/null; then
-		plugin="$(build_host "$host")"
+folder="$ROOT/build/pymeshlab"
+read -r -a hosts <<<"${MCFSKEL_TEST_HOSTS-${TEST_HOSTS[*]}}"
+tested=(pymeshlab)
+for host in "${hosts[@]}"; do
+	# A program of its own: in the condition of an if, errors in a function would go unseen.
+	if place="$("$ROOT/scripts/get_host.sh" "$host")"; then
+		variable="$(tr a-z.- A-Z__ <<<"$host")"
+		more=()
+		[ "$host" != meshlab-2025.07 ] || more=("-DMESHLAB_BUILT=$place")
+		plugin="$(build_host "$host" "${more[@]}")"
 		place="$(with_plugin "$host" "$place" "$plugin")"
-		declare -x "MCFSKEL_HOST_$(tr 'a-z.-' 'A-Z__' <<<"$host")=$place"
-	else
-		say "$host could not be set up: its tests are skipped"
+		export "MCFSKEL_HOST_$variable=$place" "MCFSKEL_PLUGIN_$variable=$plugin"
+		tested+=("$host")
 	fi
 done
-folder="$ROOT/build/pymeshlab"
 rm -rf "$folder/pytest" "$folder/ctest.xml"
 say "testing"
 status=0
 ctest --test-dir "$folder" --output-on-failure --no-tests=error -j "$JOBS" \
 	--output-junit "$folder/ctest.xml" "$@" || status=$?
 "$python" "$ROOT/scripts/count_tests.py" "$folder/ctest.xml" "$folder"/pytest/*.xml || status=1
+echo "hosts tested: ${tested[*]}"
+for host in "${TEST_HOSTS[@]}"; do
+	[[ " ${tested[*]} " == *" $host "* ]] || echo "HOST SKIPPED: $host was not set up; see above"
+done
 exit "$status"

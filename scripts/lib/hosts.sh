@@ -31,6 +31,11 @@ host_folder() {
 # XDG_DATA_HOME has to be.
 with_plugin() {
 	local host="$1" folder="$2" plugin="$3" place
+	if [[ "$host" == pymeshlab* ]]; then
+		# Loads what it is told to.
+		echo "$folder"
+		return
+	fi
 	if [ "$host" = meshlab-2020.09 ]; then
 		# This release has no folder for a user's plugins.
 		place="$(find "$folder/lib" -path '*/meshlab/plugins' -type d | head -n 1)"
@@ -83,8 +88,8 @@ build_meshlab() {
 	rm -rf "$folder"
 	# Its programs name the folder that they were built in, so it cannot be moved: the mark comes last.
 	quietly cmake -S "$sources" -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release \
-		-DMESHLAB_ALLOW_OPTIONAL_EXTERNAL_LIBRARIES=OFF "-DMESHLAB_PLUGINS=${plugins#;}" \
-		-DCMAKE_CXX_FLAGS=-w || die "could not configure MeshLab $release"
+		-DMESHLAB_ALLOW_OPTIONAL_EXTERNAL_LIBRARIES=OFF "-DMESHLAB_PLUGINS=${plugins#;}" ||
+		die "could not configure MeshLab $release"
 	quietly ninja -C "$folder" -j "$JOBS" || die "could not build MeshLab $release"
 	ln -s "$(dirname "$(find "$folder" -name meshlab -type f -perm -u+x | head -n 1)")" "$folder/bin"
 	find "$folder" -name '*.o' -delete

@@ -5,12 +5,15 @@
 import hashlib
 import os
 import re
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pymeshlab
 import pytest
+
+from host_programs import Server, meshlabserver
 
 ROOT = Path(__file__).resolve().parents[2]
 MESHES = ROOT / "meshes"
@@ -40,6 +43,13 @@ def plugin() -> Path:
         "MCFSKEL_PLUGIN", ROOT / "build/pymeshlab/filter_mcfskel/libfilter_mcfskel.so"))
     pymeshlab.load_plugin(str(path))
     return path
+
+
+@pytest.fixture(scope="session")
+def server(tmp_path_factory) -> Iterator[Server]:
+    """meshlabserver 2020.09, where it is set up."""
+    with meshlabserver(tmp_path_factory.mktemp("home")) as run:
+        yield run
 
 
 def opened(name: str) -> pymeshlab.MeshSet:
