@@ -37,4 +37,7 @@ if [ $# -ne 1 ] || [[ " ${HOSTS[*]} " != *" $1 "* ]]; then
 	usage >&2
 	exit 2
 fi
-host_folder "$1"
+folder="$(host_folder "$1")"
+# Without its headers there is no plugin for it.
+meshlab_sources "$(headers_of "$1")" >/dev/null
+echo "$folder"

@@ -55,6 +55,8 @@ ctest --test-dir "$folder" --output-on-failure --no-tests=error -j "$JOBS" \
 "$python" "$ROOT/scripts/count_tests.py" "$folder/ctest.xml" "$folder"/pytest/*.xml || status=1
 echo "hosts tested: ${tested[*]}"
 for host in "${TEST_HOSTS[@]}"; do
-	[[ " ${tested[*]} " == *" $host "* ]] || echo "HOST SKIPPED: $host was not set up; see above"
+	reason="could not be set up; see above"
+	[[ " ${hosts[*]} " == *" $host "* ]] || reason="is not in MCFSKEL_TEST_HOSTS"
+	[[ " ${tested[*]} " == *" $host "* ]] || echo "HOST SKIPPED: $host $reason"
 done
 exit "$status"

@@ -12,7 +12,7 @@ BUILD_PACKAGES=(g++ cmake ninja-build qtbase5-dev libqt5opengl5-dev libglew-dev 
 # headers_of HOST: the MeshLab release with whose headers the plugin for a host is built.
 headers_of() {
 	case "$1" in
-	pymeshlab) echo 2025.07 ;;
+	pymeshlab | pymeshlab-2023.12) echo 2025.07 ;;
 	pymeshlab-2022.2) echo 2022.02 ;;
 	meshlab-*) echo "${1#meshlab-}" ;;
 	esac
