@@ -64,7 +64,9 @@ for argument in "$@"; do
 	if [ "$argument" = --host ]; then
 		# shellcheck source=lib/python_env.sh
 		. "$ROOT/scripts/lib/python_env.sh"
-		host=(--plugin "$("$ROOT/scripts/build.sh" pymeshlab | tail -n 1)" --host-python "$(python_env)")
+		plugin="$("$ROOT/scripts/build.sh" pymeshlab | tail -n 1)"
+		host_python="$(python_env)"
+		host=(--plugin "$plugin" --host-python "$host_python")
 	fi
 done
 programs="$(build_bench)"
