@@ -154,16 +154,22 @@ def parts(scene: Scene) -> list[Panel]:
             Panel("branches", [scene.surface], [], [Curve(scene.skeleton)])]
 
 
+def rough_curve(scene: Scene) -> pymeshlab.Mesh:
+    """The skeleton as the contraction leaves it."""
+    return scene.run("generate_curve_skeleton_from_meso_mcf",
+                     next(m for m in scene.layers if "_meso_" in m.label()))
+
+
 def prune(scene: Scene) -> list[Panel]:
-    few = scene.run("generate_pruned_skeleton_mcf", scene.skeleton, min_length=percent(12))
-    fewer = scene.run("generate_pruned_skeleton_mcf", scene.skeleton, min_length=percent(35))
+    rough = rough_curve(scene)
+    few = scene.run("generate_pruned_skeleton_mcf", rough, min_length=percent(12))
+    fewer = scene.run("generate_pruned_skeleton_mcf", rough, min_length=percent(35))
     return [Panel(title, [scene.surface], [], [Curve(mesh)]) for title, mesh in [
-        ("skeleton", scene.skeleton), ("min_length 12 %", few), ("min_length 35 %", fewer)]]
+        ("skeleton", rough), ("min_length 12 %", few), ("min_length 35 %", fewer)]]
 
 
 def smooth(scene: Scene) -> list[Panel]:
-    rough = scene.run("generate_curve_skeleton_from_meso_mcf",
-                      next(m for m in scene.layers if "_meso_" in m.label()))
+    rough = rough_curve(scene)
     panels = [Panel("skeleton", [scene.surface], [], [Curve(rough)])]
     for length in [1, 4]:
         mesh = scene.run("generate_resampled_skeleton_mcf", rough, smoothing=percent(length))
@@ -240,7 +246,7 @@ def stages(scene: Scene) -> list[Panel]:
 
 def curve(scene: Scene) -> list[Panel]:
     last = next(m for m in scene.layers if "_meso_" in m.label())
-    plain = scene.run("generate_curve_skeleton_from_meso_mcf", last)
+    plain = rough_curve(scene)
     return [Panel("last stage", [scene.surface], [], [], triangles=[last]),
             Panel("collapsed", [scene.surface], [], [Curve(plain)]),
             Panel("refined", [scene.surface], [], [Curve(scene.skeleton)])]
