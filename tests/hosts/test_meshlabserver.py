@@ -7,6 +7,7 @@ import re
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
+import networkx
 import numpy as np
 import pytest
 
@@ -151,3 +152,52 @@ class TestFailures:
         run = server(MESHES / "capsule.off", script, "-o", tmp_path / "skeleton.obj", "-l", "x")
         assert run.returncode not in (0, 134, 139)
         assert "not a stage" in run.stdout
+
+
+@pytest.fixture(scope="module")
+def ring(server, tmp_path_factory) -> Path:
+    """A torus's skeleton in all formats that the server writes."""
+    folder = tmp_path_factory.mktemp("ring")
+    outputs = [part for kind in ["obj", "swc", "cg", "graphml"]
+               for part in ["-o", folder / f"ring.{kind}", "-l", "x"]]
+    run = server(MESHES / "torus.off",
+                 changed("full_skeletonize", folder, target_length=0.06), *outputs)
+    assert run.returncode == 0, run.stdout
+    return folder
+
+
+class TestFormats:
+    """The formats of skeletons in meshlabserver's own reading and writing."""
+
+    def test_written(self, ring):
+        nodes, edges = obj_graph(ring / "ring.obj")
+        assert len(nodes) == len(edges)
+        in_cg, edges_in_cg = obj_graph(ring / "ring.cg", line="e")
+        assert in_cg == pytest.approx(nodes, abs=1e-5)
+        assert {frozenset(e) for e in edges_in_cg.tolist()} == {frozenset(e) for e in edges.tolist()}
+        graph = networkx.read_graphml(ring / "ring.graphml", node_type=int)
+        assert len(networkx.cycle_basis(graph)) == 1
+        assert sum(map(len, (d["surface_vertices"] or "" for _, d in graph.nodes(data=True)))) > 0
+        rows = np.loadtxt(ring / "ring.swc")
+        assert "# cycle cut" in (ring / "ring.swc").read_text()
+        assert (rows[:, 6] < rows[:, 0]).all() and (rows[:, 6] == -1).sum() == 1
+        assert len(rows) == len(nodes) and (rows[:, 5] > 0).all()
+
+    @pytest.mark.parametrize("kind, lost", [("cg", 0), ("swc", 1)])
+    def test_read(self, server, ring, tmp_path, kind, lost):
+        script = tmp_path / "nothing.mlx"
+        script.write_text("<!DOCTYPE FilterScript>\n<FilterScript/>\n")
+        run = server(ring / f"ring.{kind}", script, "-o", tmp_path / "again.cg", "-l", "c")
+        assert run.returncode == 0, run.stdout
+        nodes, edges = obj_graph(ring / "ring.cg", line="e")
+        again, kept = obj_graph(tmp_path / "again.cg", line="e")
+        assert {tuple(p) for p in again} == {tuple(p) for p in nodes}
+        assert len(kept) == len(edges) - lost
+
+    def test_malformed(self, server, tmp_path):
+        (tmp_path / "bad.swc").write_text("1 0 0 0 0 1 -1\n2 0 x 0 0 1 1\n")
+        script = tmp_path / "nothing.mlx"
+        script.write_text("<!DOCTYPE FilterScript>\n<FilterScript/>\n")
+        run = server(tmp_path / "bad.swc", script, "-o", tmp_path / "again.cg", "-l", "c")
+        assert "Line 2" in run.stdout
+        assert not (tmp_path / "again.cg").exists()
