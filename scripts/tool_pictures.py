@@ -163,9 +163,9 @@ def rough_curve(scene: Scene) -> pymeshlab.Mesh:
 def prune(scene: Scene) -> list[Panel]:
     rough = rough_curve(scene)
     few = scene.run("generate_pruned_skeleton_mcf", rough, min_length=percent(12))
-    fewer = scene.run("generate_pruned_skeleton_mcf", rough, min_length=percent(35))
+    fewer = scene.run("generate_pruned_skeleton_mcf", rough, min_length=percent(30))
     return [Panel(title, [scene.surface], [], [Curve(mesh)]) for title, mesh in [
-        ("skeleton", rough), ("min_length 12 %", few), ("min_length 35 %", fewer)]]
+        ("skeleton", rough), ("min_length 12 %", few), ("min_length 30 %", fewer)]]
 
 
 def smooth(scene: Scene) -> list[Panel]:
