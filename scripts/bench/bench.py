@@ -6,7 +6,8 @@
 Two jobs are timed: the contraction of the mesh as it is (poles, flow, collapse to a curve), and
 the whole default job (resampling first), where the peer remeshes to the same edge length. Times
 are medians: processor seconds in the rows of one thread, wall seconds in those of more and for
-the peers from PyPI. Reading and writing files is not counted. --quality measures the skeletons that came out.
+the peers from PyPI. Reading and writing files is not counted. --quality measures the skeletons that
+came out, --studies what they depend on.
 """
 
 from __future__ import annotations
@@ -20,9 +21,10 @@ import subprocess
 import sys
 from pathlib import Path
 
-from document import write_docs
+from document import fill_pages, write_docs
 from meshes import meshes_in, subdivided
 from programs import Program, python_peers, run_interleaved
+from studies import STUDIES, study_table
 from tables import (
     Rows, contraction_table, host_table, quality_table, stages_table, whole_table,
 )
@@ -63,6 +65,11 @@ def parse_arguments() -> argparse.Namespace:
         help="run the whole job through pymeshlab as well (builds the plugin)",
     )
     parser.add_argument("--stages", action="store_true", help="time single stages instead")
+    parser.add_argument(
+        "--studies", nargs="*", choices=[name.replace(" ", "-") for name in STUDIES], metavar="NAME",
+        help="instead, what the skeleton depends on: all studies, or "
+             + ", ".join(name.replace(" ", "-") for name in STUDIES),
+    )
     parser.add_argument(
         "--docs", action="store_true",
         help="put the tables and the plot of the growth into docs/ (with --quality: those, too)",
@@ -147,6 +154,18 @@ def run_stages(arguments: argparse.Namespace, meshes: list[Path]) -> int:
     return subprocess.run(command, check=False).returncode
 
 
+def run_studies(arguments: argparse.Namespace, meshes: list[Path], folder: Path) -> int:
+    names = [name.replace("-", " ") for name in arguments.studies] or list(STUDIES)
+    blocks = {}
+    for name in names:
+        table = study_table(name, arguments.programs / "mcfskel_cli", meshes, folder)
+        blocks[f"study {name}"] = table
+        print(f"\n{name}\n\n{table}", flush=True)
+        if arguments.docs:
+            fill_pages(ROOT / "docs", blocks)
+    return 0
+
+
 def main() -> int:
     arguments = parse_arguments()
     work = ROOT / "build" / "bench" / "work"
@@ -157,6 +176,8 @@ def main() -> int:
     ]
     if arguments.stages:
         return run_stages(arguments, meshes)
+    if arguments.studies is not None:
+        return run_studies(arguments, meshes, work / "studies")
 
     report: dict = {"machine": machine(), "meshes": []}
     everything: dict[str, Rows] = {}

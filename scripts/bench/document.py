@@ -22,6 +22,10 @@ def write_docs(
     if "contraction" in rows and sizes(rows["contraction"]) > 1:
         plot_growth(rows["contraction"], docs / "growth.png")
         blocks["growth"] = "![Seconds against vertices](growth.png)"
+    fill_pages(docs, blocks)
+
+
+def fill_pages(docs: Path, blocks: dict[str, str]) -> None:
     for name in ("performance.md", "quality.md"):
         page = docs / name
         page.write_text(fill(page.read_text(), blocks))

@@ -164,7 +164,8 @@ def weights(bench: Bench, mesh: Path) -> str:
 
 def known(bench: Bench, mesh: Path) -> str:
     """Distance to the skeleton that the shape was made from, where that is known exactly."""
-    record = json.loads(mesh.with_suffix(".json").read_text())
+    file = mesh.with_suffix(".json")
+    record = json.loads(file.read_text()) if file.is_file() else {}
     exact = record.get("skeleton")
     head = ["mesh", "refined", "components / cycles / tips / junctions", "mean, %", "greatest, %"]
     if not exact or not exact["complete"]:
@@ -198,12 +199,9 @@ STUDIES = {"known answers": known, "resolution": resolution, "noise": noise, "in
            "weights": weights}
 
 
-def study_tables(program: Path, meshes: list[Path], names: list[str], folder: Path) -> dict[str, str]:
-    """The tables by the names of their studies, each over all meshes."""
+def study_table(name: str, program: Path, meshes: list[Path], folder: Path) -> str:
+    """The table of one study over all meshes."""
     bench = Bench(program, folder)
     folder.mkdir(parents=True, exist_ok=True)
-    result = {}
-    for name in names:
-        tables = [STUDIES[name](bench, mesh).splitlines() for mesh in meshes]
-        result[name] = "\n".join(tables[0][:2] + [row for lines in tables for row in lines[2:]])
-    return result
+    tables = [STUDIES[name](bench, mesh).splitlines() for mesh in meshes]
+    return "\n".join(tables[0][:2] + [row for lines in tables for row in lines[2:]])
