@@ -50,7 +50,7 @@ struct RefineParameters
 	int stiffRounds = 6, rounds = 3, lastRounds = 4;
 	/// A terminal branch must be this distinct somewhere, see distinctness(); in [0, 1]. The corners
 	/// of a box have 0.42, pointed ends with an opening angle of 60 degrees 0.5.
-	double tipDistinctness = 0.5;
+	double tipDistinctness = 0.45;
 	/// A tip is extended while the balls reach further by at least this part of the way; in (0, 1].
 	double tipGain = 0.2;
 	/// A tip's ball is no smaller than this when it has been extended; fraction of the diagonal, > 0.
