@@ -118,7 +118,7 @@ def draw_row(path: Path, shape: np.ndarray, panels: list[Panel], up: str) -> Non
     figure.savefig(pixels, dpi=100)
     plt.close(figure)
     # A palette keeps the files small.
-    Image.open(pixels).convert("RGB").quantize(96).save(path, optimize=True)
+    Image.open(pixels).convert("RGB").quantize(256).save(path, optimize=True)
 
 
 class Scene:
