@@ -7,6 +7,7 @@
 
 #include <skeleton/check_input.h>
 #include <skeleton/errors.h>
+#include <skeleton/vertex_kind.h>
 
 #include <QRegularExpression>
 
@@ -14,6 +15,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numeric>
 #include <type_traits>
 #include <typeindex>
 
@@ -27,8 +29,10 @@ namespace {
 constexpr char poleAttribute[] = "mcfskel_pole";
 constexpr char poleRadiusAttribute[] = "mcfskel_pole_radius";
 constexpr char fixedAttribute[] = "mcfskel_fixed";
+constexpr char heldAttribute[] = "mcfskel_held";
 constexpr char radiusAttribute[] = "mcfskel_radius";
 constexpr char nodeAttribute[] = "mcfskel_node";
+constexpr char kindAttribute[] = "mcfskel_kind";
 constexpr char stateAttribute[] = "mcfskel_state";
 
 /// What a layer knows beyond its attributes. Immutable: copies share it.
@@ -116,7 +120,8 @@ void requireType(
 void requireOwnAttributes(const MeshModel& layer)
 {
 	requireType<Point3m>(layer, layer.cm.vert_attr, poleAttribute);
-	for (const char* name : {poleRadiusAttribute, fixedAttribute, radiusAttribute, nodeAttribute})
+	for (const char* name : {poleRadiusAttribute, fixedAttribute, heldAttribute, radiusAttribute,
+			 nodeAttribute, kindAttribute})
 		requireType<Scalarm>(layer, layer.cm.vert_attr, name);
 	requireType<StatePointer>(layer, layer.cm.mesh_attr, stateAttribute);
 }
@@ -353,6 +358,28 @@ SurfaceLayer readSurface(const MeshModel& layer, const mcf::Progress& progress)
 		std::move(checked.notes)};
 }
 
+std::vector<char> readSelection(
+	const MeshModel& layer, const std::vector<int>& vertexOfSlot, int vertices)
+{
+	std::vector<char> selected(size_t(vertices), 0);
+	bool any = false;
+	for (size_t slot = 0; slot < layer.cm.vert.size(); ++slot) {
+		const CVertexO& v = layer.cm.vert[slot];
+		if (v.IsD() || !v.IsS() || vertexOfSlot[slot] < 0)
+			continue;
+		selected[size_t(vertexOfSlot[slot])] = 1;
+		any = true;
+	}
+	return any ? selected : std::vector<char>();
+}
+
+std::vector<char> readSelection(const MeshModel& layer)
+{
+	std::vector<int> identity(layer.cm.vert.size());
+	std::iota(identity.begin(), identity.end(), 0);
+	return readSelection(layer, identity, int(identity.size()));
+}
+
 StageLayer readStage(const MeshModel& layer)
 {
 	const StatePointer state = validState(layer);
@@ -487,6 +514,25 @@ void fillCurve(MeshModel& layer, const std::vector<vcg::Point3d>& nodes,
 	host::updateBoxAndNormals(layer);
 }
 
+/// Curves vermilion, sheets blue, volume grey: told apart by colour-blind eyes, too.
+void writeKinds(MeshModel& layer, const std::vector<mcf::VertexKind>& kinds)
+{
+	const auto colourOf = [](mcf::VertexKind kind) {
+		switch (kind) {
+		case mcf::VertexKind::Curve: return vcg::Color4b(213, 94, 0, 255);
+		case mcf::VertexKind::Sheet: return vcg::Color4b(86, 180, 233, 255);
+		default: return vcg::Color4b(190, 190, 190, 255);
+		}
+	};
+	std::vector<double> numbers;
+	for (mcf::VertexKind kind : kinds)
+		numbers.push_back(double(kind));
+	writeScalars(layer, kindAttribute, numbers);
+	layer.updateDataMask(MeshModel::MM_VERTCOLOR);
+	for (size_t i = 0; i < kinds.size(); ++i)
+		layer.cm.vert[i].C() = colourOf(kinds[i]);
+}
+
 void fillStage(
 	MeshModel& layer, std::shared_ptr<const mcf::Stage> stage, const SurfaceLink& surface)
 {
@@ -495,8 +541,11 @@ void fillStage(
 	writePoints(layer, poleAttribute, stage->pole);
 	writeScalars(layer, poleRadiusAttribute, stage->poleRadius);
 	writeScalars(layer, fixedAttribute, {stage->fixed.begin(), stage->fixed.end()});
+	if (stage->heldCount() > 0)
+		writeScalars(layer, heldAttribute, {stage->held.begin(), stage->held.end()});
 	writeScalars(layer, radiusAttribute, radius);
 	writeQuality(layer, radius);
+	writeKinds(layer, mcf::vertexKinds(*stage));
 	LayerState state;
 	state.stage = {std::move(stage), surface};
 	setState(layer, std::move(state));
@@ -610,6 +659,33 @@ MeshModel& DocumentEdit::addCurve(const QString& label, const CurveLayer& curve)
 {
 	MeshModel& layer = addLayer(curve.surface, label);
 	fillCurve(layer, curve);
+	return layer;
+}
+
+MeshModel& DocumentEdit::addMesoSkeleton(
+	const MeshModel& source, const QString& label, const mcf::MesoSkeleton& skeleton)
+{
+	MeshModel& layer = addLayer(source, label);
+	addVertices(layer, skeleton.position);
+	std::vector<mcf::VertexKind> kinds(skeleton.position.size(), mcf::VertexKind::Curve);
+	auto edge = Allocator::AddEdges(layer.cm, skeleton.edges.size());
+	for (const mcf::EdgeOfComplex& ends : skeleton.edges) {
+		for (int k = 0; k < 2; ++k)
+			edge->V(k) = &layer.cm.vert[size_t(ends[size_t(k)])];
+		++edge;
+	}
+	auto face = Allocator::AddFaces(layer.cm, skeleton.faces.size());
+	for (const mcf::Triangle& corners : mcf::orientedFaces(skeleton)) {
+		for (int k = 0; k < 3; ++k) {
+			face->V(k) = &layer.cm.vert[size_t(corners[size_t(k)])];
+			kinds[size_t(corners[size_t(k)])] = mcf::VertexKind::Sheet;
+		}
+		++face;
+	}
+	writeScalars(layer, radiusAttribute, skeleton.radius);
+	writeQuality(layer, skeleton.radius);
+	writeKinds(layer, kinds);
+	host::updateBoxAndNormals(layer);
 	return layer;
 }
 

@@ -15,6 +15,7 @@
 #include "hosts/host_api.h"
 
 #include <skeleton/curve_skeleton.h>
+#include <skeleton/meso_skeleton.h>
 #include <skeleton/pole_set.h>
 #include <skeleton/stage.h>
 #include <skeleton/surface_mesh.h>
@@ -91,6 +92,17 @@ QString baseName(const MeshModel& layer);
 SurfaceLayer readSurface(
 	const MeshModel& layer, const vcg::tri::mcf::Progress& progress = vcg::tri::mcf::Progress());
 
+/**
+ * The selected vertices of a layer.
+ * @param vertexOfSlot  for each vertex slot of the layer the vertex that it is, or -1.
+ * @return 1 for the selected ones of `vertices` vertices; empty if none is selected.
+ */
+std::vector<char> readSelection(
+	const MeshModel& layer, const std::vector<int>& vertexOfSlot, int vertices);
+
+/// As above for a layer whose slots are its vertices, as those of a stage are.
+std::vector<char> readSelection(const MeshModel& layer);
+
 /// The stage that a layer holds; false if it is none, or if its geometry was edited since.
 StageLayer readStage(const MeshModel& layer);
 
@@ -144,6 +156,11 @@ public:
 
 	/// The same with all that the skeleton knows, its correspondence included.
 	MeshModel& addCurve(const MeshModel& source, const QString& label, const CurveLayer& curve);
+
+	/// A new layer of curves and sheets, with mcfskel_kind and mcfskel_radius; the radius is also the
+	/// quality.
+	MeshModel& addMesoSkeleton(
+		const MeshModel& source, const QString& label, const vcg::tri::mcf::MesoSkeleton& skeleton);
 
 	/// A new layer of a stage, with all that the next step needs.
 	MeshModel& addStage(const MeshModel& source, const QString& label,

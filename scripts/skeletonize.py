@@ -160,8 +160,8 @@ def vertex_attribute(mesh: Any, name: str, kind: str = "scalar") -> Any:
 def surface_attributes(mesh: Any) -> dict[str, Any]:
     """The attributes of a surface or stage as columns of a PLY file."""
     import numpy as np
-    types = {"mcfskel_node": np.int32, "mcfskel_fixed": np.int32, "mcfskel_radius": np.float32,
-             "mcfskel_pole_radius": np.float64}
+    types = {"mcfskel_node": np.int32, "mcfskel_fixed": np.int32, "mcfskel_held": np.int32,
+             "mcfskel_kind": np.int32, "mcfskel_radius": np.float32, "mcfskel_pole_radius": np.float64}
     found = {name: vertex_attribute(mesh, name) for name in types}
     columns = {name: values.astype(types[name]) for name, values in found.items() if values is not None}
     pole = vertex_attribute(mesh, "mcfskel_pole", "point")

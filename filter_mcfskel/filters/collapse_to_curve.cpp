@@ -3,6 +3,7 @@
 
 #include "all_filters.h"
 #include "common.h"
+#include "sheets.h"
 
 #include <skeleton/collapse_to_curve.h>
 #include <skeleton/errors.h>
@@ -22,8 +23,17 @@ Results run(FilterRun& run)
 					? "' was a stage of the contraction, but its state is gone or its geometry was changed"
 					: "' is not a stage of the contraction")
 			+ ": make a layer NAME_meso_K current, or run 'Contraction Step' first.");
-	const mcf::CurveSkeleton skeleton =
-		mcf::collapseToCurve(*found.stage, readEpsilon(run.parameters), run.progress);
+	const double epsilon = readEpsilon(run.parameters);
+	if (run.parameters.flag("keep_sheets")) {
+		const mcf::SheetCollapse collapse =
+			collapseWithSheets(run, *found.stage, epsilon, run.progress);
+		DocumentEdit edit(run.document);
+		edit.addMesoSkeleton(run.layer(), baseName(run.layer()) + "_skeleton", collapse.skeleton);
+		edit.writeNodes(found.surface, collapse.skeleton.node);
+		edit.commit();
+		return sheetResults(collapse);
+	}
+	const mcf::CurveSkeleton skeleton = mcf::collapseToCurve(*found.stage, epsilon, run.progress);
 
 	DocumentEdit edit(run.document);
 	const MeshModel* surface = run.document.getMesh(found.surface.layerId);
@@ -44,9 +54,12 @@ FilterSpec collapseToCurveFilter()
 			"collapses its shortest edges until no face is left, without changing its topology. The "
 			"vertex quality is the local thickness of the shape, also kept as "
 			"<i>mcfskel_radius</i>.<br><br>"
+			"With <i>keep_sheets</i>, what has contracted to a sheet at this stage, or was kept as one by "
+			"the steps, stays a sheet of faces: early stages leave more of them, late ones curves.<br><br>"
 			"The surface layer, if it is still there, gets <i>mcfskel_node</i>: for each vertex the "
 			"skeleton vertex that it belongs to. Last stage of the skeletonization."),
-		FilterCategory::Remeshing, MeshModel::MM_FACENUMBER, {epsilonParameter()}, run};
+		FilterCategory::Remeshing, MeshModel::MM_FACENUMBER,
+		{epsilonParameter(), keepSheetsParameter()}, run};
 }
 
 } // namespace mcfskel

@@ -99,6 +99,16 @@ ParameterSpec splitAngleParameter()
 		.asAdvanced();
 }
 
+ParameterSpec fixSelectedParameter()
+{
+	return {ParameterKind::Boolean, "fix_selected", 0, "Hold the selected vertices",
+		"Selected vertices of the surface stay exactly where they are while the rest contracts, at "
+		"this step and at all that follow. The skeleton has a node at each of them, or in the middle of "
+		"those that merge in it, and is not refined. On a surface that is resampled first, the "
+		"vertices nearest to the selected ones are held, and all in triangles whose three corners "
+		"are selected; turn resampling off to hold the very vertices."};
+}
+
 void readResampling(const ParameterValues& values, mcf::Parameters& parameters)
 {
 	parameters.targetLength = values.fraction("target_length");
@@ -177,6 +187,19 @@ double meanEdgeLength(const mcf::SurfaceMesh& mesh)
 			++count;
 		}
 	return count ? sum / count : 0;
+}
+
+std::vector<char> selectionToHold(const FilterRun& run, const SurfaceLayer& surface)
+{
+	if (!run.parameters.flag("fix_selected"))
+		return {};
+	std::vector<char> selected =
+		readSelection(run.layer(), *surface.vertexOfSlot, surface.mesh->vertexSlots());
+	if (selected.empty())
+		throw mcf::InvalidInput("No vertex of the current layer '"
+			+ run.layer().label().toStdString()
+			+ "' is selected: select the vertices to hold, or leave 'fix_selected' off.");
+	return selected;
 }
 
 void logNotes(const FilterRun& run, const SurfaceLayer& surface)

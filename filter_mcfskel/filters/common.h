@@ -33,6 +33,7 @@ ParameterSpec poleMethodParameter();
 std::vector<ParameterSpec> weightParameters();
 ParameterSpec epsilonParameter();
 ParameterSpec splitAngleParameter();
+ParameterSpec fixSelectedParameter();
 
 // From values to the pipeline's parameters; each reads the ones of its filters.
 
@@ -51,6 +52,12 @@ QString stageLine(const vcg::tri::mcf::Stage& stage);
 
 /// Mean edge length, mesh units; 0 for a mesh without edges.
 double meanEdgeLength(const vcg::tri::mcf::SurfaceMesh& mesh);
+
+/**
+ * The selected vertices of the current surface layer, if the parameter fix_selected is set; else empty.
+ * @throws InvalidInput if it is set and no vertex is selected.
+ */
+std::vector<char> selectionToHold(const FilterRun& run, const SurfaceLayer& surface);
 
 /// Writes the repairs of a surface into the log, once.
 void logNotes(const FilterRun& run, const SurfaceLayer& surface);

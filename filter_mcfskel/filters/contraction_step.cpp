@@ -3,9 +3,10 @@
 
 #include "all_filters.h"
 #include "common.h"
+#include "sheets.h"
 
 #include <skeleton/errors.h>
-#include <skeleton/first_stage.h>
+#include <skeleton/held_vertices.h>
 #include <skeleton/skeletonize.h>
 
 namespace mcfskel {
@@ -27,7 +28,21 @@ Start startOf(FilterRun& run, const mcf::Parameters& parameters)
 	Start start;
 	if (const StageLayer found = readStage(run.layer())) {
 		start.stage = found.stage;
+		if (run.parameters.flag("fix_selected")) {
+			mcf::Stage held = *found.stage;
+			if (const std::vector<char> selected = readSelection(run.layer()); !selected.empty())
+				mcf::holdVertices(held, selected);
+			if (held.heldCount() == 0)
+				throw mcf::InvalidInput(
+					"This stage holds no vertex, and none of it is selected: "
+					"select the vertices to hold, or leave 'fix_selected' off.");
+			start.stage = std::make_shared<const mcf::Stage>(std::move(held));
+		}
 		start.link = found.surface;
+		if (parameters.keepSheets && !found.stage->hasSheets())
+			run.log(
+				"This stage keeps no sheets: they are told from the surface, when the first step "
+				"is made with 'keep_sheets'.");
 		return start;
 	}
 	if (hasStageAttributes(run.layer()))
@@ -35,8 +50,9 @@ Start startOf(FilterRun& run, const mcf::Parameters& parameters)
 			"This layer was a stage of the contraction, but its state is gone or its geometry was "
 			"changed: it is taken as a surface of its own.");
 	start.surface = surfaceWithPoles(run, parameters.poleMethod, run.progress.part(0, 0.08));
-	start.stage = std::make_shared<const mcf::Stage>(mcf::firstStage(*start.surface.surface.mesh,
-		parameters, start.surface.poles.get(), run.progress.part(0.08, 0.1)));
+	start.stage = std::make_shared<const mcf::Stage>(
+		startOfFlow(run, parameters, *start.surface.surface.mesh, *start.surface.poles,
+			selectionToHold(run, start.surface.surface), run.progress.part(0.08, 0.1)));
 	start.link = linkTo(run.layer(), start.surface.surface);
 	return start;
 }
@@ -45,6 +61,7 @@ Results run(FilterRun& run)
 {
 	mcf::Parameters parameters;
 	readFlow(run.parameters, parameters);
+	readSheets(run.parameters, parameters);
 	const int steps = run.parameters.integer("steps");
 	if (steps < 1)
 		throw mcf::InvalidParameter("Parameter steps must be at least 1.");
@@ -86,6 +103,9 @@ FilterSpec contractionStepFilter()
 	parameters.push_back(splitAngleParameter());
 	parameters.push_back({ParameterKind::Integer, "steps", 1, "Steps",
 		"Iterations to make, at least 1; each leaves a layer of its own, NAME_meso_K."});
+	parameters.push_back(fixSelectedParameter());
+	parameters.push_back(keepSheetsParameter());
+	parameters.push_back(sheetThresholdParameter());
 	return {"generate_meso_skeleton_mcf", menuName("Contraction Step"),
 		helpPage(
 			"Contracts the surface by one or more steps of mean curvature flow that is drawn to the "

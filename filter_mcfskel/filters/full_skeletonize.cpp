@@ -3,15 +3,18 @@
 
 #include "all_filters.h"
 #include "common.h"
+#include "sheets.h"
 
 #include <skeleton/collapse_to_curve.h>
 #include <skeleton/errors.h>
-#include <skeleton/first_stage.h>
+#include <skeleton/held_vertices.h>
 #include <skeleton/parallel_blocks.h>
 #include <skeleton/point_tree.h>
 #include <skeleton/poles.h>
 #include <skeleton/refine.h>
 #include <skeleton/skeletonize.h>
+
+#include <optional>
 
 namespace mcfskel {
 
@@ -27,10 +30,17 @@ struct Pipeline
 	SurfaceLayer surface;
 	std::shared_ptr<const mcf::PoleSet> poles;
 	bool newPoles = false;
+	/// 1 for the vertices of `surface` that are held; empty if there are none.
+	std::vector<char> held;
 	/// The stages to keep as layers, the last one always among them.
 	std::vector<std::shared_ptr<const mcf::Stage>> kept;
 	mcf::CurveSkeleton skeleton;
+	/// Instead of `skeleton` where sheets are kept.
+	std::optional<mcf::SheetCollapse> sheets;
 	Results seconds;
+
+	/// For each vertex of `surface` its node of the skeleton.
+	const std::vector<int>& nodes() const { return sheets ? sheets->skeleton.node : skeleton.node; }
 };
 
 void contractAll(FilterRun& run, const mcf::Parameters& parameters, const mcf::Progress& progress,
@@ -45,9 +55,10 @@ void contractAll(FilterRun& run, const mcf::Parameters& parameters, const mcf::P
 			pipeline.kept.push_back(last);
 		}
 	};
-	mcf::Stage end = mcf::contractToSkeleton(mcf::firstStage(*pipeline.surface.mesh, parameters,
-												 pipeline.poles.get(), progress.part(0, 0.03)),
-		parameters, progress.part(0.03, 1), onStage);
+	mcf::Stage start = startOfFlow(run, parameters, *pipeline.surface.mesh, *pipeline.poles,
+		pipeline.held, progress.part(0, 0.03));
+	mcf::Stage end =
+		mcf::contractToSkeleton(std::move(start), parameters, progress.part(0.03, 1), onStage);
 	if (!end.converged)
 		run.log(
 			QString("The contraction has not converged after %1 iterations.").arg(end.iteration));
@@ -63,11 +74,15 @@ Pipeline skeletonize(FilterRun& run, const mcf::Parameters& parameters)
 	};
 	pipeline.input = readSurface(run.layer(), run.progress.part(0, 0.02));
 	logNotes(run, pipeline.input);
+	pipeline.held = selectionToHold(run, pipeline.input);
 
 	Stopwatch watch;
 	pipeline.surface = parameters.resample
 		? resampledSurface(run, *pipeline.input.mesh, parameters, run.progress.part(0.02, 0.15))
 		: pipeline.input;
+	if (parameters.resample && !pipeline.held.empty())
+		pipeline.held =
+			mcf::selectionOnResampled(*pipeline.input.mesh, pipeline.held, *pipeline.surface.mesh);
 	note("resample", watch.lap());
 
 	if (!parameters.resample)
@@ -83,10 +98,19 @@ Pipeline skeletonize(FilterRun& run, const mcf::Parameters& parameters)
 	contractAll(run, parameters, run.progress.part(0.25, 0.85), pipeline);
 	note("contraction", watch.lap());
 
-	pipeline.skeleton = mcf::collapseToCurve(
-		*pipeline.kept.back(), parameters.epsilon, run.progress.part(0.85, 0.9));
+	const mcf::Progress progress = run.progress.part(0.85, 0.9);
+	if (pipeline.kept.back()->hasSheets())
+		pipeline.sheets =
+			collapseWithSheets(run, *pipeline.kept.back(), parameters.epsilon, progress);
+	else
+		pipeline.skeleton =
+			mcf::collapseToCurve(*pipeline.kept.back(), parameters.epsilon, progress);
 	note("collapse", watch.lap());
-	if (parameters.refine)
+	if (parameters.refine && pipeline.sheets)
+		run.log("The skeleton is not refined: that is for curves without sheets.");
+	else if (parameters.refine && !pipeline.held.empty())
+		run.log("The skeleton is not refined: that would move it off the vertices that are held.");
+	else if (parameters.refine)
 		pipeline.skeleton = mcf::refine(pipeline.skeleton, *pipeline.surface.mesh,
 			mcf::RefineParameters(), run.progress.part(0.9, 0.98));
 	note("refine", watch.lap());
@@ -102,7 +126,7 @@ std::vector<int> nodesOfInput(const Pipeline& pipeline, const mcf::Progress& pro
 	mcf::forEachBlock(int(node.size()), progress.part(0.1, 1), "Finding the nodes of the input",
 		[&](int begin, int end) {
 			for (size_t v = size_t(begin); v < size_t(end); ++v)
-				node[v] = pipeline.skeleton.node[size_t(tree.nearest(input.position[v]))];
+				node[v] = pipeline.nodes()[size_t(tree.nearest(input.position[v]))];
 		});
 	return node;
 }
@@ -112,6 +136,7 @@ Results run(FilterRun& run)
 	mcf::Parameters parameters;
 	parameters.resample = run.parameters.flag("resample");
 	parameters.refine = run.parameters.flag("refine");
+	readSheets(run.parameters, parameters);
 	readResampling(run.parameters, parameters);
 	readFlow(run.parameters, parameters);
 	parameters.poleMethod = readPoleMethod(run.parameters);
@@ -136,16 +161,23 @@ Results run(FilterRun& run)
 	const SurfaceLink link = linkTo(*surface, pipeline.surface);
 	for (const auto& stage : pipeline.kept)
 		edit.addStage(input, stageLabel(name, *stage), stage, link);
-	edit.addCurve(input, name + "_skeleton", {pipeline.skeleton, link, surface->label()});
+	if (pipeline.sheets)
+		edit.addMesoSkeleton(input, name + "_skeleton", pipeline.sheets->skeleton);
+	else
+		edit.addCurve(input, name + "_skeleton", {pipeline.skeleton, link, surface->label()});
 	if (pipeline.newPoles)
 		edit.writePoles(*surface, pipeline.surface, pipeline.poles);
-	edit.writeNodes(*surface, *pipeline.surface.vertexOfSlot, pipeline.skeleton.node);
+	edit.writeNodes(*surface, *pipeline.surface.vertexOfSlot, pipeline.nodes());
 	if (parameters.resample)
 		edit.writeNodes(input, *pipeline.input.vertexOfSlot, inputNodes);
 	edit.commit();
 
 	Results results = stageResults(*pipeline.kept.back());
-	results.merge(curveResults(pipeline.skeleton));
+	if (pipeline.sheets)
+		results.merge(sheetResults(*pipeline.sheets));
+	else
+		results.merge(parameters.keepSheets ? sheetResults(withoutSheets(pipeline.skeleton))
+											: curveResults(pipeline.skeleton));
 	results.insert(pipeline.seconds.begin(), pipeline.seconds.end());
 	return results;
 }
@@ -181,6 +213,9 @@ FilterSpec fullSkeletonizeFilter()
 		"Goes beyond the paper at the end: removes spurs, samples the branches evenly, centres and "
 		"smooths them, and extends the tips to the ends of their features. Without, the skeleton is "
 		"the paper's own. Also a filter of its own."});
+	parameters.push_back(fixSelectedParameter());
+	parameters.push_back(keepSheetsParameter());
+	parameters.push_back(sheetThresholdParameter());
 	return {"generate_curve_skeleton_mcf", menuName("Full Skeletonize"),
 		helpPage(
 			"Computes the curve skeleton of a closed surface: a graph of nodes and edges in the "

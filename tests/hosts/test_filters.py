@@ -160,7 +160,7 @@ class TestStep:
         stage = layers.current_mesh()
         assert stage.label() == "torus_meso_1"
         assert set(attributes(stage)) == {
-            "mcfskel_pole", "mcfskel_pole_radius", "mcfskel_fixed", "mcfskel_radius"}
+            "mcfskel_pole", "mcfskel_pole_radius", "mcfskel_fixed", "mcfskel_radius", "mcfskel_kind"}
         assert np.isin(scalars(stage, "mcfskel_fixed"), [0, 1]).all()
         assert stage.vertex_scalar_array() == pytest.approx(scalars(stage, "mcfskel_radius"))
         assert euler(stage) == euler(surface) == 0

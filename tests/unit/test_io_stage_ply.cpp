@@ -47,7 +47,7 @@ std::string difference(const Stage& a, const Stage& b)
 			return "outgoing";
 	if (!sameBits(a.pole, b.pole) || !sameBits(a.poleRadius, b.poleRadius))
 		return "pole";
-	if (a.fixed != b.fixed)
+	if (a.fixed != b.fixed || a.held != b.held || a.sheet != b.sheet)
 		return "fixed";
 	if (a.component != b.component)
 		return "component";
@@ -60,7 +60,7 @@ std::string difference(const Stage& a, const Stage& b)
 		return "volume";
 	if (!sameBits(*a.surface, *b.surface) || a.node != b.node)
 		return "correspondence";
-	if (a.iteration != b.iteration || a.converged != b.converged)
+	if (a.iteration != b.iteration || a.converged != b.converged || a.epsilon != b.epsilon)
 		return "iteration";
 	return "";
 }
@@ -130,6 +130,17 @@ TEST(StagePly, EveryStageReadsBackToTheLastBitAndStepsOnTheSame)
 	}
 }
 
+TEST(StagePly, KeepsWhatIsHeldAndWhatIsASheet)
+{
+	Stage stage = startOf(shapes::torus(1, 0.3, 24, 10).mesh());
+	for (size_t v = 0; v < stage.held.size(); v += 7)
+		stage.held[v] = stage.fixed[v] = 1;
+	for (size_t v = 0; v < stage.sheet.size(); v += 3)
+		stage.sheet[v] = 1;
+	stage.epsilon = 0.0123;
+	EXPECT_EQ(difference(readStage(fileOf(stage)).stage, stage), "");
+}
+
 TEST(StagePly, KeepsTheWayBackToTheSurfaceLayer)
 {
 	const std::vector<int> slots = {0, -1, 2, 239};
@@ -185,6 +196,9 @@ TEST(StagePly, RefusesValuesThatCannotBe)
 			{"vertex", "mcfskel_component", 3, 1},
 			{"vertex", "mcfskel_component", 3, -1},
 			{"vertex", "mcfskel_fixed", 4, 2},
+			{"vertex", "mcfskel_held", 4, 2},
+			{"vertex", "mcfskel_sheet", 4, -1},
+			{"mcfskel_stage", "epsilon", 0, -1},
 			{"vertex", "mcfskel_rank", 1, 1e9},
 			{"mcfskel_surface", "node", 2, 1 << 30},
 			{"mcfskel_surface", "y", 6, std::nan("")},

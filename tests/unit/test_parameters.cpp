@@ -45,6 +45,7 @@ TEST(Parameters, DefaultsAreThePapersAndAreTaken)
 	EXPECT_EQ(p.wM, 40);
 	EXPECT_EQ(p.epsilon, 0.002);
 	EXPECT_EQ(p.splitAngle, 110);
+	EXPECT_FALSE(p.keepSheets);
 	EXPECT_EQ(p.maxIterations, 500);
 	EXPECT_TRUE(p.resample);
 	EXPECT_EQ(p.resampleIterations, 5);
@@ -83,6 +84,9 @@ TEST(Parameters, TakesTheEndsOfTheRanges)
 {
 	EXPECT_EQ(refusal([](Parameters& p) { p.wM = 0; }), "");
 	EXPECT_EQ(refusal([](Parameters& p) { p.epsilon = 0.1; }), "");
+	for (double bad : {-0.1, 1.1, std::nan("")})
+		EXPECT_NE(refusal([&](Parameters& p) { p.sheetThreshold = bad; }).find("sheet_threshold"),
+			std::string::npos);
 	EXPECT_EQ(refusal([](Parameters& p) { p.splitAngle = 60; }), "");
 	EXPECT_EQ(refusal([](Parameters& p) { p.splitAngle = 179.9; }), "");
 	EXPECT_EQ(refusal([](Parameters& p) { p.maxIterations = 0; }), "");

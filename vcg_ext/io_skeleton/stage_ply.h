@@ -48,6 +48,7 @@ inline PlyElement stageRow(const StageFile& file)
 	};
 	add("iteration", PlyType::Int32, stage.iteration);
 	add("converged", PlyType::UInt8, stage.converged);
+	add("epsilon", PlyType::Double, stage.epsilon);
 	add("initial_volume", PlyType::Double, stage.initialVolume);
 	add("volume", PlyType::Double, stage.volume);
 	add("ranked_vertices", PlyType::Int32, stage.rankedVertices);
@@ -73,6 +74,8 @@ inline void writeStagePly(std::ostream& out, const StageFile& file)
 	addPoints(vertex, "mcfskel_pole_", stage.pole);
 	vertex.add("mcfskel_pole_radius", PlyType::Double, stage.poleRadius);
 	vertex.add("mcfskel_fixed", PlyType::UInt8, stage.fixed);
+	vertex.add("mcfskel_held", PlyType::UInt8, stage.held);
+	vertex.add("mcfskel_sheet", PlyType::UInt8, stage.sheet);
 	vertex.add("mcfskel_component", PlyType::Int32, stage.component);
 	vertex.add(
 		"mcfskel_rank", PlyType::Int32, stage.rank.empty() ? std::vector<int>(n, -1) : stage.rank);
@@ -162,6 +165,20 @@ inline void readVertices(const PlyTable& table, int components, Stage& stage)
 				throw table.error(v, "the pole is not finite.");
 	const std::vector<int> fixed = table.integers("mcfskel_fixed", 0, 1);
 	stage.fixed.assign(fixed.begin(), fixed.end());
+	stage.held.assign(fixed.size(), 0);
+	if (table.has("mcfskel_held")) {
+		const std::vector<int> held = table.integers("mcfskel_held", 0, 1);
+		for (size_t v = 0; v < held.size(); ++v) {
+			if (held[v] && !fixed[v])
+				throw table.error(v, "held, but not fixed.");
+			stage.held[v] = char(held[v]);
+		}
+	}
+	stage.sheet.assign(fixed.size(), 0);
+	if (table.has("mcfskel_sheet")) {
+		const std::vector<int> sheet = table.integers("mcfskel_sheet", 0, 1);
+		stage.sheet.assign(sheet.begin(), sheet.end());
+	}
 	stage.component = table.integers("mcfskel_component", 0, components - 1);
 	stage.rank = table.integers("mcfskel_rank", -1, std::max(0, stage.rankedVertices - 1));
 	if (stage.rankedVertices == 0)
@@ -198,6 +215,8 @@ inline StageFile readStagePly(const PlyFile& ply)
 		throw row.error(0, "expected one row.");
 	stage.iteration = row.integers("iteration", 0, most)[0];
 	stage.converged = row.integers("converged", 0, 1)[0] == 1;
+	if (row.has("epsilon"))
+		stage.epsilon = row.reals("epsilon", 0)[0];
 	stage.initialVolume = row.reals("initial_volume")[0];
 	stage.volume = row.reals("volume")[0];
 	stage.rankedVertices = row.integers("ranked_vertices", 0, most)[0];

@@ -24,15 +24,20 @@ namespace vcg::tri::mcf {
 namespace detail {
 
 /**
- * Contracts edges that have faces, shortest first, until no face is left.
+ * Contracts edges that have faces, shortest first, until no face is left, or none but at edges that
+ * are kept.
  *
  * An edge that a cycle of the shape blocks waits until nothing else can be contracted. Then edges
  * that only one flat piece has are taken away with it, longest first; where there is none, a piece
  * is cut at a pinch; where there is no pinch either, balls are emptied through a face that no other
  * piece shares. All of it ends: a cut lowers a piece's genus or parts it, the rest removes cells.
- * @throws SolverError if none of the four is possible: no shape is known where this happens.
+ * @param isKept      (A, B): whether an edge is to stay.
+ * @param onContract  (A, B) when A has merged into B.
+ * @return whether no face is left.
  */
-inline void contractAllFaces(GluedComplex& complex, const Progress& progress)
+template <class IsKept, class OnContract>
+bool contractFaces(GluedComplex& complex, bool openBalls, const IsKept& isKept,
+	const OnContract& onContract, const Progress& progress)
 {
 	using Entry = std::tuple<double, int, int>; // squared length, nodes
 	std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> shortest;
@@ -40,7 +45,8 @@ inline void contractAllFaces(GluedComplex& complex, const Progress& progress)
 		shortest.emplace(complex.squaredLength(A, B), std::min(A, B), std::max(A, B));
 	};
 	for (const auto& [A, B] : complex.surfaceEdges())
-		push(A, B);
+		if (!isKept(A, B))
+			push(A, B);
 	const double allFaces = complex.faceCount();
 	double done = 0; // cuts add faces: the bar waits for them to go again
 	std::vector<Entry> blocked;
@@ -55,15 +61,17 @@ inline void contractAllFaces(GluedComplex& complex, const Progress& progress)
 			const auto [length, A, B] = shortest.top();
 			shortest.pop();
 			if (complex.find(A) != A || complex.find(B) != B
-				|| complex.squaredLength(A, B) != length)
+				|| complex.squaredLength(A, B) != length || isKept(A, B))
 				continue;
 			switch (complex.contract(A, B)) {
 			case GluedComplex::Outcome::NoFaces: break;
 			case GluedComplex::Outcome::Blocked: blocked.emplace_back(length, A, B); break;
 			case GluedComplex::Outcome::Contracted:
 				contracted = true;
+				onContract(A, B);
 				for (int C : complex.surfaceNeighbours(B))
-					push(B, C);
+					if (!isKept(B, C))
+						push(B, C);
 			}
 		}
 		if (contracted) {
@@ -79,23 +87,38 @@ inline void contractAllFaces(GluedComplex& complex, const Progress& progress)
 		const auto cut = [&](const Entry& entry) {
 			return complex.cut(std::get<1>(entry), std::get<2>(entry));
 		};
-		if (free == 0 && std::none_of(blocked.begin(), blocked.end(), cut) && !complex.emptyBalls())
-			throw SolverError("The stage could not be collapsed to curves.");
+		if (free == 0 && std::none_of(blocked.begin(), blocked.end(), cut)
+			&& !(openBalls && complex.emptyBalls()))
+			return false;
 		for (const Entry& entry : blocked)
 			shortest.push(entry);
 		blocked.clear();
 	}
+	return true;
+}
+
+/// Contracts until no face is left.
+/// @throws SolverError if that is not possible: no shape is known where this happens.
+inline void contractAllFaces(GluedComplex& complex, const Progress& progress)
+{
+	const auto none = [](int, int) { return false; };
+	if (!contractFaces(
+			complex, true, none, [](int, int) {}, progress))
+		throw SolverError("The stage could not be collapsed to curves.");
 }
 
 /// Merges nodes that are closer than makes sense; each component keeps an edge.
-inline void contractShortCurveEdges(GluedComplex& complex, const Stage& stage, double shortestEdge)
+/// @param stays  1 for nodes that have to stay; empty if there are none.
+inline void contractShortCurveEdges(GluedComplex& complex, const Stage& stage, double shortestEdge,
+	const std::vector<char>& stays = {})
 {
+	const auto mayMerge = [&](int A) { return stays.empty() || !stays[A]; };
 	const auto contractOneAt = [&](int A, double limit) {
 		for (int B : complex.curveNeighbours(A)) {
 			const bool lastEdge =
 				complex.curveNeighbours(A).size() == 1 && complex.curveNeighbours(B).size() == 1;
-			if (!lastEdge && complex.squaredLength(A, B) < limit * limit
-				&& complex.contractCurveEdge(B, A))
+			if (!lastEdge && mayMerge(A) && mayMerge(B)
+				&& complex.squaredLength(A, B) < limit * limit && complex.contractCurveEdge(B, A))
 				return true;
 		}
 		return false;
@@ -123,7 +146,7 @@ inline void contractShortCurveEdges(GluedComplex& complex, const Stage& stage, d
 inline CurveSkeleton collapseToCurve(
 	const Stage& stage, double shortestEdge = 1e-4, const Progress& progress = Progress())
 {
-	GluedComplex complex(stage.mesh);
+	GluedComplex complex(stage.mesh, stage.held);
 	detail::contractAllFaces(complex, progress.part(0, 0.9));
 
 	detail::contractShortCurveEdges(complex, stage, shortestEdge);

@@ -24,6 +24,10 @@ namespace vcg::tri::mcf {
  */
 constexpr double publishedWeightUnit = 1.0 / 200;
 
+/// The medial weight, squared, of vertices that are to become sheets: strong enough to bring both walls
+/// together before the smoothing has pulled the rim in.
+constexpr double sheetWeight2 = 4;
+
 /**
  * Moves the free vertices of a stage to the minimum of
  *
@@ -32,7 +36,7 @@ constexpr double publishedWeightUnit = 1.0 / 200;
  * Fixed vertices are known values, not unknowns with a large weight; the Laplacian rows are those
  * of the free vertices. The medial term is left out for a vertex without a pole and where the pole
  * lies outwards, (mu(v) - v) . n > 0: there the flow has passed the medial axis, and the term would
- * blow the surface up again.
+ * blow the surface up again. Vertices of sheets (Stage::sheet) have a weight of their own and keep it.
  *
  * Weights are squared (Eq. 5 does, Eq. 6 does not; the published values belong to the square).
  * @pre stage.mesh is compact.
@@ -91,9 +95,11 @@ inline void contract(
 		x[i] = p - middle;
 		D[i] = wH2;
 		b[i] = x[i] * wH2;
-		if (stage.poleRadius[v] >= 0 && (stage.pole[v] - p) * normal[v] <= 0) {
-			D[i] += wM2;
-			b[i] += (stage.pole[v] - middle) * wM2;
+		const bool sheet = stage.sheet[v];
+		if (stage.poleRadius[v] >= 0 && (sheet || (stage.pole[v] - p) * normal[v] <= 0)) {
+			const double weight2 = sheet ? sheetWeight2 : wM2;
+			D[i] += weight2;
+			b[i] += (stage.pole[v] - middle) * weight2;
 		}
 	}
 	// (M^2 + D) x = w_H^2 v + w_M^2 mu - M g

@@ -112,6 +112,8 @@ inline Stage firstStage(const SurfaceMesh& surface, const Parameters& parameters
 		take(polesAt(surface, coarse.survivor, parameters.poleMethod, progress.part(polesFrom, 1)),
 			[](size_t v) { return v; });
 	stage.fixed.assign(count, 0);
+	stage.held.assign(count, 0);
+	stage.sheet.assign(count, 0);
 	stage.component = std::move(coarse.component);
 	stage.diagonal = std::move(coarse.diagonal);
 	stage.initialArea = std::move(coarse.area);

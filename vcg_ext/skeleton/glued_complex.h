@@ -39,12 +39,18 @@ namespace vcg::tri::mcf {
 class GluedComplex
 {
 public:
-	/// @pre surface is compact.
-	explicit GluedComplex(const SurfaceMesh& surface) :
+	/**
+	 * @param held  1 where a vertex of the surface is held: a node of held vertices is where these are;
+	 *              empty if there are none.
+	 * @pre surface is compact.
+	 */
+	explicit GluedComplex(const SurfaceMesh& surface, const std::vector<char>& held = {}) :
 			mesh(surface), nodes(surface.vertexSlots()), copies(surface.vertexSlots()),
 			curve(surface.vertexSlots()), nodeOfCopy(surface.vertexSlots()),
-			positions(surface.position), weight(surface.vertexSlots(), 1)
+			positions(surface.position), weight(surface.vertexSlots(), 1),
+			heldWeight(held.begin(), held.end())
 	{
+		heldWeight.resize(surface.vertexSlots(), 0);
 		for (int v = 0; v < surface.vertexSlots(); ++v) {
 			copies[v].push_back(v);
 			nodeOfCopy[v] = v;
@@ -54,7 +60,7 @@ public:
 	int nodeSlots() const { return int(copies.size()); }
 	/// The node into which node A has merged.
 	int find(int A) { return nodes.find(A); }
-	/// The mean of the vertices that have merged into the node.
+	/// The mean of the vertices that have merged into the node, of the held ones if there are any.
 	const Point3d& position(int A) const { return positions[A]; }
 	double squaredLength(int A, int B) const { return SquaredDistance(positions[A], positions[B]); }
 	/// Nodes joined to A by curve edges.
@@ -82,6 +88,21 @@ public:
 				const int A = nodeOf(mesh.origin(h)), B = nodeOf(mesh.target(h));
 				if (A < B)
 					result.emplace_back(A, B);
+			}
+		std::sort(result.begin(), result.end());
+		result.erase(std::unique(result.begin(), result.end()), result.end());
+		return result;
+	}
+
+	/// The triangles of all pieces as nodes in ascending order, each once, in ascending order.
+	std::vector<std::array<int, 3>> surfaceTriangles()
+	{
+		std::vector<std::array<int, 3>> result;
+		for (int f = 0; f < mesh.faceSlots(); ++f)
+			if (mesh.isFace(f)) {
+				const Triangle t = mesh.triangle(f);
+				result.push_back({nodeOf(t[0]), nodeOf(t[1]), nodeOf(t[2])});
+				std::sort(result.back().begin(), result.back().end());
 			}
 		std::sort(result.begin(), result.end());
 		result.erase(std::unique(result.begin(), result.end()), result.end());
@@ -222,7 +243,7 @@ private:
 	std::vector<std::set<int>> curve;
 	std::vector<int> nodeOfCopy;
 	std::vector<Point3d> positions;
-	std::vector<double> weight;
+	std::vector<double> weight, heldWeight;
 
 	int nodeOf(int copy) { return nodes.find(nodeOfCopy[copy]); }
 
@@ -387,11 +408,14 @@ private:
 
 	void mergeNodes(int A, int B)
 	{
-		const double total = weight[A] + weight[B];
-		positions[B] = total > 0
-			? Point3d((positions[A] * weight[A] + positions[B] * weight[B]) / total)
-			: Point3d((positions[A] + positions[B]) / 2.0);
-		weight[B] = total;
+		const std::vector<double>& share = heldWeight[A] + heldWeight[B] > 0 ? heldWeight : weight;
+		const double total = share[A] + share[B];
+		if (share[A] > 0)
+			positions[B] = share[B] > 0
+				? Point3d((positions[A] * share[A] + positions[B] * share[B]) / total)
+				: positions[A];
+		weight[B] += weight[A];
+		heldWeight[B] += heldWeight[A];
 		nodes.merge(A, B);
 		copies[B].insert(copies[B].end(), copies[A].begin(), copies[A].end());
 		copies[A].clear();

@@ -27,14 +27,19 @@ inline void mergeVertexState(Stage& stage, int removed, int survivor)
 	const Point3d& p = stage.mesh.position[survivor];
 	const bool removedHas = stage.poleRadius[removed] >= 0,
 			   survivorHas = stage.poleRadius[survivor] >= 0;
-	if (removedHas
-		&& (!survivorHas
-			|| SquaredDistance(p, stage.pole[removed])
-				< SquaredDistance(p, stage.pole[survivor]))) {
+	// A vertex of a sheet keeps its pole, or its rim would wear away.
+	const bool takesPole = stage.sheet[removed] != stage.sheet[survivor] ? stage.sheet[removed]
+																		 : removedHas
+			&& (!survivorHas
+				|| SquaredDistance(p, stage.pole[removed])
+					< SquaredDistance(p, stage.pole[survivor]));
+	if (takesPole) {
 		stage.pole[survivor] = stage.pole[removed];
 		stage.poleRadius[survivor] = stage.poleRadius[removed];
 	}
 	stage.fixed[survivor] |= stage.fixed[removed];
+	stage.held[survivor] |= stage.held[removed];
+	stage.sheet[survivor] |= stage.sheet[removed];
 	if (!stage.rank.empty())
 		stage.rank[survivor] = std::max(stage.rank[survivor], stage.rank[removed]);
 }
@@ -166,11 +171,20 @@ inline void splitWideAngles(Stage& stage, const Parameters& parameters, MergeFor
 		const double t = ((mesh.position[apex] - mesh.position[a]) * along) / squaredLength;
 		if (std::min(t, 1 - t) * std::sqrt(squaredLength) < limit)
 			continue; // a half shorter than epsilon: the next collapse would undo the split
+		// A triangle of held corners keeps its place.
+		const bool held = stage.held[a] && stage.held[b]
+			&& (stage.held[mesh.apex(h)] || stage.held[mesh.apex(mesh.twin(h))]);
 		const int m = mesh.split(h, mesh.position[a] + along * t);
 		forest.add();
-		stage.pole.push_back(mesh.position[m]);
-		stage.poleRadius.push_back(-1);
-		stage.fixed.push_back(0);
+		// Within a sheet poles vary smoothly: the new vertex has one between those of its neighbours.
+		const bool sheet = stage.sheet[a] && stage.sheet[b];
+		stage.pole.push_back(
+			sheet ? stage.pole[a] * (1 - t) + stage.pole[b] * t : mesh.position[m]);
+		stage.poleRadius.push_back(
+			sheet ? stage.poleRadius[a] * (1 - t) + stage.poleRadius[b] * t : -1);
+		stage.sheet.push_back(sheet);
+		stage.fixed.push_back(held);
+		stage.held.push_back(held);
 		stage.component.push_back(stage.component[a]);
 		if (!stage.rank.empty())
 			stage.rank.push_back(-1);

@@ -38,6 +38,11 @@ struct Parameters
 	/// The flow stops after this many iterations even if it has not converged; >= 0.
 	int maxIterations = 500;
 	PoleMethod poleMethod = PoleMethod::Balls;
+	/// Keep sheets of the medial axis where the shape is flat, instead of contracting them to curves.
+	bool keepSheets = false;
+	/// What is a sheet: where the sheetness (see sheetness.h) is above this; in [0, 1]. 0: nearly the
+	/// medial axis; 1: curves only.
+	double sheetThreshold = 0.85;
 	/// Resample the surface first (first line of Fig. 4).
 	bool resample = true;
 	/// Edge length of the resampling, fraction of the diagonal; 0: chosen by defaultTargetLength().
@@ -58,6 +63,7 @@ struct Parameters
 		require(epsilon > 0 && epsilon <= 0.1, "epsilon", "between 0 and 10 % of the diagonal");
 		require(splitAngle >= 60 && splitAngle < 180, "split_angle", "in [60, 180) degrees");
 		require(maxIterations >= 0, "max_iterations", "at least 0");
+		require(sheetThreshold >= 0 && sheetThreshold <= 1, "sheet_threshold", "between 0 and 1");
 		require(targetLength >= 0 && targetLength <= 0.5, "target_length",
 			"between 0 and 50 % of the diagonal");
 		require(resampleIterations >= 0, "resample_iterations", "at least 0");

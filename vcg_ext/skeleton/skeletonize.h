@@ -11,6 +11,7 @@
 #include "local_remeshing.h"
 #include "parameters.h"
 #include "progress.h"
+#include "sheet_marks.h"
 #include "stage.h"
 
 #include <cmath>
@@ -27,7 +28,8 @@ namespace vcg::tri::mcf {
  * Convergence: in every component the area changed by less than 1e-4 of the surface's area, and there
  * is nothing left to contract: less than 5 % of the volume (in the end it is some 1e-5), or most
  * vertices are fixed (a body thinner than epsilon keeps its volume). The area alone would take a flow
- * for finished that a large w_H makes slow. A converged stage stays as it is.
+ * for finished that a large w_H makes slow; it must do where vertices are held, since they may hold
+ * any volume open. A converged stage stays as it is.
  * @return the next stage; the given one is not changed.
  * @throws SolverError, InvalidParameter, Cancelled.
  */
@@ -43,6 +45,7 @@ inline Stage step(Stage stage, const Parameters& parameters, const Progress& pro
 		collapseShortEdges(stage, parameters.epsilon, forest, progress.part(0.8, 0.9));
 	splitWideAngles(stage, parameters, forest, progress.part(0.9, 1));
 	fixDegenerateVertices(stage, candidates, parameters.epsilon);
+	fixArrivedSheets(stage, parameters.epsilon);
 
 	std::vector<int> survivor(stage.node.size());
 	for (size_t s = 0; s < stage.node.size(); ++s)
@@ -57,6 +60,8 @@ inline Stage step(Stage stage, const Parameters& parameters, const Progress& pro
 		stage.pole[to] = stage.pole[v];
 		stage.poleRadius[to] = stage.poleRadius[v];
 		stage.fixed[to] = stage.fixed[v];
+		stage.held[to] = stage.held[v];
+		stage.sheet[to] = stage.sheet[v];
 		stage.component[to] = stage.component[v];
 		stage.rank[to] = stage.rank[v];
 	}
@@ -64,6 +69,8 @@ inline Stage step(Stage stage, const Parameters& parameters, const Progress& pro
 	stage.pole.resize(left);
 	stage.poleRadius.resize(left);
 	stage.fixed.resize(left);
+	stage.held.resize(left);
+	stage.sheet.resize(left);
 	stage.component.resize(left);
 	stage.rank.resize(left);
 
@@ -75,8 +82,10 @@ inline Stage step(Stage stage, const Parameters& parameters, const Progress& pro
 		stage.converged &= std::abs(area[c] - stage.area[c]) < settled * stage.initialArea[c];
 	stage.area = area;
 	stage.volume = mesh.volume();
-	stage.converged &= stage.volumeFraction() < 0.05 || stage.fixedFraction() > 0.5;
+	stage.converged &=
+		stage.volumeFraction() < 0.05 || stage.fixedFraction() > 0.5 || stage.heldCount() > 0;
 	++stage.iteration;
+	stage.epsilon = parameters.epsilon;
 	return stage;
 }
 

@@ -7,6 +7,7 @@
 #define VCG_MCF_STAGE_H
 
 #include "check_input.h"
+#include "parameters.h"
 #include "pole_set.h"
 #include "surface_mesh.h"
 
@@ -30,8 +31,12 @@ struct Stage
 	/// Medial pole of each vertex, and its distance from the surface; -1: none (made by a split).
 	std::vector<Point3d> pole;
 	std::vector<double> poleRadius;
-	/// 1 where the vertex's neighbourhood has collapsed and it no longer moves (Sec. 4.4).
+	/// 1 where the vertex no longer moves: its neighbourhood has collapsed (Sec. 4.4), or it is held.
 	std::vector<char> fixed;
+	/// 1 where the user holds the vertex, see holdVertices(); such a vertex is fixed, too.
+	std::vector<char> held;
+	/// 1 where the flow keeps a sheet of the medial axis, see markSheets().
+	std::vector<char> sheet;
 	/// Connected component of each vertex.
 	std::vector<int> component;
 	/// Where each vertex stands in the elimination order of the linear systems, and how many
@@ -53,6 +58,8 @@ struct Stage
 
 	/// Iterations made so far.
 	int iteration = 0;
+	/// The length epsilon of the last of them, fraction of the diagonal.
+	double epsilon = Parameters().epsilon;
 	/// Whether the area has stopped changing: no volume is left.
 	bool converged = false;
 
@@ -64,6 +71,9 @@ struct Stage
 			? 1
 			: double(std::count(fixed.begin(), fixed.end(), 1)) / double(fixed.size());
 	}
+	/// Whether the flow keeps a sheet anywhere.
+	bool hasSheets() const { return std::find(sheet.begin(), sheet.end(), 1) != sheet.end(); }
+	int heldCount() const { return int(std::count(held.begin(), held.end(), 1)); }
 
 private:
 	static double sum(const std::vector<double>& values)
@@ -108,6 +118,8 @@ inline Stage initialStage(const SurfaceMesh& surface, const PoleSet& poles)
 	stage.pole = poles.centre;
 	stage.poleRadius = poles.radius;
 	stage.fixed.assign(surface.vertexSlots(), 0);
+	stage.held.assign(surface.vertexSlots(), 0);
+	stage.sheet.assign(surface.vertexSlots(), 0);
 	int components = 0;
 	stage.component = connectedComponents(surface, &components);
 	stage.diagonal = componentDiagonals(surface, stage.component, components);

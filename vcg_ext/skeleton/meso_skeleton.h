@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file The result with sheets: curves and single-walled sheets in one complex.
+
+#ifndef VCG_MCF_MESO_SKELETON_H
+#define VCG_MCF_MESO_SKELETON_H
+
+#include "betti_numbers.h"
+
+#include <vcg/space/point3.h>
+
+#include <array>
+#include <cstddef>
+#include <map>
+#include <utility>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/// A skeleton of curves (edges) and sheets (faces), which share nodes.
+struct MesoSkeleton
+{
+	/// Nodes, mesh units.
+	std::vector<Point3d> position;
+	/// Local thickness at each node, mesh units: mean distance to the surface vertices merged there.
+	std::vector<double> radius;
+	/// Curve edges: those that no face has. Ascending.
+	std::vector<EdgeOfComplex> edges;
+	/// Ascending; no face occurs twice.
+	std::vector<FaceOfComplex> faces;
+	/// The correspondence: for each surface vertex the node it has merged into.
+	std::vector<int> node;
+
+	BettiNumbers betti() const { return bettiNumbers(int(position.size()), edges, faces); }
+
+	/// Sum of the areas of the faces, mesh units squared.
+	double sheetArea() const
+	{
+		double sum = 0;
+		for (const auto& [a, b, c] : faces)
+			sum += ((position[b] - position[a]) ^ (position[c] - position[a])).Norm() / 2;
+		return sum;
+	}
+};
+
+/**
+ * The faces of a skeleton, neighbours turned alike as far as that is possible: across edges of two
+ * faces, beginning with the first face of each part. Complexity: O(F log F).
+ */
+inline std::vector<std::array<int, 3>> orientedFaces(const MesoSkeleton& skeleton)
+{
+	std::map<EdgeOfComplex, std::vector<int>> around;
+	for (size_t f = 0; f < skeleton.faces.size(); ++f)
+		for (const EdgeOfComplex& e : edgesOf(skeleton.faces[f]))
+			around[e].push_back(int(f));
+	// Whether a face has a before b, going round.
+	const auto runsAlong = [](const std::array<int, 3>& face, int a, int b) {
+		for (size_t k = 0; k < 3; ++k)
+			if (face[k] == a && face[(k + 1) % 3] == b)
+				return true;
+		return false;
+	};
+	std::vector<std::array<int, 3>> result = skeleton.faces;
+	std::vector<char> seen(result.size(), 0);
+	for (size_t seed = 0; seed < result.size(); ++seed) {
+		if (seen[seed])
+			continue;
+		seen[seed] = 1;
+		std::vector<int> part(1, int(seed));
+		for (size_t i = 0; i < part.size(); ++i) {
+			const int f = part[i];
+			for (const EdgeOfComplex& e : edgesOf(skeleton.faces[size_t(f)])) {
+				const std::vector<int>& sharing = around[e];
+				if (sharing.size() != 2)
+					continue;
+				const int g = sharing[0] == f ? sharing[1] : sharing[0];
+				if (seen[size_t(g)])
+					continue;
+				seen[size_t(g)] = 1;
+				part.push_back(g);
+				if (runsAlong(result[size_t(f)], e[0], e[1])
+					== runsAlong(result[size_t(g)], e[0], e[1]))
+					std::swap(result[size_t(g)][1], result[size_t(g)][2]);
+			}
+		}
+	}
+	return result;
+}
+
+} // namespace vcg::tri::mcf
+
+#endif
