@@ -57,6 +57,8 @@ mcf::Stage startOfFlow(FilterRun& run, const mcf::Parameters& parameters,
 				: QString("No part of the shape is flatter than %1: there are no sheets to keep.")
 					  .arg(parameters.sheetThreshold));
 	}
+	if (held.empty() && !stage.hasSheets())
+		return mcf::firstStage(surface, parameters, &poles, progress);
 	if (!held.empty()) {
 		mcf::holdVertices(stage, held);
 		run.log(QString("Holding %1 vertices where they are.").arg(stage.heldCount()));
