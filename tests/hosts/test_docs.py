@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The examples and promises of the README hold; the pages in docs/ explain all there is."""
 
+import ctypes
 import re
 import subprocess
 import sys
@@ -64,10 +65,15 @@ def filters() -> list[str]:
 
 def parameters(capfd: pytest.CaptureFixture[str]) -> list[Parameter]:
     """Every parameter of the plugin, as pymeshlab lists it."""
+    def flush() -> None:
+        ctypes.CDLL(None).fflush(None)  # pymeshlab prints into C's buffer, which capfd does not know
+
     found = []
     for name in filters():
+        flush()
         capfd.readouterr()
         pymeshlab.print_filter_parameter_list(name)
+        flush()
         for line in capfd.readouterr().out.splitlines():
             if match := re.match(r"\s+(\w+) : \w+ = (.*)", line):
                 found.append(Parameter(name, match[1], match[2].strip("'")))
