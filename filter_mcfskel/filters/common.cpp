@@ -219,8 +219,10 @@ SurfaceLayer resampledSurface(const FilterRun& run, const mcf::SurfaceMesh& mesh
 				.arg(100 * noise.level, 0, 'g', 2)
 				.arg(smooth ? QString("smoothing it in %1 rounds").arg(noise.mostRounds())
 							: QString("it may show in the skeleton; 'denoise' would smooth it")));
-	const mcf::SurfaceMesh calm =
-		smooth ? mcf::smoothed(mesh, noise.rounds, progress.part(0.1, 0.3)) : mesh;
+	mcf::SurfaceMesh smoothed;
+	if (smooth)
+		smoothed = mcf::smoothed(mesh, noise.rounds, progress.part(0.1, 0.3));
+	const mcf::SurfaceMesh& calm = smooth ? smoothed : mesh;
 	SurfaceLayer result;
 	result.mesh = std::make_shared<const mcf::SurfaceMesh>(
 		mcf::resample(calm, mcf::defaultTargetLength(calm, parameters),

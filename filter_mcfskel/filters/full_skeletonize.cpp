@@ -4,12 +4,11 @@
 #include "all_filters.h"
 #include "common.h"
 #include "sheets.h"
+#include "skeletons.h"
 
 #include <skeleton/collapse_to_curve.h>
 #include <skeleton/errors.h>
 #include <skeleton/held_vertices.h>
-#include <skeleton/parallel_blocks.h>
-#include <skeleton/point_tree.h>
 #include <skeleton/poles.h>
 #include <skeleton/refine.h>
 #include <skeleton/skeletonize.h>
@@ -117,20 +116,6 @@ Pipeline skeletonize(FilterRun& run, const mcf::Parameters& parameters)
 	return pipeline;
 }
 
-/// For each vertex of the input the skeleton node of the nearest vertex of the resampled surface.
-std::vector<int> nodesOfInput(const Pipeline& pipeline, const mcf::Progress& progress)
-{
-	const mcf::SurfaceMesh& input = *pipeline.input.mesh;
-	const mcf::PointTree tree(pipeline.surface.mesh->position, progress.part(0, 0.1));
-	std::vector<int> node(size_t(input.vertexSlots()));
-	mcf::forEachBlock(int(node.size()), progress.part(0.1, 1), "Finding the nodes of the input",
-		[&](int begin, int end) {
-			for (size_t v = size_t(begin); v < size_t(end); ++v)
-				node[v] = pipeline.nodes()[size_t(tree.nearest(input.position[v]))];
-		});
-	return node;
-}
-
 Results run(FilterRun& run)
 {
 	mcf::Parameters parameters;
@@ -147,7 +132,8 @@ Results run(FilterRun& run)
 	const Pipeline pipeline = skeletonize(run, parameters);
 
 	const std::vector<int> inputNodes = parameters.resample
-		? nodesOfInput(pipeline, run.progress.part(0.98, 1))
+		? carriedOver(*pipeline.surface.mesh, pipeline.nodes(), *pipeline.input.mesh,
+			run.progress.part(0.98, 1))
 		: std::vector<int>();
 
 	DocumentEdit edit(run.document);

@@ -7,6 +7,7 @@
 
 #include <skeleton/closest_surface.h>
 #include <skeleton/errors.h>
+#include <skeleton/parallel_blocks.h>
 #include <skeleton/point_tree.h>
 #include <skeleton/skeleton_radius.h>
 #include <skeleton/stage.h>
@@ -32,17 +33,6 @@ MeshModel* rememberedLayer(const FilterRun& run, const CurveLayer& curve)
 	return link.layerId < 0 ? nullptr : run.document.getMesh(link.layerId);
 }
 
-/// For each vertex what the nearest one of another surface has.
-std::vector<int> carriedOver(
-	const mcf::SurfaceMesh& from, const std::vector<int>& node, const mcf::SurfaceMesh& to)
-{
-	const mcf::PointTree tree(from.position);
-	std::vector<int> result(to.position.size());
-	for (size_t v = 0; v < result.size(); ++v)
-		result[v] = node[size_t(tree.nearest(to.position[v]))];
-	return result;
-}
-
 /// What mcfskel_node tells, if all of it can be about a skeleton of that many nodes; else empty.
 std::vector<int> nodesFromAttribute(const SkeletonSurface& surface, size_t nodes)
 {
@@ -65,6 +55,19 @@ std::vector<int> nodesFromAttribute(const SkeletonSurface& surface, size_t nodes
 }
 
 } // namespace
+
+std::vector<int> carriedOver(const mcf::SurfaceMesh& from, const std::vector<int>& node,
+	const mcf::SurfaceMesh& to, const mcf::Progress& progress)
+{
+	const mcf::PointTree tree(from.position, progress.part(0, 0.1));
+	std::vector<int> result(to.position.size());
+	mcf::forEachBlock(int(result.size()), progress.part(0.1, 1), "Finding the nodes of a surface",
+		[&](int begin, int end) {
+			for (size_t v = size_t(begin); v < size_t(end); ++v)
+				result[v] = node[size_t(tree.nearest(to.position[v]))];
+		});
+	return result;
+}
 
 CurveLayer skeletonOn(const MeshModel& layer)
 {
