@@ -26,14 +26,5 @@ environment:
 END
 }
 
-case "${1:-}" in
--h | --help)
-	usage
-	exit 0
-	;;
-esac
-if [ $# -ne 1 ] || [[ " ${HOSTS[*]} " != *" $1 "* ]]; then
-	usage >&2
-	exit 2
-fi
+need_one_host "$@"
 build_host "$1"

@@ -27,16 +27,7 @@ The last line of the output is a folder; under its bin/ are meshlab, meshlabserv
 END
 }
 
-case "${1:-}" in
--h | --help)
-	usage
-	exit 0
-	;;
-esac
-if [ $# -ne 1 ] || [[ " ${HOSTS[*]} " != *" $1 "* ]]; then
-	usage >&2
-	exit 2
-fi
+need_one_host "$@"
 folder="$(host_folder "$1")"
 # Without its headers there is no plugin for it.
 meshlab_sources "$(headers_of "$1")" >/dev/null

@@ -9,6 +9,20 @@ HOSTS=(pymeshlab meshlab-2025.07 meshlab-2020.09 pymeshlab-2023.12 pymeshlab-202
 BUILD_PACKAGES=(g++ cmake ninja-build qtbase5-dev libqt5opengl5-dev libglew-dev libeigen3-dev
 	libqhull-dev)
 
+# need_one_host ARGUMENT...: ends with the script's usage() unless the one argument is a host.
+need_one_host() {
+	case "${1:-}" in
+	-h | --help)
+		usage
+		exit 0
+		;;
+	esac
+	if [ $# -ne 1 ] || [[ " ${HOSTS[*]} " != *" $1 "* ]]; then
+		usage >&2
+		exit 2
+	fi
+}
+
 # headers_of HOST: the MeshLab release with whose headers the plugin for a host is built.
 headers_of() {
 	case "$1" in
