@@ -111,19 +111,27 @@ class Window:
         with open(self.log_file, "wb") as log:
             self.meshlab = self.run(str(program), *map(str, meshes), stdout=log,
                                     stderr=subprocess.STDOUT)
+        self.main = self.wait(self.main_window, "the main window on the display")
+        # The reader starts the bus for screen readers. A Qt program that finds this bus when it starts
+        # may never tell what it shows; one that sees the bus come always does.
         self.reader = self.run("/usr/bin/python3", str(Path(__file__).with_name("accessible.py")),
                                str(self.meshlab.pid), stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                                text=True)
         self.wait(lambda: self.view().all("frame", "MeshLab"), "the main window")
         # Without a window manager windows are as large as they happen to be.
-        main = self.call("xdotool", "search", "--onlyvisible", "--name", "^MeshLab 20").split()[-1]
-        self.main = main
-        self.call("xdotool", "windowmove", main, "0", "0")
-        self.call("xdotool", "windowsize", main, *map(str, SIZE))
+        self.call("xdotool", "windowmove", self.main, "0", "0")
+        self.call("xdotool", "windowsize", self.main, *map(str, SIZE))
         self.wait(lambda: [w for w in self.view().all("frame", "MeshLab") if w.box[2:] == SIZE],
                   "the main window in full size")
         if meshes:
             self.wait_log("All files opened")
+
+    def main_window(self) -> Optional[str]:
+        """The number that the display gave to MeshLab's main window, once it shows."""
+        found = subprocess.run(
+            ["xdotool", "search", "--onlyvisible", "--name", "^MeshLab 20"], env=self.environment,
+            capture_output=True, text=True, timeout=PATIENCE).stdout.split()
+        return found[-1] if found else None
 
     def run(self, *command: str, **options: Any) -> subprocess.Popen:
         """Starts a program in a group of its own, which stop() ends."""
