@@ -12,6 +12,7 @@
 #include <Eigen/SparseCore>
 
 #include <algorithm>
+#include <numeric>
 #include <vector>
 
 namespace vcg::tri::mcf {
@@ -56,13 +57,16 @@ inline std::vector<int> eliminationOrder(Stage& stage)
 {
 	if (stage.rank.empty() || 2 * stage.mesh.vertexSlots() < stage.rankedVertices)
 		rankByMinimumDegree(stage);
-	std::vector<int> order;
+	// Sorted by counting, vertices of equal rank by their number. Ranks start at -1.
+	std::vector<int> start(stage.rankedVertices + 2, 0);
 	for (int v = 0; v < stage.mesh.vertexSlots(); ++v)
 		if (!stage.fixed[v])
-			order.push_back(v);
-	std::sort(order.begin(), order.end(), [&](int v, int w) {
-		return stage.rank[v] != stage.rank[w] ? stage.rank[v] < stage.rank[w] : v < w;
-	});
+			++start[stage.rank[v] + 2];
+	std::partial_sum(start.begin(), start.end(), start.begin());
+	std::vector<int> order(start.back());
+	for (int v = 0; v < stage.mesh.vertexSlots(); ++v)
+		if (!stage.fixed[v])
+			order[start[stage.rank[v] + 1]++] = v;
 	return order;
 }
 

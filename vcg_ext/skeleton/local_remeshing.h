@@ -11,7 +11,9 @@
 #include "progress.h"
 #include "stage.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <queue>
 #include <utility>
 #include <vector>
@@ -61,25 +63,35 @@ inline std::vector<int> collapseShortEdges(
 {
 	SurfaceMesh& mesh = stage.mesh;
 	using Entry = std::pair<double, int>; // squared length, half-edge
-	std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> shortest;
-	const auto isShort = [&](int h, double squaredLength) {
-		const double limit = epsilon * stage.diagonal[stage.component[mesh.origin(h)]];
-		return squaredLength < limit * limit;
+	const auto entry = [&](int h) {
+		return Entry(mesh.squaredLength(h), std::min(h, mesh.twin(h)));
 	};
-	const auto push = [&](int h) {
-		const double squaredLength = mesh.squaredLength(h);
-		if (isShort(h, squaredLength))
-			shortest.emplace(squaredLength, std::min(h, mesh.twin(h)));
+	const auto mayCollapse = [&](const Entry& e) {
+		const int a = mesh.origin(e.second), b = mesh.target(e.second);
+		const double limit = epsilon * stage.diagonal[stage.component[a]];
+		return e.first < limit * limit && !(stage.fixed[a] && stage.fixed[b]);
 	};
+	// The edges of a round, sorted at once; what a collapse makes short is few, and waits beside them.
+	std::vector<Entry> sorted;
+	std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> fresh;
 	std::vector<int> blocked;
+	// A blocked edge stays so until the ring of one of its ends changes.
+	std::vector<char> changed(mesh.vertexSlots(), 0);
 	const auto collapseQueued = [&] {
-		bool any = false;
+		std::sort(sorted.begin(), sorted.end());
+		size_t next = 0;
+		const auto pop = [&] {
+			if (next < sorted.size() && (fresh.empty() || sorted[next] < fresh.top()))
+				return sorted[next++];
+			const Entry top = fresh.top();
+			fresh.pop();
+			return top;
+		};
 		size_t count = 0;
-		while (!shortest.empty()) {
+		while (next < sorted.size() || !fresh.empty()) {
 			if (++count % 65536 == 0)
 				progress.report(0, "Collapsing short edges");
-			const auto [squaredLength, h] = shortest.top();
-			shortest.pop();
+			const auto [squaredLength, h] = pop();
 			if (!mesh.isHalfEdge(h) || mesh.squaredLength(h) != squaredLength)
 				continue; // it has changed since, and was queued again if it still is short
 			const int a = mesh.origin(h), b = mesh.target(h);
@@ -89,7 +101,6 @@ inline std::vector<int> collapseShortEdges(
 				blocked.push_back(h);
 				continue;
 			}
-			any = true;
 			const Point3d merged = stage.fixed[a] ? mesh.position[a]
 				: stage.fixed[b]                  ? mesh.position[b]
 								 : Point3d((mesh.position[a] + mesh.position[b]) / 2.0);
@@ -97,23 +108,33 @@ inline std::vector<int> collapseShortEdges(
 			mesh.position[b] = merged;
 			forest.merge(a, b);
 			detail::mergeVertexState(stage, a, b);
-			mesh.forEachOutgoing(b, push);
+			changed[b] = 1;
+			mesh.forEachOutgoing(b, [&](int e) {
+				changed[mesh.target(e)] = 1;
+				if (const Entry again = entry(e); mayCollapse(again))
+					fresh.push(again);
+			});
 		}
-		return any;
+		sorted.clear();
 	};
 	for (int h = 0; h < mesh.halfEdgeSlots(); ++h)
 		if (mesh.isEdge(h))
-			push(h);
+			if (const Entry e = entry(h); mayCollapse(e))
+				sorted.push_back(e);
+	collapseQueued();
 	// A collapse elsewhere may have freed a blocked edge.
-	std::vector<int> retry;
-	while (collapseQueued()) {
-		retry.swap(blocked);
-		blocked.clear();
-		for (int h : retry)
-			if (mesh.isHalfEdge(h))
-				push(h);
-		if (shortest.empty())
+	for (;;) {
+		const auto stays = std::partition(blocked.begin(), blocked.end(), [&](int h) {
+			return !mesh.isHalfEdge(h) || !(changed[mesh.origin(h)] || changed[mesh.target(h)]);
+		});
+		for (auto h = stays; h != blocked.end(); ++h)
+			if (const Entry e = entry(*h); mayCollapse(e))
+				sorted.push_back(e);
+		blocked.erase(stays, blocked.end());
+		if (sorted.empty())
 			break;
+		std::fill(changed.begin(), changed.end(), 0);
+		collapseQueued();
 	}
 	std::vector<char> isCandidate(mesh.vertexSlots(), 0);
 	for (int h : blocked)
@@ -141,27 +162,32 @@ inline void splitWideAngles(Stage& stage, const Parameters& parameters, MergeFor
 {
 	SurfaceMesh& mesh = stage.mesh;
 	const double widest = std::cos(parameters.splitAngle * M_PI / 180);
-	// Cosine of the angle at the apex of h; 2 where the triangle has no extent there.
-	const auto apexCosine = [&](int h) {
+	// Cosine of the angle at the apex of h if it is wide, else 2.
+	const auto wideCosine = [&](int h) {
 		const Point3d& c = mesh.position[mesh.apex(h)];
 		const Point3d u = mesh.position[mesh.origin(h)] - c, v = mesh.position[mesh.target(h)] - c;
+		const double dot = u * v;
+		if (dot >= 0 && widest <= 0)
+			return 2.0;
 		const double lengths = std::sqrt(u.SquaredNorm() * v.SquaredNorm());
-		return lengths > 0 ? (u * v) / lengths : 2.0;
+		return lengths > 0 && dot / lengths < widest ? dot / lengths : 2.0;
 	};
-	std::queue<int> queue;
+	std::vector<int> queue;
 	for (int h = 0; h < mesh.halfEdgeSlots(); ++h)
 		if (mesh.isEdge(h))
-			queue.push(h);
-	size_t count = 0;
+			queue.push_back(h);
 	// Each split shortens the longest edge of its triangles; the cap only guards against the worst.
 	const size_t mostVertices = 4 * size_t(mesh.vertexCount()) + 1000;
-	while (!queue.empty() && size_t(mesh.vertexCount()) < mostVertices) {
-		if (++count % 65536 == 0)
+	for (size_t next = 0; next < queue.size() && size_t(mesh.vertexCount()) < mostVertices;
+		 ++next) {
+		if (next % 65536 == 65535)
 			progress.report(0, "Splitting wide angles");
-		const int h = queue.front();
-		queue.pop();
-		const double cosine = apexCosine(h), twinCosine = apexCosine(mesh.twin(h));
-		if (!(cosine < widest && twinCosine < widest))
+		const int h = queue[next];
+		const double cosine = wideCosine(h);
+		if (cosine > 1)
+			continue;
+		const double twinCosine = wideCosine(mesh.twin(h));
+		if (twinCosine > 1)
 			continue;
 		const int a = mesh.origin(h), b = mesh.target(h);
 		const double limit = parameters.epsilon * stage.diagonal[stage.component[a]];
@@ -189,8 +215,8 @@ inline void splitWideAngles(Stage& stage, const Parameters& parameters, MergeFor
 		if (!stage.rank.empty())
 			stage.rank.push_back(-1);
 		mesh.forEachOutgoing(m, [&](int e) {
-			queue.push(e);
-			queue.push(SurfaceMesh::next(e));
+			queue.push_back(e);
+			queue.push_back(SurfaceMesh::next(e));
 		});
 	}
 }
