@@ -17,6 +17,17 @@
 
 namespace vcg::tri::mcf {
 
+namespace detail {
+
+/// sums <- sums + u v, each coordinate by itself.
+inline void addProducts(Point3d& sums, const Point3d& u, const Point3d& v)
+{
+	for (int k = 0; k < 3; ++k)
+		sums[k] += u[k] * v[k];
+}
+
+} // namespace detail
+
 /**
  * Solves (M^2 + D) x = b by conjugate gradients, preconditioned by (M + sqrt D)^-2.
  *
@@ -29,7 +40,7 @@ namespace vcg::tri::mcf {
  * @param D     positive, n.
  * @param b     right-hand sides, n by 3.
  * @param x     in: the start; out: the solution, n by 3.
- * @param tolerance the residual, in the preconditioner's norm, falls below this fraction of its
+ * @param tolerance the residual, in the preconditioner's norm, falls to about this fraction of its
  *              value at the start.
  * @throws SolverError if the factorisation breaks down; Cancelled.
  */
@@ -47,29 +58,28 @@ inline void solveBiharmonic(const SymmetricRows& M, const std::vector<double>& D
 	const IncompleteFactor factor(M, rootD, dropTolerance, progress.part(0, 0.5));
 	progress.report(0.5, "Contracting");
 
-	FloatQuads work(n);
-	const auto precondition = [&](const std::vector<Point3d>& r, std::vector<Point3d>& z) {
-		for (int i = 0; i < n; ++i)
-			work[i] = FloatQuad(float(r[i][0]), float(r[i][1]), float(r[i][2]), 0.f);
-		factor.solve(work);
-		factor.solve(work);
-		for (int i = 0; i < n; ++i)
-			z[i] = Point3d(work[i][0], work[i][1], work[i][2]);
+	FloatQuads z(n); // the preconditioned residual
+	std::vector<Point3d> Mp(n), Ap(n), r(n), p(n);
+	/// Ap <- (M^2 + D) in; the product of each column with `in`.
+	const auto apply = [&](const std::vector<Point3d>& in) {
+		M.multiply(in, Mp);
+		Point3d product(0, 0, 0);
+		M.forEachProduct(Mp, [&](int i, const Point3d& sum) {
+			Ap[i] = sum + in[i] * D[i];
+			detail::addProducts(product, in[i], Ap[i]);
+		});
+		return product;
 	};
-	std::vector<Point3d> scratch(n), Ap(n), r(n), z(n), p(n);
-	const auto apply = [&](const std::vector<Point3d>& in, std::vector<Point3d>& out) {
-		M.multiply(in, scratch);
-		M.multiply(scratch, out);
+	/// z <- preconditioned r, from its copy in single precision; r . z.
+	const auto precondition = [&] {
+		factor.solve(z);
+		factor.solve(z);
+		Point3d product(0, 0, 0);
 		for (int i = 0; i < n; ++i)
-			out[i] += in[i] * D[i];
+			detail::addProducts(product, r[i], Point3d(z[i][0], z[i][1], z[i][2]));
+		return product;
 	};
-	const auto dot = [&](const std::vector<Point3d>& u, const std::vector<Point3d>& v) {
-		Point3d sum(0, 0, 0);
-		for (int i = 0; i < n; ++i)
-			for (int k = 0; k < 3; ++k)
-				sum[k] += u[i][k] * v[i][k];
-		return sum;
-	};
+	const auto total = [](const Point3d& u) { return u[0] + u[1] + u[2]; };
 	const auto quotient = [](const Point3d& u, const Point3d& v) {
 		Point3d q;
 		for (int k = 0; k < 3; ++k)
@@ -77,7 +87,7 @@ inline void solveBiharmonic(const SymmetricRows& M, const std::vector<double>& D
 		return q;
 	};
 
-	apply(x, Ap);
+	apply(x);
 	// Single precision has no room for meshes of 1e-20 or 1e20 units: residuals are scaled to one.
 	double largest = 0;
 	for (int i = 0; i < n; ++i) {
@@ -87,26 +97,35 @@ inline void solveBiharmonic(const SymmetricRows& M, const std::vector<double>& D
 	}
 	if (largest == 0)
 		return;
-	for (Point3d& v : r)
-		v /= largest;
-	precondition(r, z);
-	p = z;
-	Point3d rz = dot(r, z);
-	const double target = tolerance * tolerance * (rz[0] + rz[1] + rz[2]);
+	for (int i = 0; i < n; ++i) {
+		r[i] /= largest;
+		z[i] = FloatQuad(float(r[i][0]), float(r[i][1]), float(r[i][2]), 0.f);
+	}
+	Point3d rz = precondition();
+	for (int i = 0; i < n; ++i)
+		p[i] = Point3d(z[i][0], z[i][1], z[i][2]);
+	const double target = tolerance * tolerance * total(rz);
+	// r . z falls to a tenth in each iteration but the first, where it falls further. An iteration that
+	// reaches the target so is the last one, and what is left is not measured.
+	double fall = 0.1;
 	constexpr int mostIterations = 200;
 	for (int iteration = 0; iteration < mostIterations; ++iteration) {
 		progress.report(0.5 + 0.5 * iteration / mostIterations, "Contracting");
-		apply(p, Ap);
-		const Point3d alpha = quotient(rz, dot(p, Ap));
-		for (int i = 0; i < n; ++i)
+		const Point3d alpha = quotient(rz, apply(p));
+		for (int i = 0; i < n; ++i) {
 			for (int k = 0; k < 3; ++k) {
 				x[i][k] += largest * alpha[k] * p[i][k];
 				r[i][k] -= alpha[k] * Ap[i][k];
 			}
-		precondition(r, z);
-		const Point3d rzNew = dot(r, z);
-		if (!(rzNew[0] + rzNew[1] + rzNew[2] > target))
+			z[i] = FloatQuad(float(r[i][0]), float(r[i][1]), float(r[i][2]), 0.f);
+		}
+		if (fall * total(rz) <= target)
 			break;
+		const Point3d rzNew = precondition();
+		if (!(total(rzNew) > target))
+			break;
+		if (iteration > 0)
+			fall = std::max(fall, total(rzNew) / total(rz));
 		const Point3d beta = quotient(rzNew, rz);
 		for (int i = 0; i < n; ++i)
 			for (int k = 0; k < 3; ++k)

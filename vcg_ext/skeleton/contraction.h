@@ -58,9 +58,19 @@ inline void contract(
 	for (int i = 0; i < n; ++i)
 		unknown[vertexOfUnknown[i]] = i;
 	progress.report(0, "Contracting");
-	const std::vector<double> weight = cotangentWeights(mesh);
-	progress.report(0.05, "Contracting");
-	const std::vector<Point3d> normal = mesh.vertexNormals();
+	// Of triangles that can still move: the cotangents, and the area-weighted normals of the vertices.
+	std::vector<double> cotangent(mesh.halfEdgeSlots());
+	std::vector<Point3d> normal(mesh.vertexSlots(), Point3d(0, 0, 0));
+	for (int f = 0; f < mesh.faceSlots(); ++f) {
+		const Triangle t = mesh.triangle(f);
+		if (stage.fixed[t[0]] && stage.fixed[t[1]] && stage.fixed[t[2]])
+			continue;
+		const TriangleMeasures measures = measureTriangle(mesh, f);
+		for (int k = 0; k < 3; ++k) {
+			cotangent[3 * f + k] = measures.cotangent[k];
+			normal[t[k]] += measures.areaVector;
+		}
+	}
 	progress.report(0.1, "Contracting");
 
 	// w_L L restricted to the unknowns is M; what the fixed neighbours add is the known part g.
@@ -79,7 +89,7 @@ inline void contract(
 		double sum = 0;
 		known[i] = Point3d(0, 0, 0);
 		mesh.forEachOutgoing(v, [&](int h) {
-			const double w = wL * weight[h];
+			const double w = wL * cotangentWeight(cotangent[h], cotangent[mesh.twin(h)]);
 			const int j = mesh.target(h);
 			sum += w;
 			if (unknown[j] >= 0) {

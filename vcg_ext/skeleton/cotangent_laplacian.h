@@ -9,6 +9,7 @@
 #include "surface_mesh.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -29,45 +30,74 @@ struct SymmetricRows
 	/// y = A x, for three columns at once.
 	void multiply(const std::vector<Point3d>& x, std::vector<Point3d>& y) const
 	{
+		forEachProduct(x, [&](int i, const Point3d& product) { y[i] = product; });
+	}
+
+	/// Calls visit(i, (A x)_i) for each row.
+	template <class Visitor>
+	void forEachProduct(const std::vector<Point3d>& x, Visitor&& visit) const
+	{
 		for (int i = 0; i < size(); ++i) {
 			Point3d sum = x[i] * diagonal[i];
 			for (int k = start[i]; k < start[i + 1]; ++k)
 				sum += x[column[k]] * value[k];
-			y[i] = sum;
+			visit(i, sum);
 		}
 	}
 };
 
+/// What the flow needs to know about a triangle.
+struct TriangleMeasures
+{
+	/// For each half-edge the cotangent of the angle opposite, bounded to [-100, 100], so that a sliver
+	/// cannot stiffen the system.
+	std::array<double, 3> cotangent;
+	/// As SurfaceMesh::areaVector().
+	Point3d areaVector;
+};
+
+inline TriangleMeasures measureTriangle(const SurfaceMesh& mesh, int face)
+{
+	constexpr double largestCotangent = 100;
+	const Triangle t = mesh.triangle(face);
+	const Point3d &a = mesh.position[t[0]], &b = mesh.position[t[1]], &c = mesh.position[t[2]];
+	const Point3d ab = b - a, bc = c - b, ca = a - c;
+	TriangleMeasures measures;
+	measures.areaVector = ca ^ ab;
+	const double doubleArea = measures.areaVector.Norm();
+	const double dot[3] = {-(bc * ca), -(ca * ab), -(ab * bc)};
+	for (int k = 0; k < 3; ++k)
+		measures.cotangent[k] = std::abs(dot[k]) < largestCotangent * doubleArea
+			? dot[k] / doubleArea
+			: std::copysign(largestCotangent, dot[k]);
+	return measures;
+}
+
 /**
- * The cotangent weight of each half-edge's edge: w_ij = (cot(alpha_ij) + cot(beta_ij)) / 2, where
- * alpha and beta are the angles opposite the edge (Desbrun et al. 1999); #half-edges, dimensionless.
+ * The cotangent weight of an edge: w_ij = (cot(alpha_ij) + cot(beta_ij)) / 2, where alpha and beta are
+ * the angles opposite (Desbrun et al. 1999), given their cotangents; dimensionless.
  *
- * Cotangents are bounded to [-100, 100], so that a sliver cannot stiffen the system, and weights
- * to at least 1e-3, so that L stays an M-matrix: the flow then never pushes a vertex outwards.
- * Complexity: O(F).
+ * It is at least 1e-3, so that L stays an M-matrix: the flow then never pushes a vertex outwards.
  */
+inline double cotangentWeight(double cotAlpha, double cotBeta)
+{
+	constexpr double leastWeight = 1e-3;
+	return std::max((cotAlpha + cotBeta) / 2, leastWeight);
+}
+
+/// cotangentWeight() of each half-edge's edge; #half-edges. Complexity: O(F).
 inline std::vector<double> cotangentWeights(const SurfaceMesh& mesh)
 {
-	constexpr double largestCotangent = 100, leastWeight = 1e-3;
 	std::vector<double> cotangent(mesh.halfEdgeSlots(), 0), weight(mesh.halfEdgeSlots(), 0);
 	for (int f = 0; f < mesh.faceSlots(); ++f) {
 		if (!mesh.isFace(f))
 			continue;
-		const Triangle t = mesh.triangle(f);
-		const Point3d* p[3] = {&mesh.position[t[0]], &mesh.position[t[1]], &mesh.position[t[2]]};
-		const double doubleArea = ((*p[1] - *p[0]) ^ (*p[2] - *p[0])).Norm();
-		for (int k = 0; k < 3; ++k) {
-			// The half-edge k runs from corner k to k + 1; the angle opposite is at corner k + 2.
-			const Point3d u = *p[k] - *p[(k + 2) % 3], v = *p[(k + 1) % 3] - *p[(k + 2) % 3];
-			const double dot = u * v;
-			cotangent[3 * f + k] = std::abs(dot) < largestCotangent * doubleArea
-				? dot / doubleArea
-				: std::copysign(largestCotangent, dot);
-		}
+		const TriangleMeasures measures = measureTriangle(mesh, f);
+		std::copy(measures.cotangent.begin(), measures.cotangent.end(), &cotangent[3 * size_t(f)]);
 	}
 	for (int h = 0; h < mesh.halfEdgeSlots(); ++h)
 		if (mesh.isHalfEdge(h))
-			weight[h] = std::max((cotangent[h] + cotangent[mesh.twin(h)]) / 2, leastWeight);
+			weight[h] = cotangentWeight(cotangent[h], cotangent[mesh.twin(h)]);
 	return weight;
 }
 

@@ -23,17 +23,17 @@ using FloatQuad = Eigen::Array4f;
 using FloatQuads = std::vector<FloatQuad, Eigen::aligned_allocator<FloatQuad>>;
 
 /**
- * S ~ L D L^T with unit lower triangular L, rows eliminated in the order of their numbers.
+ * S ~ L D L^T with unit lower triangular L, columns in the order of their numbers.
  *
- * Up-looking (Davis 2005): row k of L is the sparse solution of L y = S(0:k, k), found along the
- * elimination tree. Entries that contribute less than `dropTolerance` of their row's diagonal,
- * y_i^2 / d_i < dropTolerance^2 s_kk, are dropped as they appear. On the flow's matrices that leaves
- * a quarter of the full factor; S is a diagonally dominant M-matrix, so that pivots stay positive,
- * but for rounding where the shift is tiny: they are kept above 1e-7 of the diagonal.
+ * Each column takes the updates of those columns before it that have an entry in its row (left-looking;
+ * Jones and Plassmann, ACM TOMS 21(1), 1995). An entry l_rk that contributes less than
+ * `dropTolerance` of its row's diagonal, l_rk^2 d_k < dropTolerance^2 s_rr, is dropped as it appears.
+ * On the flow's matrices that leaves a fifth of the full factor, and only what is left is ever visited.
+ * S is a diagonally dominant M-matrix, so that pivots stay positive, but for rounding where the shift is
+ * tiny: they are kept above 1e-7 of the diagonal.
  *
  * @throws SolverError if a diagonal entry is not positive, or something is not a number.
- * Complexity: linear in the visited part of the full factor, about O(n log n) on surface meshes in
- * a minimum degree order.
+ * Complexity: linear in the updates, about O(n log n) on surface meshes in a minimum degree order.
  */
 class IncompleteFactor
 {
@@ -48,68 +48,74 @@ public:
 	{
 		const int n = M.size();
 		inverseDiagonal.resize(n);
-		std::vector<float> y(n, 0.f);
-		std::vector<int> parent(n, -1), visited(n, -1), path(n), pattern(n);
-		std::vector<int> firstChunk(n, -1), lastChunk(n, -1), lengths(n, 0);
-		std::vector<Chunk> chunks;
-		chunks.reserve(2 * size_t(n));
-		constexpr int reportEvery = 1 << 13; // the last rows of a large system cost the most
+		start.resize(n + 1);
+		start[0] = 0;
+		entries.reserve(10 * size_t(n));
+		std::vector<Row> rows(n);
+		for (int k = 0; k < n; ++k) {
+			const float own = float(M.diagonal[k] + shift[k]);
+			rows[k].pivot = own;
+			rows[k].least = dropTolerance * dropTolerance * own;
+		}
+		std::vector<int> position(n), nextInChain(n), pattern(n);
+		const auto chain = [&](int j, int nextEntry) {
+			if (position[j] == start[j + 1])
+				return;
+			std::swap(entries[position[j]], entries[nextEntry]);
+			int& first = rows[entries[position[j]].row].chain;
+			nextInChain[j] = first;
+			first = j;
+		};
+		constexpr int reportEvery = 1 << 13; // the last columns of a large system cost the most
 		for (int k = 0; k < n; ++k) {
 			if (k % reportEvery == 0)
 				progress.report(double(k) / n, "Contracting");
-			visited[k] = k;
-			int top = n;
-			for (int e = M.start[k]; e < M.start[k + 1]; ++e) {
-				int i = M.column[e];
-				if (i > k)
-					continue;
-				y[i] += float(M.value[e]);
-				int length = 0;
-				for (; visited[i] != k; i = parent[i]) {
-					if (parent[i] < 0)
-						parent[i] = k;
-					path[length++] = i;
-					visited[i] = k;
-				}
-				while (length > 0)
-					pattern[--top] = path[--length];
-			}
-			const float own = float(M.diagonal[k] + shift[k]);
-			const float threshold = dropTolerance * dropTolerance * own;
-			float pivot = own;
-			for (; top < n; ++top) {
-				const int i = pattern[top];
-				const float yi = y[i];
-				y[i] = 0;
-				const float contribution = yi * yi * inverseDiagonal[i];
-				if (contribution < threshold)
-					continue;
-				for (int c = firstChunk[i], left = lengths[i]; left > 0; c = chunks[c].next) {
-					const Chunk& chunk = chunks[c];
-					const int count = std::min(left, Chunk::capacity);
-					for (int e = 0; e < count; ++e)
-						y[chunk.row[e]] -= chunk.value[e] * yi;
-					left -= count;
-				}
-				pivot -= contribution;
-				const int slot = lengths[i] % Chunk::capacity;
-				if (slot == 0) {
-					const int fresh = int(chunks.size());
-					chunks.emplace_back();
-					(lengths[i] == 0 ? firstChunk[i] : chunks[lastChunk[i]].next) = fresh;
-					lastChunk[i] = fresh;
-				}
-				chunks[lastChunk[i]].row[slot] = k;
-				chunks[lastChunk[i]].value[slot] = yi * inverseDiagonal[i];
-				++lengths[i];
-			}
+			const float own = float(M.diagonal[k] + shift[k]), pivot = rows[k].pivot;
 			if (!(own > 0) || std::isnan(pivot))
 				throw SolverError(
 					"The contraction's linear system could not be factorised: the mesh "
 					"has degenerate triangles. Resample it first.");
-			inverseDiagonal[k] = 1 / std::max(pivot, 1e-7f * own);
+			const float diagonal = std::max(pivot, 1e-7f * own), inverse = 1 / diagonal;
+			inverseDiagonal[k] = inverse;
+			rows[k].pivot = diagonal;
+			int count = 0;
+			const auto add = [&](int r, float value) {
+				Row& row = rows[r];
+				row.value += value;
+				pattern[count] = r; // without a branch, which could not be foretold
+				count += row.stamp != k;
+				row.stamp = k;
+			};
+			for (int e = M.start[k]; e < M.start[k + 1]; ++e)
+				if (M.column[e] > k)
+					add(M.column[e], float(M.value[e]));
+			for (int j = rows[k].chain, next; j >= 0; j = next) {
+				next = nextInChain[j];
+				const int begin = position[j]++, end = start[j + 1];
+				const float y = entries[begin].value * rows[j].pivot;
+				int lowest = begin + 1;
+				for (int e = lowest; e < end; ++e) {
+					add(entries[e].row, -entries[e].value * y);
+					lowest = entries[e].row < entries[lowest].row ? e : lowest;
+				}
+				chain(j, lowest);
+			}
+			position[k] = start[k];
+			int lowest = start[k];
+			for (int i = 0; i < count; ++i) {
+				Row& row = rows[pattern[i]];
+				const float value = row.value, contribution = value * value * inverse;
+				row.value = 0;
+				if (contribution < row.least)
+					continue;
+				row.pivot -= contribution;
+				entries.push_back({pattern[i], value * inverse});
+				if (pattern[i] < entries[lowest].row)
+					lowest = int(entries.size()) - 1;
+			}
+			start[k + 1] = int(entries.size());
+			chain(k, lowest);
 		}
-		flatten(chunks, firstChunk, lengths);
 	}
 
 	/// x <- (L D L^T)^-1 x.
@@ -119,51 +125,37 @@ public:
 		for (int i = 0; i < n; ++i) {
 			const FloatQuad xi = x[i];
 			for (int e = start[i]; e < start[i + 1]; ++e)
-				x[row[e]] -= value[e] * xi;
+				x[entries[e].row] -= entries[e].value * xi;
 		}
 		for (int i = n - 1; i >= 0; --i) {
 			FloatQuad xi = x[i] * inverseDiagonal[i];
 			for (int e = start[i]; e < start[i + 1]; ++e)
-				xi -= value[e] * x[row[e]];
+				xi -= entries[e].value * x[entries[e].row];
 			x[i] = xi;
 		}
 	}
 
 private:
-	/// Columns grow while others do: they are kept in linked pieces, then laid side by side.
-	struct Chunk
+	/// A row while the columns before it are made.
+	struct Row
 	{
-		static constexpr int capacity = 8;
-		int row[capacity];
-		float value[capacity];
-		int next;
+		float pivot;     ///< what is left of its diagonal
+		float least;     ///< entries that take less from it are dropped
+		float value = 0; ///< its entry in the column at hand, if stamped with it
+		int stamp = -1;
+		int chain = -1; ///< the first column with its next entry in this row
+	};
+
+	struct Entry
+	{
+		int row;
+		float value;
 	};
 
 	std::vector<float> inverseDiagonal;
-	std::vector<int> start, row;
-	std::vector<float> value;
-
-	void flatten(const std::vector<Chunk>& chunks, const std::vector<int>& firstChunk,
-		const std::vector<int>& lengths)
-	{
-		const int n = int(lengths.size());
-		start.resize(n + 1);
-		start[0] = 0;
-		for (int i = 0; i < n; ++i)
-			start[i + 1] = start[i] + lengths[i];
-		row.resize(start[n]);
-		value.resize(start[n]);
-		for (int i = 0; i < n; ++i) {
-			int to = start[i];
-			for (int c = firstChunk[i], left = lengths[i]; left > 0; c = chunks[c].next) {
-				const int count = std::min(left, Chunk::capacity);
-				std::copy(chunks[c].row, chunks[c].row + count, row.begin() + to);
-				std::copy(chunks[c].value, chunks[c].value + count, value.begin() + to);
-				to += count;
-				left -= count;
-			}
-		}
-	}
+	/// The entries of L below the diagonal by columns.
+	std::vector<int> start;
+	std::vector<Entry> entries;
 };
 
 } // namespace vcg::tri::mcf
