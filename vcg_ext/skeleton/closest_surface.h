@@ -78,7 +78,7 @@ public:
 	}
 	Hit closest(const Point3d& query) const
 	{
-		return closest(query, faceOfSample[tree.nearest(query)]);
+		return closestFrom(query, faceOfSample[tree.nearest(query)]);
 	}
 
 	/// The closest point that a walk downhill from a face leads to: for queries that moved little.

@@ -35,29 +35,48 @@ inline std::vector<Point3d> ringMeans(const SurfaceMesh& mesh, const std::vector
 	return mean;
 }
 
-/// Euclidean norm of row v of (I - M)^2.
-inline double bilaplacianRowNorm(const SurfaceMesh& mesh, const std::vector<int>& valence, int v)
+/// Euclidean norms of rows of (I - M)^2, one after the other.
+class BilaplacianRows
 {
-	// The row has an entry for v, its ring, and the rings of its ring.
-	std::vector<std::pair<int, double>> row(1, {v, 1});
-	mesh.forEachOutgoing(v, [&](int h) {
-		const int j = mesh.target(h);
-		row.emplace_back(j, -2.0 / valence[v]);
-		mesh.forEachOutgoing(j, [&](int g) {
-			row.emplace_back(mesh.target(g), 1.0 / (double(valence[v]) * valence[j]));
-		});
-	});
-	std::sort(row.begin(), row.end());
-	double squared = 0;
-	for (size_t i = 0; i < row.size();) {
-		double entry = 0;
-		const int column = row[i].first;
-		for (; i < row.size() && row[i].first == column; ++i)
-			entry += row[i].second;
-		squared += entry * entry;
+public:
+	explicit BilaplacianRows(const SurfaceMesh& mesh) :
+			mesh(mesh), valence(mesh.vertexSlots()), entry(mesh.vertexSlots(), 0)
+	{
+		for (int v = 0; v < mesh.vertexSlots(); ++v)
+			valence[v] = mesh.valence(v);
 	}
-	return std::sqrt(squared);
-}
+
+	double norm(int v)
+	{
+		// The row has an entry for v, its ring, and the rings of its ring.
+		add(v, 1);
+		mesh.forEachOutgoing(v, [&](int h) {
+			const int j = mesh.target(h);
+			add(j, -2.0 / valence[v]);
+			const double share = 1.0 / (double(valence[v]) * valence[j]);
+			mesh.forEachOutgoing(j, [&](int g) { add(mesh.target(g), share); });
+		});
+		double squared = 0;
+		for (int column : columns) {
+			squared += entry[column] * entry[column]; // 0 where the column comes again
+			entry[column] = 0;
+		}
+		columns.clear();
+		return std::sqrt(squared);
+	}
+
+private:
+	const SurfaceMesh& mesh;
+	std::vector<int> valence;
+	std::vector<double> entry; ///< of the row at hand, by columns
+	std::vector<int> columns;  ///< that it has, some of them more than once
+
+	void add(int column, double value)
+	{
+		entry[column] += value;
+		columns.push_back(column);
+	}
+};
 
 } // namespace detail
 
@@ -91,9 +110,7 @@ inline std::vector<double> noiseLevel(
 		rest[v] = mesh.position[v] - once[v];
 	progress.report(0.5, what);
 	const std::vector<Point3d> restMean = detail::ringMeans(mesh, rest);
-	std::vector<int> valence(mesh.vertexSlots());
-	for (int v = 0; v < mesh.vertexSlots(); ++v)
-		valence[v] = mesh.valence(v);
+	detail::BilaplacianRows rows(mesh);
 	std::vector<int> size(components, 0), seen(components, 0);
 	for (int c : component)
 		++size[c];
@@ -106,8 +123,8 @@ inline std::vector<double> noiseLevel(
 			continue;
 		const double length = normal[v].Norm();
 		if (length > 0)
-			deviations[c].push_back(std::abs((rest[v] - restMean[v]) * normal[v]) / length
-				/ detail::bilaplacianRowNorm(mesh, valence, v));
+			deviations[c].push_back(
+				std::abs((rest[v] - restMean[v]) * normal[v]) / length / rows.norm(v));
 	}
 	constexpr double deviationOfMedian = 1.4826; // of a normal distribution
 	std::vector<double> sigma(components, 0);

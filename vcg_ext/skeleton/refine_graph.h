@@ -77,20 +77,38 @@ inline CurveSkeleton withoutSpurs(CurveSkeleton skeleton, double least)
 		});
 }
 
+/// The distances of nodes from the surface, each measured once, wherever the node is numbered.
+class KnownClearances
+{
+public:
+	explicit KnownClearances(const ClosestSurface& surface) : surface(surface) {}
+
+	double at(const Point3d& node)
+	{
+		const auto [place, isNew] = known.emplace(node, 0);
+		if (isNew)
+			place->second = surface.clearance(node);
+		return place->second;
+	}
+
+private:
+	const ClosestSurface& surface;
+	std::map<Point3d, double> known;
+};
+
 /// A terminal branch as the balls on it see it: for each node the way from the first one, and the
 /// distance from the surface.
 struct BranchProfile
 {
 	std::vector<double> along, radius;
 
-	BranchProfile(
-		const CurveSkeleton& skeleton, const ClosestSurface& surface, const Branch& branch)
+	BranchProfile(const CurveSkeleton& skeleton, KnownClearances& clearances, const Branch& branch)
 	{
 		for (size_t i = 0; i < branch.nodes.size(); ++i) {
 			const Point3d& p = skeleton.position[branch.nodes[i]];
 			along.push_back(
 				i == 0 ? 0 : along.back() + Distance(p, skeleton.position[branch.nodes[i - 1]]));
-			radius.push_back(std::max(surface.clearance(p), 0.0));
+			radius.push_back(std::max(clearances.at(p), 0.0));
 		}
 	}
 
@@ -120,9 +138,9 @@ struct BranchProfile
  * @param branch from its junction to its tip.
  */
 inline double distinctness(
-	const CurveSkeleton& skeleton, const ClosestSurface& surface, const Branch& branch)
+	const CurveSkeleton& skeleton, KnownClearances& clearances, const Branch& branch)
 {
-	const BranchProfile profile(skeleton, surface, branch);
+	const BranchProfile profile(skeleton, clearances, branch);
 	double most = -1;
 	for (size_t from = 0; from < profile.last(); ++from)
 		if (const size_t to = profile.oneRadiusOn(from); to <= profile.last())
@@ -137,9 +155,10 @@ inline double distinctness(
 inline CurveSkeleton withoutCornerBranches(
 	CurveSkeleton skeleton, const ClosestSurface& surface, double least)
 {
+	KnownClearances clearances(surface);
 	return withoutTerminalBranches(
 		std::move(skeleton), least, [&](const CurveSkeleton& s, const Branch& branch) {
-			return distinctness(s, surface, branch);
+			return distinctness(s, clearances, branch);
 		});
 }
 
@@ -155,12 +174,13 @@ inline CurveSkeleton withoutCornerEnds(
 	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
 	std::vector<int> target(skeleton.position.size());
 	std::iota(target.begin(), target.end(), 0);
+	KnownClearances clearances(surface);
 	for (Branch branch : skeletonBranches(skeleton)) {
 		for (int side = 0; side < 2; ++side) {
 			std::reverse(branch.nodes.begin(), branch.nodes.end());
 			if (neighbours[branch.last()].size() != 1)
 				continue;
-			const BranchProfile profile(skeleton, surface, branch);
+			const BranchProfile profile(skeleton, clearances, branch);
 			size_t limb = profile.last();
 			for (size_t from = 0; from < profile.last(); ++from)
 				if (const size_t to = profile.oneRadiusOn(from);
