@@ -7,9 +7,11 @@
 #define VCG_MCF_CLOSEST_SURFACE_H
 
 #include "point_tree.h"
+#include "progress.h"
 #include "shrinking_balls.h"
 #include "surface_mesh.h"
 #include "surface_tracking.h"
+#include "ticker.h"
 
 #include <algorithm>
 #include <cmath>
@@ -52,10 +54,12 @@ public:
 	 * @param surface   kept by reference.
 	 * @param vertices  of the components to look at, whole ones.
 	 * @param spacing   triangles with longer edges get samples inside.
-	 * Complexity: O(S log S) for S samples.
+	 * @throws Cancelled. Complexity: O(S log S) for S samples.
 	 */
-	ClosestSurface(const SurfaceMesh& surface, const std::vector<int>& vertices, double spacing) :
-			surface(surface), tree(samples(vertices, spacing))
+	ClosestSurface(const SurfaceMesh& surface, const std::vector<int>& vertices, double spacing,
+		const Progress& progress = Progress()) :
+			surface(surface),
+			tree(samples(vertices, spacing, progress.part(0, 0.3)), progress.part(0.3, 1))
 	{
 		for (int v : vertices)
 			box.Add(surface.position[v]);
@@ -176,18 +180,24 @@ private:
 	PointTree tree;
 	Box3d box;
 
-	std::vector<Point3d> samples(const std::vector<int>& vertices, double spacing)
+	std::vector<Point3d> samples(
+		const std::vector<int>& vertices, double spacing, const Progress& progress)
 	{
+		detail::Ticker ticker(progress, "Sorting the surface", int(vertices.size()));
 		std::vector<Point3d> points;
+		points.reserve(vertices.size());
+		faceOfSample.reserve(vertices.size());
 		for (int v : vertices) {
 			points.push_back(surface.position[v]);
 			faceOfSample.push_back(surface.outgoing(v) / 3);
 		}
-		for (int v : vertices)
+		for (int v : vertices) {
+			ticker.tick();
 			surface.forEachOutgoing(v, [&](int h) {
 				if (h % 3 == 0) // each face once
 					sampleInside(h / 3, spacing, points);
 			});
+		}
 		return points;
 	}
 

@@ -56,9 +56,13 @@ inline CoarsenedSurface coarsenedForFlow(
 	CoarsenedSurface result;
 	Numbering number = breadthFirstOrder(surface, {}, progress.part(0, 0.2));
 	SurfaceMesh& mesh = result.mesh;
+	const auto ordered = [&] { progress.report(0.2, "Ordering the surface"); };
+	ordered();
 	mesh = surface.renumbered(number.vertex, number.face);
+	ordered();
 	result.diagonal = componentDiagonals(mesh, number.component, size_t(number.components));
 	result.area = componentAreas(mesh, number.component, size_t(number.components));
+	ordered();
 	std::vector<double> length;
 	for (double diagonal : result.diagonal)
 		length.push_back(coarseningOfEpsilon * epsilon * diagonal);

@@ -19,31 +19,43 @@ namespace vcg::tri::mcf {
 
 namespace detail {
 
-/// For each vertex the mean of `values` over its ring, (M x)_i = sum_j x_j / valence(i).
-inline std::vector<Point3d> ringMeans(const SurfaceMesh& mesh, const std::vector<Point3d>& values)
+/// The means over the rings of a surface.
+class RingMeans
 {
-	std::vector<Point3d> mean(values.size());
-	for (int v = 0; v < mesh.vertexSlots(); ++v) {
-		Point3d sum(0, 0, 0);
-		int count = 0;
-		mesh.forEachOutgoing(v, [&](int h) {
-			sum += values[mesh.target(h)];
-			++count;
-		});
-		mean[v] = sum / double(count);
+public:
+	/// @pre mesh is compact.
+	explicit RingMeans(const SurfaceMesh& mesh) : mesh(mesh), valences(mesh.vertexSlots(), 0)
+	{
+		for (int h = 0; h < mesh.halfEdgeSlots(); ++h)
+			++valences[mesh.origin(h)];
 	}
-	return mean;
-}
+
+	int valence(int v) const { return valences[v]; }
+
+	/// For each vertex the mean of `values` over its ring, (M x)_i = sum_j x_j / valence(i).
+	std::vector<Point3d> of(const std::vector<Point3d>& values) const
+	{
+		// In the order of the half-edges, which lie side by side, unlike those of a ring.
+		std::vector<Point3d> mean(values.size(), Point3d(0, 0, 0));
+		for (int h = 0; h < mesh.halfEdgeSlots(); ++h)
+			mean[mesh.origin(h)] += values[mesh.target(h)];
+		for (size_t v = 0; v < mean.size(); ++v)
+			mean[v] /= double(valences[v]);
+		return mean;
+	}
+
+private:
+	const SurfaceMesh& mesh;
+	std::vector<int> valences;
+};
 
 /// Euclidean norms of rows of (I - M)^2, one after the other.
 class BilaplacianRows
 {
 public:
-	explicit BilaplacianRows(const SurfaceMesh& mesh) :
-			mesh(mesh), valence(mesh.vertexSlots()), entry(mesh.vertexSlots(), 0)
+	BilaplacianRows(const SurfaceMesh& mesh, const RingMeans& rings) :
+			mesh(mesh), rings(rings), entry(mesh.vertexSlots(), 0)
 	{
-		for (int v = 0; v < mesh.vertexSlots(); ++v)
-			valence[v] = mesh.valence(v);
 	}
 
 	double norm(int v)
@@ -52,8 +64,8 @@ public:
 		add(v, 1);
 		mesh.forEachOutgoing(v, [&](int h) {
 			const int j = mesh.target(h);
-			add(j, -2.0 / valence[v]);
-			const double share = 1.0 / (double(valence[v]) * valence[j]);
+			add(j, -2.0 / rings.valence(v));
+			const double share = 1.0 / (double(rings.valence(v)) * rings.valence(j));
 			mesh.forEachOutgoing(j, [&](int g) { add(mesh.target(g), share); });
 		});
 		double squared = 0;
@@ -67,7 +79,7 @@ public:
 
 private:
 	const SurfaceMesh& mesh;
-	std::vector<int> valence;
+	const RingMeans& rings;
 	std::vector<double> entry; ///< of the row at hand, by columns
 	std::vector<int> columns;  ///< that it has, some of them more than once
 
@@ -98,19 +110,22 @@ inline std::vector<double> noiseLevel(
 	progress.report(0, what);
 	int components = 0;
 	const std::vector<int> component = connectedComponents(mesh, &components);
+	progress.report(0.05, what);
+	const detail::RingMeans rings(mesh);
 	std::vector<Point3d> normal = mesh.vertexNormals();
 	for (int round = 0; round < 3; ++round) {
 		progress.report(0.1 + 0.1 * round, what);
-		normal = detail::ringMeans(mesh, normal);
+		normal = rings.of(normal);
 	}
 	progress.report(0.4, what);
-	const std::vector<Point3d> once = detail::ringMeans(mesh, mesh.position);
+	const std::vector<Point3d> once = rings.of(mesh.position);
 	std::vector<Point3d> rest(once.size());
 	for (size_t v = 0; v < rest.size(); ++v)
 		rest[v] = mesh.position[v] - once[v];
 	progress.report(0.5, what);
-	const std::vector<Point3d> restMean = detail::ringMeans(mesh, rest);
-	detail::BilaplacianRows rows(mesh);
+	const std::vector<Point3d> restMean = rings.of(rest);
+	progress.report(0.55, what);
+	detail::BilaplacianRows rows(mesh, rings);
 	std::vector<int> size(components, 0), seen(components, 0);
 	for (int c : component)
 		++size[c];
@@ -153,10 +168,11 @@ inline SurfaceMesh smoothed(
 	constexpr double mu = 1 / (passBand - 1 / lambda);
 	const std::vector<int> component = connectedComponents(mesh);
 	const int most = rounds.empty() ? 0 : *std::max_element(rounds.begin(), rounds.end());
+	const detail::RingMeans rings(mesh);
 	for (int round = 0; round < most; ++round) {
 		progress.report(double(round) / most, "Smoothing noise");
 		for (double factor : {lambda, mu}) {
-			const std::vector<Point3d> mean = detail::ringMeans(mesh, mesh.position);
+			const std::vector<Point3d> mean = rings.of(mesh.position);
 			for (int v = 0; v < mesh.vertexSlots(); ++v)
 				if (round < rounds[component[v]])
 					mesh.position[v] += (mean[v] - mesh.position[v]) * factor;
@@ -189,9 +205,12 @@ inline NoiseReport measureNoise(const SurfaceMesh& mesh, const Progress& progres
 	constexpr double least = 3e-4, leastOfEdge = 0.05, strong = 1.5e-3;
 	constexpr double coarsestEdge = 0.03;
 	constexpr int fewRounds = 10, manyRounds = 40;
-	const std::vector<double> sigma = noiseLevel(mesh, progress);
+	const char* const what = "Measuring the noise";
+	const std::vector<double> sigma = noiseLevel(mesh, progress.part(0, 0.9));
+	progress.report(0.9, what);
 	int components = 0;
 	const std::vector<int> component = connectedComponents(mesh, &components);
+	progress.report(0.95, what);
 	const std::vector<double> diagonal = componentDiagonals(mesh, component, components);
 	std::vector<double> edgeSum(components, 0);
 	std::vector<int> edgeCount(components, 0);

@@ -113,11 +113,14 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 		}
 		skeleton = withWholeJunctions(std::move(skeleton), parameters.junctionProminence);
 		skeleton = evenlySampled(skeleton, surface, parameters.spacing);
+		progress.report(double(done) / total, what);
 	};
 	const auto extend = [&] {
 		measureBranchEnds(skeleton, surface);
 		extendTips(skeleton, surface, tips);
+		progress.report(double(done) / total, what);
 	};
+	progress.report(0, what);
 	for (size_t v = 0; v < skeleton.position.size(); ++v)
 		skeleton.radius[v] = std::max(surface.clearance(skeleton.position[v]), 0.0);
 	moveInside(skeleton, surface);
@@ -215,8 +218,10 @@ inline CurveSkeleton refine(const CurveSkeleton& curve, const SurfaceMesh& surfa
 		if (v >= int(curve.position.size()))
 			throw InvalidInput("The skeleton's correspondence names nodes that it does not have.");
 
+	progress.report(0, "Refining the skeleton");
 	int components = 0;
 	const std::vector<int> component = connectedComponents(surface, &components);
+	progress.report(0, "Refining the skeleton");
 	const std::vector<int> componentOfNode = refining::componentOfNodes(curve, component);
 	std::vector<std::vector<int>> vertices(components), nodes(components), edges(components);
 	std::vector<Box3d> box(components);
@@ -254,9 +259,10 @@ inline CurveSkeleton refine(const CurveSkeleton& curve, const SurfaceMesh& surfa
 		part.radius.assign(part.position.size(), 0);
 		for (int e : edges[c])
 			part.edges.push_back({number[curve.edges[e][0]], number[curve.edges[e][1]]});
-		const ClosestSurface closest(unit, vertices[c], sampleSpacing);
-		part = refining::refineComponent(part, closest, parameters,
-			progress.part(double(c) / components, double(c + 1) / components));
+		const Progress ofComponent =
+			progress.part(double(c) / components, double(c + 1) / components);
+		const ClosestSurface closest(unit, vertices[c], sampleSpacing, ofComponent.part(0, 0.1));
+		part = refining::refineComponent(part, closest, parameters, ofComponent.part(0.1, 1));
 
 		const std::vector<std::vector<int>> neighbours = part.neighbours();
 		const int first = int(refined.position.size());

@@ -65,7 +65,9 @@ inline SurfaceMesh resample(const SurfaceMesh& surface,
 		return same;
 	}
 	// The input as the passes like it: neighbours near each other, no triangles without a normal.
+	const char* const what = "Ordering the surface";
 	SurfaceMesh reference = surface.renumbered(number.vertex, number.face);
+	progress.report(0.1, what);
 	const auto lengthAt = [&](int v) { return targetLengthOfComponent[number.component[v]]; };
 	double expected = 0;
 	for (int f = 0; f < reference.faceSlots(); ++f) {
@@ -76,6 +78,7 @@ inline SurfaceMesh resample(const SurfaceMesh& surface,
 		throw InvalidParameter("Parameter target_length is too small: the surface would need "
 			+ std::to_string(std::llround(expected / 1e6)) + " million vertices.");
 	removeThinTriangles(reference, lengthAt);
+	progress.report(0.1, what);
 	detail::IsotropicRemesher remesher(reference, number.component, targetLengthOfComponent);
 	remesher.coarsen(progress.part(0.1, 0.4));
 	remesher.refine(progress.part(0.4, 0.5));
