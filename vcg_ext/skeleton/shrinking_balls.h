@@ -93,10 +93,11 @@ public:
 
 	bool hold(const MaximalBall& ball) const
 	{
-		for (size_t i = 0; i < std::min(added, balls.size()); ++i)
-			if (Distance(ball.centre(), balls[i].centre) + ball.radius() - balls[i].radius
-				<= negligible * ball.radius())
+		for (size_t i = 0; i < std::min(added, balls.size()); ++i) {
+			const double room = negligible * ball.radius() - ball.radius() + balls[i].radius;
+			if (room >= 0 && SquaredDistance(ball.centre(), balls[i].centre) <= room * room)
 				return true;
+		}
 		return false;
 	}
 

@@ -39,6 +39,7 @@ inline Stage step(Stage stage, const Parameters& parameters, const Progress& pro
 	if (stage.converged)
 		return stage;
 	SurfaceMesh& mesh = stage.mesh;
+	const int before = mesh.vertexSlots();
 	contract(stage, parameters, progress.part(0, 0.8));
 	MergeForest forest(mesh.vertexSlots());
 	const std::vector<int> candidates =
@@ -47,12 +48,12 @@ inline Stage step(Stage stage, const Parameters& parameters, const Progress& pro
 	fixDegenerateVertices(stage, candidates, parameters.epsilon);
 	fixArrivedSheets(stage, parameters.epsilon);
 
-	std::vector<int> survivor(stage.node.size());
-	for (size_t s = 0; s < stage.node.size(); ++s)
-		survivor[s] = forest.find(stage.node[s]);
 	const std::vector<int> renumbered = mesh.compact();
-	for (size_t s = 0; s < stage.node.size(); ++s)
-		stage.node[s] = renumbered[survivor[s]];
+	std::vector<int> mergedInto(before);
+	for (int v = 0; v < before; ++v)
+		mergedInto[v] = renumbered[forest.find(v)];
+	for (int& node : stage.node)
+		node = mergedInto[node];
 	for (size_t v = 0; v < renumbered.size(); ++v) {
 		const int to = renumbered[v];
 		if (to < 0)
