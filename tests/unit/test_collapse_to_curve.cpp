@@ -182,6 +182,26 @@ TEST(CollapseToCurve, ShortEdgesGoUnlessACycleWould)
 	EXPECT_EQ(collapseToCurve(stageAfter(shapes::capsule(), 100), 10).edges.size(), 1u);
 }
 
+TEST(CollapseToCurve, DoesNotZigzag)
+{
+	// All in all, a plane convex curve turns by one full turn, a zigzag by more.
+	shapes::Soup soup = shapes::torus(2, 0.5, 96, 24);
+	std::mt19937 random(1);
+	for (Point3d& p : soup.points)
+		for (int k = 0; k < 3; ++k)
+			p[k] += 0.1 * (double(random() % 1000) / 500 - 1);
+	const CurveSkeleton skeleton = collapseToCurve(stageAfter(soup, 100), 0.002);
+	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
+	double turn = 0;
+	for (size_t v = 0; v < neighbours.size(); ++v) {
+		ASSERT_EQ(neighbours[v].size(), 2u);
+		const Point3d in = skeleton.position[v] - skeleton.position[neighbours[v][0]];
+		const Point3d out = skeleton.position[neighbours[v][1]] - skeleton.position[v];
+		turn += std::atan2((in ^ out).Norm(), in * out);
+	}
+	EXPECT_LT(turn, 1.05 * 2 * M_PI);
+}
+
 TEST(CollapseToCurve, IsTheSameWhateverTheScale)
 {
 	const SurfaceMesh mesh = shapes::plate(2).mesh();

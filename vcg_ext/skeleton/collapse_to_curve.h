@@ -16,7 +16,9 @@
 #include <algorithm>
 #include <functional>
 #include <queue>
+#include <set>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace vcg::tri::mcf {
@@ -130,10 +132,40 @@ inline void contractShortCurveEdges(GluedComplex& complex, const Stage& stage, d
 	}
 }
 
+/**
+ * Takes the zigzag out of the curves that the order of the collapses leaves, of the size of an edge:
+ * twice, each node with two neighbours moves half the way to their middle, but no farther than a few
+ * times `shortestEdge`: what is larger is the shape's. Held nodes, tips and junctions stay.
+ */
+inline void straightenZigzag(GluedComplex& complex, const Stage& stage, double shortestEdge)
+{
+	constexpr int rounds = 2;
+	constexpr double farthest = 4;
+	for (int round = 0; round < rounds; ++round) {
+		std::vector<std::pair<int, Point3d>> moved;
+		for (int A = 0; A < stage.mesh.vertexSlots(); ++A) {
+			if (complex.find(A) != A || complex.curveNeighbours(A).size() != 2 || complex.isHeld(A))
+				continue;
+			const std::set<int>& ends = complex.curveNeighbours(A);
+			const Point3d middle =
+				(complex.position(*ends.begin()) + complex.position(*ends.rbegin())) / 2;
+			Point3d move = (middle - complex.position(A)) / 2;
+			const double most = farthest * shortestEdge * stage.diagonal[stage.component[A]];
+			const double length = move.Norm();
+			if (length > most)
+				move *= most / length;
+			moved.emplace_back(A, complex.position(A) + move);
+		}
+		for (const auto& [A, place] : moved)
+			complex.moveTo(A, place);
+	}
+}
+
 } // namespace detail
 
 /**
- * Turns a stage into its curve skeleton: repeatedly collapses the shortest edge that has faces.
+ * Turns a stage into its curve skeleton: repeatedly collapses the shortest edge that has faces, then
+ * straightens the zigzag that this leaves.
  *
  * The stage need not have converged; its sheets and volumes become curves too. The result has a
  * component for each component of the stage and as many cycles as its genus (see GluedComplex), no
@@ -149,6 +181,7 @@ inline CurveSkeleton collapseToCurve(
 	GluedComplex complex(stage.mesh, stage.held);
 	detail::contractAllFaces(complex, progress.part(0, 0.9));
 
+	detail::straightenZigzag(complex, stage, shortestEdge);
 	detail::contractShortCurveEdges(complex, stage, shortestEdge);
 
 	CurveSkeleton skeleton;

@@ -62,6 +62,9 @@ public:
 	int find(int A) { return nodes.find(A); }
 	/// The mean of the vertices that have merged into the node, of the held ones if there are any.
 	const Point3d& position(int A) const { return positions[A]; }
+	/// Whether held vertices have merged into the node.
+	bool isHeld(int A) const { return heldWeight[A] > 0; }
+	void moveTo(int A, const Point3d& place) { positions[A] = place; }
 	double squaredLength(int A, int B) const { return SquaredDistance(positions[A], positions[B]); }
 	/// Nodes joined to A by curve edges.
 	const std::set<int>& curveNeighbours(int A) const { return curve[A]; }
