@@ -60,7 +60,8 @@ public:
 	int nodeSlots() const { return int(copies.size()); }
 	/// The node into which node A has merged.
 	int find(int A) { return nodes.find(A); }
-	/// The mean of the vertices that have merged into the node, of the held ones if there are any.
+	/// The mean of the vertices that have merged into the node, of the held ones if there are any; or
+	/// where moveTo() has put it.
 	const Point3d& position(int A) const { return positions[A]; }
 	/// Whether held vertices have merged into the node.
 	bool isHeld(int A) const { return heldWeight[A] > 0; }
