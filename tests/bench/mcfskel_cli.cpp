@@ -18,6 +18,7 @@
 #include <skeleton/target_length.h>
 
 #include <algorithm>
+#include <chrono>
 #include <exception>
 #include <functional>
 #include <iostream>
@@ -50,6 +51,7 @@ const char* const usage =
 	"  --spur-prominence R       tips that stick out less are removed\n"
 	"  --junction-prominence R   junctions that stick out less are merged\n"
 	"  --tip-distinctness R      branches into corners that gain less are removed\n"
+	"  --progress-gaps           report the longest silence between two progress reports\n"
 	"  --verbose                 a line for each iteration, and the notes of the input check\n";
 
 struct Options
@@ -57,6 +59,7 @@ struct Options
 	std::string mesh, skeleton, surface, stage;
 	bool resampleOnly = false;
 	bool verbose = false;
+	bool progressGaps = false;
 	mcf::Parameters parameters;
 	mcf::RefineParameters refinement;
 };
@@ -77,6 +80,7 @@ Options parse(int argc, char** argv)
 	mcf::RefineParameters& r = options.refinement;
 	const std::map<std::string, std::function<void()>> flags = {
 		{"--no-resample", [&] { p.resample = false; }},
+		{"--progress-gaps", [&] { options.progressGaps = true; }},
 		{"--resample-only", [&] { options.resampleOnly = true; }},
 		{"--no-denoise", [&] { p.denoise = false; }},
 		{"--no-refine", [&] { p.refine = false; }},
@@ -138,6 +142,39 @@ void describe(const mcf::Stage& stage)
 			  << ", fixed " << stage.fixedFraction() << '\n';
 }
 
+/// Listens to progress reports for the longest silence between two of them: what a click on Cancel may
+/// have to wait for.
+class Listener
+{
+public:
+	mcf::Progress progress()
+	{
+		return mcf::Progress([this](int, const char* what) {
+			hear(what);
+			return true;
+		});
+	}
+
+	double longestMs() const { return longest; }
+	const std::string& endedBy() const { return what; }
+
+private:
+	using Clock = std::chrono::steady_clock;
+	Clock::time_point last = Clock::now();
+	double longest = 0;
+	std::string what;
+
+	void hear(const char* now)
+	{
+		const double ms = std::chrono::duration<double, std::milli>(Clock::now() - last).count();
+		if (ms > longest) {
+			longest = ms;
+			what = now;
+		}
+		last = Clock::now();
+	}
+};
+
 void run(const Options& options)
 {
 	const mcf::Parameters& parameters = options.parameters;
@@ -147,8 +184,10 @@ void run(const Options& options)
 	report.add("program", "mcfskel").add("mesh", options.mesh);
 	report.add("input_vertices", soup.points.size());
 
+	Listener listener;
+	const mcf::Progress progress = options.progressGaps ? listener.progress() : mcf::Progress();
 	bench::Stopwatch watch;
-	mcf::CheckedSurface checked = mcf::checkedSurface(soup.points, soup.triangles);
+	mcf::CheckedSurface checked = mcf::checkedSurface(soup.points, soup.triangles, progress);
 	seconds.add("check", watch.lap());
 	if (options.verbose)
 		for (const std::string& note : checked.notes)
@@ -157,12 +196,13 @@ void run(const Options& options)
 
 	watch.lap();
 	if (parameters.resample) {
-		const mcf::NoiseReport noise = mcf::measureNoise(checked.mesh);
+		const mcf::NoiseReport noise = mcf::measureNoise(checked.mesh, progress);
 		report.add("noise", noise.level);
 		if (parameters.denoise)
-			checked.mesh = mcf::smoothed(std::move(checked.mesh), noise.rounds);
-		checked.mesh = mcf::resample(checked.mesh,
-			mcf::defaultTargetLength(checked.mesh, parameters), parameters.resampleIterations);
+			checked.mesh = mcf::smoothed(std::move(checked.mesh), noise.rounds, progress);
+		checked.mesh =
+			mcf::resample(checked.mesh, mcf::defaultTargetLength(checked.mesh, parameters),
+				parameters.resampleIterations, progress);
 	}
 	seconds.add("resample", watch.lap());
 	const mcf::SurfaceMesh& surface = checked.mesh;
@@ -174,17 +214,17 @@ void run(const Options& options)
 
 	if (!options.resampleOnly) {
 		watch.lap();
-		mcf::Stage start = mcf::firstStage(surface, parameters);
+		mcf::Stage start = mcf::firstStage(surface, parameters, nullptr, progress);
 		const auto polesMissing = std::count_if(
 			start.poleRadius.begin(), start.poleRadius.end(), [](double r) { return r < 0; });
 		seconds.add("poles", watch.lap());
 		const mcf::Stage stage = mcf::contractToSkeleton(
-			std::move(start), parameters, mcf::Progress(), options.verbose ? describe : nullptr);
+			std::move(start), parameters, progress, options.verbose ? describe : nullptr);
 		seconds.add("contraction", watch.lap());
-		mcf::CurveSkeleton skeleton = mcf::collapseToCurve(stage);
+		mcf::CurveSkeleton skeleton = mcf::collapseToCurve(stage, 1e-4, progress);
 		seconds.add("conversion", watch.lap());
 		if (parameters.refine)
-			skeleton = mcf::refine(skeleton, surface, options.refinement);
+			skeleton = mcf::refine(skeleton, surface, options.refinement, progress);
 		seconds.add("refine", watch.lap());
 
 		const mcf::SkeletonStatistics counts = mcf::statistics(skeleton);
@@ -208,6 +248,9 @@ void run(const Options& options)
 		if (!options.skeleton.empty())
 			bench::writeObj(toCurve(skeleton), options.skeleton);
 	}
+	if (options.progressGaps)
+		report.add("longest_silence_ms", listener.longestMs())
+			.add("silence_ended_by", listener.endedBy());
 	report.add("seconds", seconds).add("peak_mb", bench::peakMemory());
 	std::cout << report.text() << std::endl;
 }
