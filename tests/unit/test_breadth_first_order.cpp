@@ -76,8 +76,30 @@ TEST(BreadthFirstOrder, FindsTheComponentsInTheirOrder)
 	// Seeds decide otherwise.
 	std::vector<int> seeds(count, -1);
 	for (int v = 0; v < mesh.vertexSlots(); ++v)
-		seeds[count - 1 - component[v]] = v;
+		seeds[count - 1 - component[v]] = mesh.outgoing(v);
 	const Numbering reversed = breadthFirstOrder(mesh, seeds);
 	for (int v = 0; v < mesh.vertexSlots(); ++v)
 		ASSERT_EQ(reversed.component[reversed.vertex[v]], count - 1 - component[v]);
+}
+
+TEST(BreadthFirstOrder, DoesNotDependOnTheNumberingThereWas)
+{
+	// Without symmetry, so that each place is one of a kind.
+	const shapes::Soup soup = shapes::transformed(shapes::sphere(3), [](const vcg::Point3d& p) {
+		return vcg::Point3d(2 * p[0] + 0.1 * p[1], p[1] + 0.1 * p[2] * p[2], 0.7 * p[2]);
+	});
+	const auto ordered = [](const SurfaceMesh& mesh) {
+		const Numbering number =
+			breadthFirstOrder(mesh, leastHalfEdges(mesh, connectedComponents(mesh), 1));
+		return mesh.renumbered(number.vertex, number.face, number.firstCorner);
+	};
+	shapes::Soup other = shapes::shuffled(soup);
+	for (size_t f = 0; f < other.triangles.size(); ++f) {
+		Triangle& t = other.triangles[f];
+		std::rotate(t.begin(), t.begin() + f % 3, t.end());
+	}
+	const SurfaceMesh mesh = ordered(soup.mesh()), copy = ordered(other.mesh());
+	EXPECT_EQ(structureError(mesh), "");
+	EXPECT_EQ(mesh.position, copy.position);
+	EXPECT_EQ(mesh.triangles(), copy.triangles());
 }

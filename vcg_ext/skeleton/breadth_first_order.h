@@ -21,6 +21,9 @@ struct Numbering
 	/// For each new vertex id its connected component, in the order in which they were found.
 	std::vector<int> component;
 	int components = 0;
+	/// For each face slot the corner from which it was found: the same one, whatever the corners'
+	/// order was before.
+	std::vector<char> firstCorner;
 };
 
 /**
@@ -28,8 +31,12 @@ struct Numbering
  * of their vertices. Passes over such a mesh are up to twice as fast as over one whose numbering
  * is random or has grown by splits.
  *
- * @param seeds a vertex of each component, in the order that the components shall have; or empty
- *              for the order of connectedComponents(), by lowest vertex.
+ * The order depends on the seeds and on how the triangles hang together, not on the numbering that
+ * there was: rings begin with the edge along which their vertex was reached.
+ *
+ * @param seeds a half-edge of each component, whose origin comes first, in the order that the
+ *              components shall have; or empty for the order of connectedComponents(), by lowest
+ *              vertex.
  * @throws Cancelled
  * Complexity: O(V + F).
  */
@@ -41,39 +48,75 @@ inline Numbering breadthFirstOrder(const SurfaceMesh& mesh, const std::vector<in
 	number.vertex.assign(mesh.vertexSlots(), -1);
 	number.face.assign(mesh.faceSlots(), -1);
 	number.component.reserve(mesh.vertexCount());
-	std::vector<int> order;
+	number.firstCorner.assign(mesh.faceSlots(), 0);
+	std::vector<int> order; // of the vertices, each as the half-edge that its ring begins with
 	order.reserve(mesh.vertexCount());
-	const auto reach = [&](int v) {
-		if (number.vertex[v] < 0) {
-			number.vertex[v] = int(order.size());
-			order.push_back(v);
+	const auto reach = [&](int first) {
+		int& v = number.vertex[mesh.origin(first)];
+		if (v < 0) {
+			v = int(order.size());
+			order.push_back(first);
 			number.component.push_back(number.components);
 		}
 	};
 	size_t next = 0;
 	int faces = 0;
 	const auto addComponent = [&](int seed) {
-		if (!mesh.isVertex(seed) || number.vertex[seed] >= 0)
+		if (number.vertex[mesh.origin(seed)] >= 0)
 			return;
 		reach(seed);
 		for (; next < order.size(); ++next) {
 			if (next % reportEvery == 0)
 				progress.report(double(next) / mesh.vertexCount(), "Ordering the surface");
-			mesh.forEachOutgoing(order[next], [&](int h) {
-				reach(mesh.target(h));
-				if (number.face[h / 3] < 0)
+			int h = order[next];
+			do {
+				reach(mesh.twin(h));
+				if (number.face[h / 3] < 0) {
 					number.face[h / 3] = faces++;
-			});
+					number.firstCorner[h / 3] = char(h % 3);
+				}
+				h = mesh.rotated(h);
+			} while (h != order[next]);
 		}
 		++number.components;
 	};
 	if (seeds.empty())
-		for (int v = 0; v < mesh.vertexSlots(); ++v)
-			addComponent(v);
+		for (int v = 0; v < mesh.vertexSlots(); ++v) {
+			if (mesh.isVertex(v))
+				addComponent(mesh.outgoing(v));
+		}
 	else
-		for (int v : seeds)
-			addComponent(v);
+		for (int h : seeds)
+			addComponent(h);
 	return number;
+}
+
+/**
+ * Seeds for breadthFirstOrder() that depend on the places of the vertices only: of each component
+ * the half-edge out of the vertex with the least coordinates (x before y before z) to its neighbour
+ * with the least.
+ * @param component of each vertex slot, see connectedComponents(). Complexity: O(V).
+ */
+inline std::vector<int> leastHalfEdges(
+	const SurfaceMesh& mesh, const std::vector<int>& component, int components)
+{
+	const auto before = [&](int v, int w) {
+		const Point3d &p = mesh.position[v], &q = mesh.position[w];
+		return p[0] != q[0] ? p[0] < q[0] : p[1] != q[1] ? p[1] < q[1] : p[2] < q[2];
+	};
+	std::vector<int> least(components, -1);
+	for (int v = 0; v < mesh.vertexSlots(); ++v)
+		if (mesh.isVertex(v) && (least[component[v]] < 0 || before(v, least[component[v]])))
+			least[component[v]] = v;
+	for (int& seed : least) {
+		int best = mesh.outgoing(seed);
+		mesh.forEachOutgoing(seed, [&](int h) {
+			if (before(mesh.target(h), mesh.target(best)))
+				best = h;
+		});
+		seed = best;
+	}
+	return least;
 }
 
 /// What `ofVertex` says about each vertex slot, in a new order of `count` vertices.

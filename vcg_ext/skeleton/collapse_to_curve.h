@@ -12,6 +12,7 @@
 #include "progress.h"
 #include "skeleton_radius.h"
 #include "stage.h"
+#include "stage_frames.h"
 
 #include <algorithm>
 #include <functional>
@@ -171,13 +172,18 @@ inline void straightenZigzag(GluedComplex& complex, const Stage& stage, double s
  * component for each component of the stage and as many cycles as its genus (see GluedComplex), no
  * double edge and no edge of zero length but for a body that is a point in floating point.
  *
+ * @param given    the stage; what is shortest is judged in the shape's own coordinates, see
+ *        StageFrames.
  * @param shortestEdge edges shorter than this fraction of the component's diagonal are contracted
  *        at the end, where no cycle vanishes by it.
  * @throws SolverError, Cancelled. Complexity: O(V log V).
  */
 inline CurveSkeleton collapseToCurve(
-	const Stage& stage, double shortestEdge = 1e-4, const Progress& progress = Progress())
+	const Stage& given, double shortestEdge = 1e-4, const Progress& progress = Progress())
 {
+	StageFrames frames(given);
+	Stage stage = given;
+	frames.enter(stage);
 	GluedComplex complex(stage.mesh, stage.held);
 	detail::contractAllFaces(complex, progress.part(0, 0.9));
 
@@ -189,7 +195,7 @@ inline CurveSkeleton collapseToCurve(
 	for (int A = 0; A < complex.nodeSlots(); ++A)
 		if (complex.find(A) == A) {
 			number[A] = int(skeleton.position.size());
-			skeleton.position.push_back(complex.position(A));
+			skeleton.position.push_back(frames.out(stage.component[A], complex.position(A)));
 		}
 	for (int A = 0; A < complex.nodeSlots(); ++A)
 		if (number[A] >= 0)

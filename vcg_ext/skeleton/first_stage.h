@@ -40,7 +40,7 @@ struct CoarsenedSurface
 	std::vector<int> node;
 	/// Connected component of each vertex of `mesh`, in the order of connectedComponents().
 	std::vector<int> component;
-	/// Bounding box diagonal and area of each component of the surface.
+	/// Diagonal, see componentDiagonals(), and area of each component of the surface.
 	std::vector<double> diagonal, area;
 };
 

@@ -21,7 +21,8 @@ enum class PoleMethod {
 
 /**
  * What the user may choose. Lengths are fractions of the bounding box diagonal of a connected
- * component, so that each component of a scene is treated as it would be alone.
+ * component, so that each component of a scene is treated as it would be alone. The box is that along
+ * the principal axes, see PrincipalFrame, but for targetLength, where it stands straight.
  */
 struct Parameters
 {

@@ -6,16 +6,75 @@
 #ifndef VCG_MCF_POLES_H
 #define VCG_MCF_POLES_H
 
+#include "check_input.h"
 #include "parameters.h"
 #include "pole_set.h"
+#include "principal_frame.h"
 #include "progress.h"
 #include "shrinking_balls.h"
 #include "surface_mesh.h"
 #include "voronoi_poles.h"
 
+#include <numeric>
 #include <vector>
 
 namespace vcg::tri::mcf {
+
+namespace detail {
+
+/**
+ * Poles found in the shape's own coordinates: where several balls are as good, which one is found
+ * depends on the order of the searches, and that on the coordinates. They are rounded, as contract()
+ * does it.
+ * @param find makes the poles of `vertices` of a mesh.
+ */
+template <class Find>
+PoleSet polesInShapeFrame(const SurfaceMesh& mesh, const std::vector<int>& vertices, Find&& find)
+{
+	int components = 0;
+	const std::vector<int> component = connectedComponents(mesh, &components);
+	const std::vector<PrincipalFrame> frames =
+		PrincipalFrame::ofPoints(mesh.position, component, size_t(components));
+	// Components may lie within each other: they have one frame for all, as fine as it needs to be.
+	const bool single = components == 1;
+	const PrincipalFrame frame = single
+		? frames.front()
+		: PrincipalFrame::ofPoints(mesh.position, std::vector<int>(component.size(), 0), 1).front();
+	SurfaceMesh own = mesh;
+	for (Point3d& p : own.position)
+		p = single ? frame.onGrid(p) : frame.in(p);
+	PoleSet poles = find(own);
+	for (size_t i = 0; i < vertices.size(); ++i) {
+		Point3d& centre = poles.centre[i];
+		centre = single ? frame.out(PrincipalFrame::rounded(centre))
+						: frames[component[vertices[i]]].snapped(frame.out(centre));
+		if (poles.has(int(i)))
+			poles.radius[i] = Distance(centre, mesh.position[vertices[i]]);
+	}
+	return poles;
+}
+
+} // namespace detail
+
+/**
+ * medialPoles() of some vertices: against all vertices of the mesh, in the order of `vertices`.
+ * Shrinking balls are searched for these vertices only; the Voronoi diagram is always that of all.
+ */
+inline PoleSet polesAt(const SurfaceMesh& mesh, const std::vector<int>& vertices, PoleMethod method,
+	const Progress& progress = Progress())
+{
+	return detail::polesInShapeFrame(mesh, vertices, [&](const SurfaceMesh& own) {
+		if (method == PoleMethod::Balls)
+			return shrinkingBallPoles(own, vertices, 0, progress);
+		const PoleSet all = voronoiPoles(own, progress);
+		PoleSet poles;
+		for (int v : vertices) {
+			poles.centre.push_back(all.centre[v]);
+			poles.radius.push_back(all.radius[v]);
+		}
+		return poles;
+	});
+}
 
 /**
  * The inner medial pole of each vertex: the centre of a large ball inside the shape that touches
@@ -26,26 +85,9 @@ namespace vcg::tri::mcf {
 inline PoleSet medialPoles(
 	const SurfaceMesh& mesh, PoleMethod method, const Progress& progress = Progress())
 {
-	return method == PoleMethod::Voronoi ? voronoiPoles(mesh, progress)
-										 : shrinkingBallPoles(mesh, progress);
-}
-
-/**
- * medialPoles() of some vertices: against all vertices of the mesh, in the order of `vertices`.
- * Shrinking balls are searched for these vertices only; the Voronoi diagram is always that of all.
- */
-inline PoleSet polesAt(const SurfaceMesh& mesh, const std::vector<int>& vertices, PoleMethod method,
-	const Progress& progress = Progress())
-{
-	if (method == PoleMethod::Balls)
-		return shrinkingBallPoles(mesh, vertices, 0, progress);
-	const PoleSet all = voronoiPoles(mesh, progress);
-	PoleSet poles;
-	for (int v : vertices) {
-		poles.centre.push_back(all.centre[v]);
-		poles.radius.push_back(all.radius[v]);
-	}
-	return poles;
+	std::vector<int> all(mesh.vertexSlots());
+	std::iota(all.begin(), all.end(), 0);
+	return polesAt(mesh, all, method, progress);
 }
 
 } // namespace vcg::tri::mcf

@@ -10,6 +10,7 @@
 #include "closest_surface.h"
 #include "curve_skeleton.h"
 #include "errors.h"
+#include "principal_frame.h"
 #include "progress.h"
 #include "refine_centre.h"
 #include "refine_graph.h"
@@ -28,8 +29,8 @@
 namespace vcg::tri::mcf {
 
 /**
- * The knobs of refine(). Lengths are fractions of the bounding box diagonal of a connected
- * component of the surface.
+ * The knobs of refine(). Lengths are fractions of the diagonal of a connected component of the
+ * surface: that of its bounding box along its principal axes, see PrincipalFrame.
  */
 struct RefineParameters
 {
@@ -224,20 +225,22 @@ inline CurveSkeleton refine(const CurveSkeleton& curve, const SurfaceMesh& surfa
 	progress.report(0, "Refining the skeleton");
 	const std::vector<int> componentOfNode = refining::componentOfNodes(curve, component);
 	std::vector<std::vector<int>> vertices(components), nodes(components), edges(components);
-	std::vector<Box3d> box(components);
-	for (int v = 0; v < surface.vertexSlots(); ++v) {
+	for (int v = 0; v < surface.vertexSlots(); ++v)
 		vertices[component[v]].push_back(v);
-		box[component[v]].Add(surface.position[v]);
-	}
 	for (size_t v = 0; v < componentOfNode.size(); ++v)
 		if (componentOfNode[v] >= 0)
 			nodes[componentOfNode[v]].push_back(int(v));
 	for (size_t e = 0; e < curve.edges.size(); ++e)
 		if (const int c = componentOfNode[curve.edges[e][0]]; c >= 0)
 			edges[c].push_back(int(e));
-	// Each component in coordinates of its own, where its diagonal is 1.
+	// Each component in coordinates of its own, where its diagonal is 1: however it is turned.
+	const std::vector<PrincipalFrame> frame =
+		PrincipalFrame::ofPoints(surface.position, component, size_t(components));
 	const auto toUnit = [&](const Point3d& p, int c) {
-		return (p - box[c].Center()) / box[c].Diag();
+		return frame[c].onGrid(p) / frame[c].sizeInside();
+	};
+	const auto fromUnit = [&](const Point3d& p, int c) {
+		return frame[c].out(p * frame[c].sizeInside());
 	};
 	SurfaceMesh unit = surface;
 	for (int v = 0; v < surface.vertexSlots(); ++v)
@@ -272,7 +275,7 @@ inline CurveSkeleton refine(const CurveSkeleton& curve, const SurfaceMesh& surfa
 					+ refining::nearestAlong(
 						part, neighbours, part.node[number[curve.node[s]]], unit.position[s]);
 		for (const Point3d& p : part.position)
-			refined.position.push_back(p * box[c].Diag() + box[c].Center());
+			refined.position.push_back(fromUnit(p, c));
 		for (const auto& [a, b] : part.edges)
 			refined.edges.push_back({first + a, first + b});
 	}

@@ -10,6 +10,7 @@
 #include "check_input.h"
 #include "errors.h"
 #include "isotropic_remesher.h"
+#include "principal_frame.h"
 #include "progress.h"
 #include "surface_mesh.h"
 #include "target_length.h"
@@ -27,8 +28,13 @@ namespace vcg::tri::mcf {
  *
  * Each round splits edges longer than 4/3 L, collapses those shorter than 4/5 L, flips edges so
  * that valences approach six, and moves vertices within the surface to the centroid of their
- * triangles. Delaunay flips and one more smoothing end it. Vertices lie on the triangles of the input, those of creases (sharp edges over 60
- * degrees in long chains) on the creases. A surface much denser than L is coarsened first.
+ * triangles. Delaunay flips and one more smoothing end it. Vertices lie on the triangles of the input, those of
+ * creases (sharp edges over 60 degrees in long chains) on the creases. A surface much denser than L
+ * is coarsened first.
+ *
+ * It is done in the shape's own coordinates, see PrincipalFrame, with places rounded as in single
+ * precision, and in an order of the vertices that follows from their places: a copy of the shape that
+ * is turned, moved, scaled or renumbered gives the same mesh.
  *
  * Genus, orientation, and the number and order of the components are those of the input.
  *
@@ -51,35 +57,47 @@ inline SurfaceMesh resample(const SurfaceMesh& surface,
 	const Progress& progress = Progress())
 {
 	constexpr double mostVertices = 2e7;
-	const Numbering number = breadthFirstOrder(surface, {}, progress.part(0, 0.1));
-	if (int(targetLengthOfComponent.size()) != number.components)
+	int components = 0;
+	const std::vector<int> component = connectedComponents(surface, &components);
+	if (int(targetLengthOfComponent.size()) != components)
 		throw InvalidParameter("Resampling needs one target length for each of the "
-			+ std::to_string(number.components) + " components, not "
+			+ std::to_string(components) + " components, not "
 			+ std::to_string(targetLengthOfComponent.size()) + ".");
 	for (double length : targetLengthOfComponent)
 		if (!(length > 0) || !std::isfinite(length))
 			throw InvalidParameter("The target length of a component must be greater than 0.");
+	SurfaceMesh reference = surface;
 	if (iterations <= 0) {
-		SurfaceMesh same = surface;
-		same.compact();
-		return same;
+		reference.compact();
+		return reference;
 	}
+	const std::vector<PrincipalFrame> frame =
+		PrincipalFrame::ofComponents(surface, component, size_t(components));
+	std::vector<double> targetLength;
+	for (int c = 0; c < components; ++c)
+		targetLength.push_back(frame[c].lengthOnGrid(targetLengthOfComponent[c]));
+	for (int v = 0; v < surface.vertexSlots(); ++v)
+		if (surface.isVertex(v))
+			reference.position[v] = frame[component[v]].onGrid(surface.position[v]);
 	// The input as the passes like it: neighbours near each other, no triangles without a normal.
 	const char* const what = "Ordering the surface";
-	SurfaceMesh reference = surface.renumbered(number.vertex, number.face);
+	progress.report(0, what);
+	const Numbering number = breadthFirstOrder(
+		reference, leastHalfEdges(reference, component, components), progress.part(0, 0.1));
+	reference = reference.renumbered(number.vertex, number.face, number.firstCorner);
 	progress.report(0.1, what);
-	const auto lengthAt = [&](int v) { return targetLengthOfComponent[number.component[v]]; };
+	const auto lengthAt = [&](int v) { return targetLength[number.component[v]]; };
 	double expected = 0;
 	for (int f = 0; f < reference.faceSlots(); ++f) {
 		const double length = lengthAt(reference.origin(3 * f));
 		expected += reference.areaVector(f).Norm() / (std::sqrt(3.0) * length * length);
 	}
-	if (expected > mostVertices)
+	if (!(expected <= mostVertices))
 		throw InvalidParameter("Parameter target_length is too small: the surface would need "
 			+ std::to_string(std::llround(expected / 1e6)) + " million vertices.");
 	removeThinTriangles(reference, lengthAt);
 	progress.report(0.1, what);
-	detail::IsotropicRemesher remesher(reference, number.component, targetLengthOfComponent);
+	detail::IsotropicRemesher remesher(reference, number.component, targetLength);
 	remesher.coarsen(progress.part(0.1, 0.4));
 	remesher.refine(progress.part(0.4, 0.5));
 	for (int i = 0; i < iterations; ++i) {
@@ -93,7 +111,16 @@ inline SurfaceMesh resample(const SurfaceMesh& surface,
 	remesher.flipForAngles(progress.part(0.95, 0.96));
 	remesher.smoothAndProject(progress.part(0.96, 0.99));
 	remesher.flipForAngles(progress.part(0.99, 1));
-	return remesher.take();
+	SurfaceMesh result = remesher.take();
+	const std::vector<int> componentOfResult = connectedComponents(result);
+	// On a grid of its own: far from the origin the digits beyond are lost on the way out.
+	const std::vector<PrincipalFrame> frameOfResult =
+		PrincipalFrame::ofPoints(result.position, componentOfResult, size_t(components));
+	for (int v = 0; v < result.vertexSlots(); ++v) {
+		const int c = componentOfResult[v];
+		result.position[v] = frame[c].out(frameOfResult[c].snapped(result.position[v]));
+	}
+	return result;
 }
 
 } // namespace vcg::tri::mcf

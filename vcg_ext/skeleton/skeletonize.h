@@ -13,6 +13,7 @@
 #include "progress.h"
 #include "sheet_marks.h"
 #include "stage.h"
+#include "stage_frames.h"
 
 #include <cmath>
 #include <functional>
@@ -30,6 +31,8 @@ namespace vcg::tri::mcf {
  * vertices are fixed (a body thinner than epsilon keeps its volume). The area alone would take a flow
  * for finished that a large w_H makes slow; it must do where vertices are held, since they may hold
  * any volume open. A converged stage stays as it is.
+ *
+ * All of it happens in the shape's own coordinates, see StageFrames.
  * @return the next stage; the given one is not changed.
  * @throws SolverError, InvalidParameter, Cancelled.
  */
@@ -40,7 +43,12 @@ inline Stage step(Stage stage, const Parameters& parameters, const Progress& pro
 		return stage;
 	SurfaceMesh& mesh = stage.mesh;
 	const int before = mesh.vertexSlots();
+	StageFrames frames(stage);
+	frames.enter(stage);
 	contract(stage, parameters, progress.part(0, 0.8));
+	for (int v = 0; v < mesh.vertexSlots(); ++v)
+		if (!stage.fixed[v])
+			mesh.position[v] = PrincipalFrame::rounded(mesh.position[v]);
 	MergeForest forest(mesh.vertexSlots());
 	const std::vector<int> candidates =
 		collapseShortEdges(stage, parameters.epsilon, forest, progress.part(0.8, 0.9));
@@ -74,6 +82,7 @@ inline Stage step(Stage stage, const Parameters& parameters, const Progress& pro
 	stage.sheet.resize(left);
 	stage.component.resize(left);
 	stage.rank.resize(left);
+	frames.leave(stage);
 
 	const std::vector<double> area =
 		componentAreas(mesh, stage.component, stage.initialArea.size());

@@ -9,6 +9,7 @@
 #include "check_input.h"
 #include "parameters.h"
 #include "pole_set.h"
+#include "principal_frame.h"
 #include "surface_mesh.h"
 
 #include <algorithm>
@@ -44,7 +45,7 @@ struct Stage
 	std::vector<int> rank;
 	int rankedVertices = 0;
 
-	/// Bounding box diagonal of each component of the surface: its unit of length.
+	/// Diagonal of each component of the surface, see componentDiagonals(): its unit of length.
 	std::vector<double> diagonal;
 	/// Area of each component, of the surface and of this stage.
 	std::vector<double> initialArea, area;
@@ -96,17 +97,14 @@ inline std::vector<double> componentAreas(
 	return area;
 }
 
-/// Bounding box diagonal of each component of a mesh.
+/// The size of each component of a mesh: the diagonal of its bounding box along its principal axes,
+/// see PrincipalFrame.
 inline std::vector<double> componentDiagonals(
 	const SurfaceMesh& mesh, const std::vector<int>& component, size_t components)
 {
-	std::vector<Box3d> boxes(components);
-	for (int v = 0; v < mesh.vertexSlots(); ++v)
-		if (mesh.isVertex(v))
-			boxes[component[v]].Add(mesh.position[v]);
 	std::vector<double> diagonal;
-	for (const Box3d& box : boxes)
-		diagonal.push_back(box.Diag());
+	for (const PrincipalFrame& frame : PrincipalFrame::ofComponents(mesh, component, components))
+		diagonal.push_back(frame.size());
 	return diagonal;
 }
 

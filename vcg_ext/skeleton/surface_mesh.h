@@ -502,10 +502,17 @@ public:
 	/**
 	 * The same mesh with other ids for its vertices and faces, without holes in the numbering.
 	 * @param newVertex for each vertex slot its new id, -1 where it was removed; likewise newFace.
+	 * @param firstCorner for each face slot which of its corners shall be the first; empty: the one
+	 *                  that is.
 	 * @pre the new ids are those from 0 to the number of live elements, each once.
 	 */
-	SurfaceMesh renumbered(const std::vector<int>& newVertex, const std::vector<int>& newFace) const
+	SurfaceMesh renumbered(const std::vector<int>& newVertex, const std::vector<int>& newFace,
+		const std::vector<char>& firstCorner = {}) const
 	{
+		const auto newId = [&](int h) {
+			const int corner = firstCorner.empty() ? h % 3 : (h % 3 + 3 - firstCorner[h / 3]) % 3;
+			return 3 * newFace[h / 3] + corner;
+		};
 		SurfaceMesh result;
 		result.position.resize(liveVertices);
 		for (int v = 0; v < vertexSlots(); ++v)
@@ -517,9 +524,9 @@ public:
 		for (int h = 0; h < halfEdgeSlots(); ++h) {
 			if (newFace[h / 3] < 0)
 				continue;
-			const int t = twins[h], id = 3 * newFace[h / 3] + h % 3;
+			const int id = newId(h);
 			result.origins[id] = newVertex[origins[h]];
-			result.twins[id] = 3 * newFace[t / 3] + t % 3;
+			result.twins[id] = newId(twins[h]);
 		}
 		result.outgoings.assign(result.position.size(), -1);
 		result.chooseOutgoing();

@@ -8,6 +8,7 @@
 
 #include "check_input.h"
 #include "parameters.h"
+#include "principal_frame.h"
 #include "surface_mesh.h"
 
 #include <algorithm>
@@ -46,13 +47,14 @@ inline std::vector<double> defaultTargetLength(
 		if (surface.isFace(f))
 			area[component[surface.origin(3 * f)]] += surface.areaVector(f).Norm() / 2;
 	const double vertices = std::max(fewestVertices, totalVertices / std::max(count, 1));
+	const std::vector<PrincipalFrame> frame =
+		PrincipalFrame::ofComponents(surface, component, size_t(count));
 	std::vector<double> length(count);
 	for (int c = 0; c < count; ++c) {
-		const double diagonal = box[c].Diag();
 		length[c] = parameters.targetLength > 0
-			? parameters.targetLength * diagonal
-			: std::min(
-				std::sqrt(area[c] / (areaOfVertex * vertices)), 8 * parameters.epsilon * diagonal);
+			? parameters.targetLength * box[c].Diag()
+			: std::min(std::sqrt(area[c] / (areaOfVertex * vertices)),
+				8 * parameters.epsilon * frame[c].size());
 	}
 	return length;
 }

@@ -166,7 +166,7 @@ public:
 		std::vector<int> seeds(length.size(), -1);
 		for (int v = mesh.vertexSlots() - 1; v >= 0; --v)
 			if (mesh.isVertex(v))
-				seeds[component[v]] = v;
+				seeds[component[v]] = mesh.outgoing(v);
 		Numbering number = breadthFirstOrder(mesh, seeds);
 		component = std::move(number.component);
 		track = renumbered(track, number.vertex, mesh.vertexCount());

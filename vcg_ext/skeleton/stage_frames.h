@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file A stage in coordinates that belong to the shape, so that results do not depend on the others.
+
+#ifndef VCG_MCF_STAGE_FRAMES_H
+#define VCG_MCF_STAGE_FRAMES_H
+
+#include "principal_frame.h"
+#include "stage.h"
+
+#include <map>
+#include <tuple>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/**
+ * The frames of a stage's components, and a stage's way into them and back.
+ *
+ * The flow decides thousands of times which of two lengths is smaller, and solves its systems
+ * approximately: differences in the last bit grow until a branch is there or not. In these
+ * coordinates, rounded as in single precision, a copy of a shape that is turned, moved or
+ * scaled gives the same bits. Places that were rounded before find their grid point again, see
+ * PrincipalFrame::onGrid().
+ */
+class StageFrames
+{
+public:
+	/// Complexity: O(V), V the vertices of the surface.
+	explicit StageFrames(const Stage& stage)
+	{
+		std::vector<int> component(stage.node.size());
+		for (size_t s = 0; s < component.size(); ++s)
+			component[s] = stage.component[stage.node[s]];
+		frame = PrincipalFrame::ofPoints(*stage.surface, component, stage.diagonal.size());
+	}
+
+	/// Takes the positions, poles and lengths of a stage into the frames. Held vertices are not rounded.
+	void enter(Stage& stage)
+	{
+		diagonal = stage.diagonal;
+		for (size_t v = 0; v < stage.pole.size(); ++v) {
+			const int c = stage.component[v];
+			const PrincipalFrame& own = frame[c];
+			Point3d& p = stage.mesh.position[v];
+			if (stage.held[v]) {
+				const Point3d inside = own.in(p);
+				heldPlace[{c, inside[0], inside[1], inside[2]}] = p;
+				p = inside;
+			}
+			else
+				p = own.onGrid(p);
+			stage.pole[v] = own.onGrid(stage.pole[v]);
+		}
+		for (size_t c = 0; c < frame.size(); ++c)
+			stage.diagonal[c] /= frame[c].unitLength();
+	}
+
+	/// A point of a component outside of the frames; where a vertex is held, exactly its place.
+	Point3d out(int component, const Point3d& p) const
+	{
+		if (const auto found = heldPlace.find({component, p[0], p[1], p[2]});
+			found != heldPlace.end())
+			return found->second;
+		return frame[component].out(p);
+	}
+
+	/// Takes the stage that has entered back to the coordinates outside. @pre it is compact.
+	void leave(Stage& stage) const
+	{
+		for (size_t v = 0; v < stage.pole.size(); ++v) {
+			const int c = stage.component[v];
+			stage.mesh.position[v] = out(c, stage.mesh.position[v]);
+			stage.pole[v] = frame[c].out(stage.pole[v]);
+		}
+		stage.diagonal = diagonal;
+	}
+
+private:
+	std::vector<PrincipalFrame> frame;
+	std::vector<double> diagonal;
+	/// Where held vertices are outside, by component and place in its frame.
+	std::map<std::tuple<int, double, double, double>, Point3d> heldPlace;
+};
+
+} // namespace vcg::tri::mcf
+
+#endif
