@@ -411,6 +411,22 @@ TEST(Refine, MovesACurveThatStartsOutsideIn)
 	EXPECT_TRUE(isInside(s, mesh));
 }
 
+TEST(Refine, MovesLongEdgesThatLeaveTheSurfaceIn)
+{
+	// The nodes of the triangle are on the axis of the ring, its edges cross the hole.
+	const SurfaceMesh mesh = shapes::torus(1, 0.3, 120, 40).mesh();
+	std::vector<Point3d> triangle;
+	for (int i = 0; i <= 3; ++i) {
+		const double u = 2 * M_PI * (i % 3) / 3;
+		triangle.emplace_back(std::cos(u), std::sin(u), 0);
+	}
+	const CurveSkeleton rough = CurveMaker().chain(triangle).in(mesh);
+	ASSERT_FALSE(isInside(rough, mesh));
+	const CurveSkeleton s = refine(rough, mesh);
+	EXPECT_EQ(statistics(s).cycles, 1);
+	EXPECT_TRUE(isInside(s, mesh));
+}
+
 TEST(Refine, NeverCutsThroughThinWalls)
 {
 	// A thin tube in the shape of a U: the straight way between its legs is outside.

@@ -114,6 +114,7 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 		}
 		skeleton = withWholeJunctions(std::move(skeleton), parameters.junctionProminence);
 		skeleton = evenlySampled(skeleton, surface, parameters.spacing);
+		moveInside(skeleton, surface); // long edges of a coarse shape's curve may have left it
 		progress.report(double(done) / total, what);
 	};
 	const auto extend = [&] {

@@ -238,6 +238,10 @@ inline void moveInside(CurveSkeleton& skeleton, const ClosestSurface& surface)
 		const ClosestSurface::Hit hit = surface.closest(skeleton.position[v]);
 		if (hit.distance <= 0)
 			continue;
+		if (surface.isInside(skeleton.position[v], hit)) { // only its bound was too low
+			skeleton.radius[v] = hit.distance;
+			continue;
+		}
 		const Point3d inward = (hit.point - skeleton.position[v]) / hit.distance;
 		const Point3d start = hit.point + inward * below;
 		const ClosestSurface::Hit contact = surface.closest(start);
