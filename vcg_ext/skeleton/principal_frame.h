@@ -13,6 +13,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
+#include <type_traits>
 #include <vector>
 
 namespace vcg::tri::mcf {
@@ -52,21 +54,18 @@ public:
 				if (mesh.isVertex(v))
 					visit(size_t(component[v]), mesh.position[v]);
 		};
-		const auto forEachSample = [&](auto&& visit) {
+		const auto forEachCell = [&](auto&& visit) {
 			for (int f = 0; f < mesh.faceSlots(); ++f) {
 				if (!mesh.isFace(f))
 					continue;
 				const Triangle t = mesh.triangle(f);
-				const size_t c = size_t(component[t[0]]);
-				// Exact for polynomials of degree three: Hammer and Stroud 1956.
-				const double area = mesh.areaVector(f).Norm() / 2;
-				const Point3d sum = mesh.position[t[0]] + mesh.position[t[1]] + mesh.position[t[2]];
-				visit(c, sum / 3.0, -27.0 / 48 * area);
-				for (int v : t)
-					visit(c, sum * 0.2 + mesh.position[v] * 0.4, 25.0 / 48 * area);
+				visit(size_t(component[t[0]]),
+					std::array<Point3d, 3> {
+						mesh.position[t[0]], mesh.position[t[1]], mesh.position[t[2]]},
+					mesh.areaVector(f).Norm() / 2);
 			}
 		};
-		return made(components, forEachPoint, forEachSample);
+		return made(components, forEachPoint, forEachCell);
 	}
 
 	/// The frames of sets of points, all points alike; `component` says which set. Complexity: O(V).
@@ -77,11 +76,11 @@ public:
 			for (size_t i = 0; i < points.size(); ++i)
 				visit(size_t(component[i]), points[i]);
 		};
-		const auto forEachSample = [&](auto&& visit) {
+		const auto forEachCell = [&](auto&& visit) {
 			for (size_t i = 0; i < points.size(); ++i)
-				visit(size_t(component[i]), points[i], 1.0);
+				visit(size_t(component[i]), std::array<Point3d, 1> {points[i]}, 1.0);
 		};
-		return made(components, forEachPoint, forEachSample);
+		return made(components, forEachPoint, forEachCell);
 	}
 
 	/// Diagonal of the bounding box along the axes, mesh units.
@@ -136,6 +135,45 @@ private:
 		Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
 		std::array<double, 3> third = {0, 0, 0}; ///< along the axes
 
+		/// Adds all but the third moments of a cell, a point or a triangle:
+		///     int x dA = A s / n,  int x x^T dA = A (s s^T + sum_i x_i x_i^T) / (n (n + 1)),
+		/// s the sum of its n corners x_i.
+		template <size_t n>
+		void add(const std::array<Point3d, n>& corners, double area)
+		{
+			Point3d s(0, 0, 0);
+			double sum[6] = {};
+			const auto addSquare = [&](const Point3d& x) {
+				for (int k = 0; k < 3; ++k) {
+					sum[k] += x[k] * x[k];
+					sum[3 + k] += x[k] * x[(k + 1) % 3];
+				}
+			};
+			for (const Point3d& x : corners) {
+				s += x;
+				addSquare(x);
+			}
+			addSquare(s);
+			weight += area;
+			first += s * (area / n);
+			for (int k = 0; k < 3; ++k) {
+				const int l = (k + 1) % 3;
+				second(k, k) += sum[k] * (area / (n * (n + 1)));
+				second(k, l) += sum[3 + k] * (area / (n * (n + 1)));
+				second(l, k) = second(k, l);
+			}
+		}
+
+		/// Mean of u^3 over a point, or over a triangle at whose corners u has these values: the mean
+		/// of all ten products of three of them.
+		static double meanCube(const std::array<double, 1>& u) { return u[0] * u[0] * u[0]; }
+		static double meanCube(const std::array<double, 3>& u)
+		{
+			const double sum = u[0] + u[1] + u[2];
+			const double pairs = u[0] * u[1] + u[1] * u[2] + u[2] * u[0];
+			return (sum * (sum * sum - 2 * pairs) + u[0] * u[1] * u[2]) / 10;
+		}
+
 		/// The second moments about the centroid, by weight.
 		Eigen::Matrix3d spread() const
 		{
@@ -162,12 +200,12 @@ private:
 	}
 
 	/**
-	 * @param forEachPoint  calls visit(component, point) for all points that the box must hold.
-	 * @param forEachSample calls visit(component, point, weight) for the samples of the integrals.
+	 * @param forEachPoint calls visit(component, point) for all points that the box must hold.
+	 * @param forEachCell  calls visit(component, corners, area) for all cells of the integrals.
 	 */
-	template <class ForEachPoint, class ForEachSample>
+	template <class ForEachPoint, class ForEachCell>
 	static std::vector<PrincipalFrame> made(
-		size_t components, ForEachPoint&& forEachPoint, ForEachSample&& forEachSample)
+		size_t components, ForEachPoint&& forEachPoint, ForEachCell&& forEachCell)
 	{
 		std::vector<PrincipalFrame> frame(components);
 		std::vector<Moments> moments(components);
@@ -180,20 +218,22 @@ private:
 				if (box[c].Diag() > 0)
 					frame[c].unit = frame[c].diagonal = box[c].Diag();
 			}
-		forEachSample([&](size_t c, const Point3d& p, double weight) {
-			const Point3d x = (p - frame[c].origin) / frame[c].unit;
-			Moments& m = moments[c];
-			m.weight += weight;
-			m.first += x * weight;
-			const Eigen::Vector3d e(x[0], x[1], x[2]);
-			m.second += weight * e * e.transpose();
+		forEachCell([&](size_t c, auto corners, double area) {
+			const double scale = 1 / frame[c].unit;
+			for (Point3d& p : corners)
+				p = (p - frame[c].origin) * scale;
+			moments[c].add(corners, area);
 		});
 		for (size_t c = 0; c < components; ++c)
 			frame[c].align(moments[c]);
-		forEachSample([&](size_t c, const Point3d& p, double weight) {
-			const Point3d x = frame[c].in(p);
-			for (int k = 0; k < 3; ++k)
-				moments[c].third[k] += weight * x[k] * x[k] * x[k];
+		forEachCell([&](size_t c, const auto& corners, double area) {
+			const double scale = 1 / frame[c].unit;
+			for (int k = 0; k < 3; ++k) {
+				std::array<double, std::tuple_size_v<std::decay_t<decltype(corners)>>> u;
+				for (size_t i = 0; i < u.size(); ++i)
+					u[i] = (corners[i] - frame[c].origin) * frame[c].axes[k] * scale;
+				moments[c].third[k] += area * Moments::meanCube(u);
+			}
 		});
 		std::vector<Box3d> along(components);
 		for (size_t c = 0; c < components; ++c)

@@ -71,8 +71,11 @@ inline SurfaceMesh resample(const SurfaceMesh& surface,
 		reference.compact();
 		return reference;
 	}
+	const char* const what = "Ordering the surface";
+	progress.report(0, what);
 	const std::vector<PrincipalFrame> frame =
 		PrincipalFrame::ofComponents(surface, component, size_t(components));
+	progress.report(0, what);
 	std::vector<double> targetLength;
 	for (int c = 0; c < components; ++c)
 		targetLength.push_back(frame[c].lengthOnGrid(targetLengthOfComponent[c]));
@@ -80,7 +83,6 @@ inline SurfaceMesh resample(const SurfaceMesh& surface,
 		if (surface.isVertex(v))
 			reference.position[v] = frame[component[v]].onGrid(surface.position[v]);
 	// The input as the passes like it: neighbours near each other, no triangles without a normal.
-	const char* const what = "Ordering the surface";
 	progress.report(0, what);
 	const Numbering number = breadthFirstOrder(
 		reference, leastHalfEdges(reference, component, components), progress.part(0, 0.1));
