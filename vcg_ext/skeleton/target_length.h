@@ -8,7 +8,7 @@
 
 #include "check_input.h"
 #include "parameters.h"
-#include "principal_frame.h"
+#include "stage.h"
 #include "surface_mesh.h"
 
 #include <algorithm>
@@ -38,24 +38,22 @@ inline std::vector<double> defaultTargetLength(
 	const double areaOfVertex = std::sqrt(3.0) / 2; // for edges of length 1
 	int count = 0;
 	const std::vector<int> component = connectedComponents(surface, &count);
-	std::vector<Box3d> box(count);
-	std::vector<double> area(count, 0);
-	for (int v = 0; v < surface.vertexSlots(); ++v)
-		if (surface.isVertex(v))
-			box[component[v]].Add(surface.position[v]);
-	for (int f = 0; f < surface.faceSlots(); ++f)
-		if (surface.isFace(f))
-			area[component[surface.origin(3 * f)]] += surface.areaVector(f).Norm() / 2;
-	const double vertices = std::max(fewestVertices, totalVertices / std::max(count, 1));
-	const std::vector<PrincipalFrame> frame =
-		PrincipalFrame::ofComponents(surface, component, size_t(count));
 	std::vector<double> length(count);
-	for (int c = 0; c < count; ++c) {
-		length[c] = parameters.targetLength > 0
-			? parameters.targetLength * box[c].Diag()
-			: std::min(std::sqrt(area[c] / (areaOfVertex * vertices)),
-				8 * parameters.epsilon * frame[c].size());
+	if (parameters.targetLength > 0) {
+		std::vector<Box3d> box(count);
+		for (int v = 0; v < surface.vertexSlots(); ++v)
+			if (surface.isVertex(v))
+				box[component[v]].Add(surface.position[v]);
+		for (int c = 0; c < count; ++c)
+			length[c] = parameters.targetLength * box[c].Diag();
+		return length;
 	}
+	const std::vector<double> area = componentAreas(surface, component, size_t(count));
+	const std::vector<double> diagonal = componentDiagonals(surface, component, size_t(count));
+	const double vertices = std::max(fewestVertices, totalVertices / std::max(count, 1));
+	for (int c = 0; c < count; ++c)
+		length[c] = std::min(
+			std::sqrt(area[c] / (areaOfVertex * vertices)), 8 * parameters.epsilon * diagonal[c]);
 	return length;
 }
 
