@@ -166,23 +166,21 @@ inline void straightenZigzag(GluedComplex& complex, const Stage& stage, double s
 
 /**
  * Turns a stage into its curve skeleton: repeatedly collapses the shortest edge that has faces, then
- * straightens the zigzag that this leaves.
+ * straightens the zigzag that this leaves. Lengths are compared in the shape's own coordinates, see
+ * StageFrames.
  *
  * The stage need not have converged; its sheets and volumes become curves too. The result has a
  * component for each component of the stage and as many cycles as its genus (see GluedComplex), no
  * double edge and no edge of zero length but for a body that is a point in floating point.
  *
- * @param given    the stage; what is shortest is judged in the shape's own coordinates, see
- *        StageFrames.
  * @param shortestEdge edges shorter than this fraction of the component's diagonal are contracted
  *        at the end, where no cycle vanishes by it.
  * @throws SolverError, Cancelled. Complexity: O(V log V).
  */
 inline CurveSkeleton collapseToCurve(
-	const Stage& given, double shortestEdge = 1e-4, const Progress& progress = Progress())
+	Stage stage, double shortestEdge = 1e-4, const Progress& progress = Progress())
 {
-	StageFrames frames(given);
-	Stage stage = given;
+	StageFrames frames(stage);
 	frames.enter(stage);
 	GluedComplex complex(stage.mesh, stage.held);
 	detail::contractAllFaces(complex, progress.part(0, 0.9));

@@ -10,6 +10,7 @@
 #include "stage.h"
 
 #include <map>
+#include <memory>
 #include <tuple>
 #include <vector>
 
@@ -27,13 +28,18 @@ namespace vcg::tri::mcf {
 class StageFrames
 {
 public:
-	/// Complexity: O(V), V the vertices of the surface.
-	explicit StageFrames(const Stage& stage)
+	/// Finds the frames if no stage before has found them, and leaves them with the stage.
+	/// Complexity: O(V), V the vertices of the surface, the first time.
+	explicit StageFrames(Stage& stage)
 	{
-		std::vector<int> component(stage.node.size());
-		for (size_t s = 0; s < component.size(); ++s)
-			component[s] = stage.component[stage.node[s]];
-		frame = PrincipalFrame::ofPoints(*stage.surface, component, stage.diagonal.size());
+		if (!stage.frames) {
+			std::vector<int> component(stage.node.size());
+			for (size_t s = 0; s < component.size(); ++s)
+				component[s] = stage.component[stage.node[s]];
+			stage.frames = std::make_shared<const std::vector<PrincipalFrame>>(
+				PrincipalFrame::ofPoints(*stage.surface, component, stage.diagonal.size()));
+		}
+		frames = stage.frames;
 	}
 
 	/// Takes the positions, poles and lengths of a stage into the frames. Held vertices are not rounded.
@@ -42,7 +48,7 @@ public:
 		diagonal = stage.diagonal;
 		for (size_t v = 0; v < stage.pole.size(); ++v) {
 			const int c = stage.component[v];
-			const PrincipalFrame& own = frame[c];
+			const PrincipalFrame& own = (*frames)[c];
 			Point3d& p = stage.mesh.position[v];
 			if (stage.held[v]) {
 				const Point3d inside = own.in(p);
@@ -53,8 +59,8 @@ public:
 				p = own.onGrid(p);
 			stage.pole[v] = own.onGrid(stage.pole[v]);
 		}
-		for (size_t c = 0; c < frame.size(); ++c)
-			stage.diagonal[c] /= frame[c].unitLength();
+		for (size_t c = 0; c < frames->size(); ++c)
+			stage.diagonal[c] /= (*frames)[c].unitLength();
 	}
 
 	/// A point of a component outside of the frames; where a vertex is held, exactly its place.
@@ -63,7 +69,7 @@ public:
 		if (const auto found = heldPlace.find({component, p[0], p[1], p[2]});
 			found != heldPlace.end())
 			return found->second;
-		return frame[component].out(p);
+		return (*frames)[component].out(p);
 	}
 
 	/// Takes the stage that has entered back to the coordinates outside. @pre it is compact.
@@ -72,13 +78,13 @@ public:
 		for (size_t v = 0; v < stage.pole.size(); ++v) {
 			const int c = stage.component[v];
 			stage.mesh.position[v] = out(c, stage.mesh.position[v]);
-			stage.pole[v] = frame[c].out(stage.pole[v]);
+			stage.pole[v] = (*frames)[c].out(stage.pole[v]);
 		}
 		stage.diagonal = diagonal;
 	}
 
 private:
-	std::vector<PrincipalFrame> frame;
+	std::shared_ptr<const std::vector<PrincipalFrame>> frames;
 	std::vector<double> diagonal;
 	/// Where held vertices are outside, by component and place in its frame.
 	std::map<std::tuple<int, double, double, double>, Point3d> heldPlace;
