@@ -3,9 +3,11 @@
 
 #include "common.h"
 
+#include <skeleton/measured_surface.h>
 #include <skeleton/noise.h>
 #include <skeleton/poles.h>
 #include <skeleton/resample.h>
+#include <skeleton/target_length.h>
 
 #include <cmath>
 #include <numeric>
@@ -211,7 +213,8 @@ void logNotes(const FilterRun& run, const SurfaceLayer& surface)
 SurfaceLayer resampledSurface(const FilterRun& run, const mcf::SurfaceMesh& mesh,
 	const mcf::Parameters& parameters, const mcf::Progress& progress)
 {
-	const mcf::NoiseReport noise = mcf::measureNoise(mesh, progress.part(0, 0.1));
+	const mcf::MeasuredSurface surface(mesh, progress.part(0, 0.05));
+	const mcf::NoiseReport noise = mcf::measureNoise(surface, progress.part(0.05, 0.15));
 	const bool smooth = parameters.denoise && noise.isNoisy();
 	if (noise.isNoisy())
 		run.log(
@@ -219,14 +222,15 @@ SurfaceLayer resampledSurface(const FilterRun& run, const mcf::SurfaceMesh& mesh
 				.arg(100 * noise.level, 0, 'g', 2)
 				.arg(smooth ? QString("smoothing it in %1 rounds").arg(noise.mostRounds())
 							: QString("it may show in the skeleton; 'denoise' would smooth it")));
-	mcf::SurfaceMesh smoothed;
-	if (smooth)
-		smoothed = mcf::smoothed(mesh, noise.rounds, progress.part(0.1, 0.3));
-	const mcf::SurfaceMesh& calm = smooth ? smoothed : mesh;
+	const auto resample = [&](const mcf::MeasuredSurface& calm) {
+		return mcf::resample(calm, mcf::defaultTargetLength(calm, parameters),
+			parameters.resampleIterations, progress.part(smooth ? 0.35 : 0.15, 1));
+	};
 	SurfaceLayer result;
-	result.mesh = std::make_shared<const mcf::SurfaceMesh>(
-		mcf::resample(calm, mcf::defaultTargetLength(calm, parameters),
-			parameters.resampleIterations, progress.part(smooth ? 0.3 : 0.1, 1)));
+	result.mesh = std::make_shared<const mcf::SurfaceMesh>(smooth
+			? resample({mcf::smoothed(surface, noise.rounds, progress.part(0.15, 0.3)),
+				progress.part(0.3, 0.35)})
+			: resample(surface));
 	run.log(QString("Resampled to %1 vertices, mean edge length %2 mesh units%3.")
 				.arg(result.mesh->vertexCount())
 				.arg(meanEdgeLength(*result.mesh))

@@ -10,6 +10,7 @@
 #include <skeleton/check_input.h>
 #include <skeleton/collapse_to_curve.h>
 #include <skeleton/first_stage.h>
+#include <skeleton/measured_surface.h>
 #include <skeleton/noise.h>
 #include <skeleton/parameters.h>
 #include <skeleton/refine.h>
@@ -175,6 +176,21 @@ private:
 	}
 };
 
+mcf::SurfaceMesh resampled(const mcf::SurfaceMesh& mesh, const mcf::Parameters& parameters,
+	const mcf::Progress& progress, bench::Json& report)
+{
+	const auto resample = [&](const mcf::MeasuredSurface& surface) {
+		return mcf::resample(surface, mcf::defaultTargetLength(surface, parameters),
+			parameters.resampleIterations, progress);
+	};
+	const mcf::MeasuredSurface surface(mesh, progress);
+	const mcf::NoiseReport noise = mcf::measureNoise(surface, progress);
+	report.add("noise", noise.level);
+	return parameters.denoise && noise.isNoisy()
+		? resample({mcf::smoothed(surface, noise.rounds, progress), progress})
+		: resample(surface);
+}
+
 void run(const Options& options)
 {
 	const mcf::Parameters& parameters = options.parameters;
@@ -195,15 +211,8 @@ void run(const Options& options)
 	soup = bench::Soup();
 
 	watch.lap();
-	if (parameters.resample) {
-		const mcf::NoiseReport noise = mcf::measureNoise(checked.mesh, progress);
-		report.add("noise", noise.level);
-		if (parameters.denoise)
-			checked.mesh = mcf::smoothed(std::move(checked.mesh), noise.rounds, progress);
-		checked.mesh =
-			mcf::resample(checked.mesh, mcf::defaultTargetLength(checked.mesh, parameters),
-				parameters.resampleIterations, progress);
-	}
+	if (parameters.resample)
+		checked.mesh = resampled(checked.mesh, parameters, progress, report);
 	seconds.add("resample", watch.lap());
 	const mcf::SurfaceMesh& surface = checked.mesh;
 	int components = 0;

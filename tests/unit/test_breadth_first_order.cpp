@@ -89,8 +89,9 @@ TEST(BreadthFirstOrder, DoesNotDependOnTheNumberingThereWas)
 		return vcg::Point3d(2 * p[0] + 0.1 * p[1], p[1] + 0.1 * p[2] * p[2], 0.7 * p[2]);
 	});
 	const auto ordered = [](const SurfaceMesh& mesh) {
-		const Numbering number =
-			breadthFirstOrder(mesh, leastHalfEdges(mesh, connectedComponents(mesh), 1));
+		const Numbering number = breadthFirstOrder(mesh,
+			leastHalfEdges(
+				mesh, connectedComponents(mesh), 1, [&](int v) { return mesh.position[v]; }));
 		return mesh.renumbered(number.vertex, number.face, number.firstCorner);
 	};
 	shapes::Soup other = shapes::shuffled(soup);

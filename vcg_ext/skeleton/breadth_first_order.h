@@ -95,23 +95,32 @@ inline Numbering breadthFirstOrder(const SurfaceMesh& mesh, const std::vector<in
  * Seeds for breadthFirstOrder() that depend on the places of the vertices only: of each component
  * the half-edge out of the vertex with the least coordinates (x before y before z) to its neighbour
  * with the least.
- * @param component of each vertex slot, see connectedComponents(). Complexity: O(V).
+ * @param component of each vertex slot, see connectedComponents().
+ * @param placeOf   Point3d(vertex): the coordinates that count. Complexity: O(V).
  */
-inline std::vector<int> leastHalfEdges(
-	const SurfaceMesh& mesh, const std::vector<int>& component, int components)
+template <class PlaceOf>
+std::vector<int> leastHalfEdges(
+	const SurfaceMesh& mesh, const std::vector<int>& component, int components, PlaceOf&& placeOf)
 {
-	const auto before = [&](int v, int w) {
-		const Point3d &p = mesh.position[v], &q = mesh.position[w];
+	const auto before = [](const Point3d& p, const Point3d& q) {
 		return p[0] != q[0] ? p[0] < q[0] : p[1] != q[1] ? p[1] < q[1] : p[2] < q[2];
 	};
 	std::vector<int> least(components, -1);
-	for (int v = 0; v < mesh.vertexSlots(); ++v)
-		if (mesh.isVertex(v) && (least[component[v]] < 0 || before(v, least[component[v]])))
-			least[component[v]] = v;
+	std::vector<Point3d> leastPlace(components);
+	for (int v = 0; v < mesh.vertexSlots(); ++v) {
+		if (!mesh.isVertex(v))
+			continue;
+		const int c = component[v];
+		const Point3d place = placeOf(v);
+		if (least[c] < 0 || before(place, leastPlace[c])) {
+			least[c] = v;
+			leastPlace[c] = place;
+		}
+	}
 	for (int& seed : least) {
 		int best = mesh.outgoing(seed);
 		mesh.forEachOutgoing(seed, [&](int h) {
-			if (before(mesh.target(h), mesh.target(best)))
+			if (before(placeOf(mesh.target(h)), placeOf(mesh.target(best))))
 				best = h;
 		});
 		seed = best;

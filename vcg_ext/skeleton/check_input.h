@@ -6,8 +6,10 @@
 #ifndef VCG_MCF_CHECK_INPUT_H
 #define VCG_MCF_CHECK_INPUT_H
 
+#include "progress.h"
 #include "soup_repair.h"
 #include "surface_mesh.h"
+#include "ticker.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,8 +32,9 @@ struct CheckedSurface
 };
 
 /// For each vertex the number of its connected component, counted by lowest vertex; -1 for holes in
-/// the numbering. Complexity: about O(V + F).
-inline std::vector<int> connectedComponents(const SurfaceMesh& mesh, int* componentCount = nullptr)
+/// the numbering. @throws Cancelled. Complexity: about O(V + F).
+inline std::vector<int> connectedComponents(
+	const SurfaceMesh& mesh, int* componentCount = nullptr, const Progress& progress = Progress())
 {
 	// Sets of vertices that grow face by face, each known by its lowest vertex: unlike a walk over
 	// the surface that reads the mesh in the order in which it lies in memory.
@@ -47,19 +50,22 @@ inline std::vector<int> connectedComponents(const SurfaceMesh& mesh, int* compon
 		w = find(w);
 		lowest[std::max(v, w)] = std::min(v, w);
 	};
-	for (int f = 0; f < mesh.faceSlots(); ++f)
-		if (mesh.isFace(f)) {
-			const Triangle t = mesh.triangle(f);
-			unite(t[0], t[1]);
-			unite(t[1], t[2]);
-		}
+	const char* const what = "Measuring the surface";
+	detail::reportedLoop(mesh.faceSlots(), progress.part(0, 0.8), what, [&](int f) {
+		if (!mesh.isFace(f))
+			return;
+		const Triangle t = mesh.triangle(f);
+		unite(t[0], t[1]);
+		unite(t[1], t[2]);
+	});
 	std::vector<int> component(mesh.vertexSlots(), -1);
 	int count = 0;
-	for (int v = 0; v < mesh.vertexSlots(); ++v)
-		if (mesh.isVertex(v)) {
-			const int first = find(v);
-			component[v] = first == v ? count++ : component[first];
-		}
+	detail::reportedLoop(mesh.vertexSlots(), progress.part(0.8, 1), what, [&](int v) {
+		if (!mesh.isVertex(v))
+			return;
+		const int first = find(v);
+		component[v] = first == v ? count++ : component[first];
+	});
 	if (componentCount)
 		*componentCount = count;
 	return component;
@@ -82,6 +88,7 @@ inline std::vector<int> connectedComponents(const SurfaceMesh& mesh, int* compon
 inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
 	const std::vector<Triangle>& triangles, const Progress& progress = Progress())
 {
+	const char* const what = "Checking the surface";
 	CheckedSurface result;
 	if (points.empty())
 		throw InvalidInput("The layer is empty: a closed triangle mesh is needed.");
@@ -89,11 +96,12 @@ inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
 		throw InvalidInput(
 			"The layer has no faces: a closed triangle mesh is needed. Make a surface "
 			"of a point cloud first, e.g. with 'Surface Reconstruction: Screened Poisson'.");
-	for (const Triangle& t : triangles)
-		for (int v : t)
+	detail::reportedLoop(int(triangles.size()), progress.part(0, 0.02), what, [&](int f) {
+		for (int v : triangles[f])
 			if (v < 0 || v >= int(points.size()))
 				throw InvalidInput("A face refers to vertex " + std::to_string(v) + " of "
 					+ std::to_string(points.size()) + ".");
+	});
 	const auto isFinite = [](const Point3d& p) {
 		return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
 	};
@@ -114,7 +122,7 @@ inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
 	}
 
 	std::optional<SurfaceMesh> ready =
-		SurfaceMesh::ifClosedManifold(points, triangles, progress.part(0, 0.5));
+		SurfaceMesh::ifClosedManifold(points, triangles, progress.part(0.02, 0.5));
 	RepairedSoup soup;
 	std::vector<int>& vertexOfInput = soup.vertexOfInput;
 	const bool asGiven = ready && ready->vertexCount() == ready->vertexSlots();
@@ -127,7 +135,7 @@ inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
 	else
 		soup = repairedSoup(points, triangles);
 	result.notes = std::move(soup.notes);
-	progress.report(0.5, "Checking the surface");
+	progress.report(0.5, what);
 
 	if (!asGiven) {
 		// Number the referenced vertices in their own order.
@@ -157,22 +165,23 @@ inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
 	// Each component must enclose a volume, and is turned so that the volume is positive.
 	SurfaceMesh& mesh = *ready;
 	int components = 0;
-	const std::vector<int> component = connectedComponents(mesh, &components);
+	const std::vector<int> component =
+		connectedComponents(mesh, &components, progress.part(0.8, 0.85));
 	std::vector<Point3d> middle(components, Point3d(0, 0, 0));
 	std::vector<double> volume(components, 0), area(components, 0);
 	std::vector<int> size(components, 0);
-	for (int v = 0; v < mesh.vertexSlots(); ++v) {
+	detail::reportedLoop(mesh.vertexSlots(), progress.part(0.85, 0.87), what, [&](int v) {
 		middle[component[v]] += mesh.position[v];
 		++size[component[v]];
-	}
+	});
 	for (int c = 0; c < components; ++c)
 		middle[c] /= double(size[c]);
-	for (int f = 0; f < mesh.faceSlots(); ++f) {
+	detail::reportedLoop(mesh.faceSlots(), progress.part(0.87, 0.9), what, [&](int f) {
 		const int first = mesh.origin(3 * f), c = component[first];
 		const Point3d n = mesh.areaVector(f);
 		area[c] += n.Norm() / 2;
 		volume[c] += (mesh.position[first] - middle[c]) * n / 6;
-	}
+	});
 	int insideOut = 0;
 	std::vector<Point3d> flat;
 	for (int c = 0; c < components; ++c) {
@@ -192,14 +201,14 @@ inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
 		for (Triangle& t : faces)
 			if (volume[component[t[0]]] < 0)
 				std::swap(t[1], t[2]);
-		mesh = SurfaceMesh(std::move(mesh.position), faces, progress.part(0.8, 1));
+		mesh = SurfaceMesh(std::move(mesh.position), faces, progress.part(0.9, 1));
 		result.notes.push_back(insideOut == components
 				? std::string("The mesh was inside out and has been turned.")
 				: std::to_string(insideOut) + " of " + std::to_string(components)
 					+ " connected components were inside out; each is taken as a solid of its own "
 					  "(a cavity inside a body is not subtracted from it).");
 	}
-	progress.report(1, "Checking the surface");
+	progress.report(1, what);
 	result.mesh = std::move(mesh);
 	result.vertexOfInput = std::move(vertexOfInput);
 	return result;

@@ -6,7 +6,9 @@
 #ifndef VCG_MCF_CREASE_EDGES_H
 #define VCG_MCF_CREASE_EDGES_H
 
+#include "progress.h"
 #include "surface_mesh.h"
+#include "ticker.h"
 
 #include <algorithm>
 #include <cmath>
@@ -38,16 +40,20 @@ public:
 	 * Finds the creases of `surface`.
 	 * @param shortest length, mesh units, below which a chain through a vertex is no crease:
 	 *                 a function of the vertex.
+	 * @throws Cancelled
 	 * Complexity: O(F + sharp edges x edges in a shortest crease).
 	 */
 	template <class ShortestAt>
-	CreaseEdges(const SurfaceMesh& surface, ShortestAt&& shortest)
+	CreaseEdges(
+		const SurfaceMesh& surface, ShortestAt&& shortest, const Progress& progress = Progress())
 	{
 		std::vector<int> candidates;
-		const std::vector<Point3d> normals = unitNormals(surface);
-		for (int h = 0; h < surface.halfEdgeSlots(); ++h)
-			if (surface.isEdge(h) && isSharp(normals[h / 3], normals[surface.twin(h) / 3]))
-				candidates.push_back(h);
+		const std::vector<Point3d> normals = unitNormals(surface, progress.part(0, 0.5));
+		detail::reportedLoop(
+			surface.halfEdgeSlots(), progress.part(0.5, 1), findingCreases, [&](int h) {
+				if (surface.isEdge(h) && isSharp(normals[h / 3], normals[surface.twin(h) / 3]))
+					candidates.push_back(h);
+			});
 		if (candidates.empty())
 			return;
 		std::vector<char> candidate(surface.halfEdgeSlots(), 0);
@@ -154,17 +160,19 @@ private:
 	static constexpr double sharpCosine = 0.5;         // 60 degrees between the normals
 	static constexpr double straightCosine = 0.707106; // 45 degrees between edges of a chain
 
-	static std::vector<Point3d> unitNormals(const SurfaceMesh& surface)
+	static constexpr const char* findingCreases = "Finding the creases";
+
+	static std::vector<Point3d> unitNormals(const SurfaceMesh& surface, const Progress& progress)
 	{
 		std::vector<Point3d> normals(surface.faceSlots(), Point3d(0, 0, 0));
-		for (int f = 0; f < surface.faceSlots(); ++f) {
+		detail::reportedLoop(surface.faceSlots(), progress, findingCreases, [&](int f) {
 			if (!surface.isFace(f))
-				continue;
+				return;
 			const Point3d n = surface.areaVector(f);
 			const double length = n.Norm();
 			if (length > 0)
 				normals[f] = n / length;
-		}
+		});
 		return normals;
 	}
 

@@ -25,8 +25,8 @@ class IsotropicRemesher
 public:
 	/// @see TrackedMesh::TrackedMesh()
 	IsotropicRemesher(const SurfaceMesh& surface, const std::vector<int>& componentOfVertex,
-		const std::vector<double>& targetLength) :
-			tracked(surface, componentOfVertex, targetLength),
+		const std::vector<double>& targetLength, const Progress& progress) :
+			tracked(surface, componentOfVertex, targetLength, progress),
 			mesh(tracked.mesh)
 	{
 	}

@@ -6,10 +6,10 @@
 #ifndef VCG_MCF_NOISE_H
 #define VCG_MCF_NOISE_H
 
-#include "check_input.h"
+#include "measured_surface.h"
 #include "progress.h"
-#include "stage.h"
 #include "surface_mesh.h"
+#include "ticker.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,26 +19,34 @@ namespace vcg::tri::mcf {
 
 namespace detail {
 
+constexpr const char* measuringNoise = "Measuring the noise";
+
 /// The means over the rings of a surface.
 class RingMeans
 {
 public:
-	/// @pre mesh is compact.
-	explicit RingMeans(const SurfaceMesh& mesh) : mesh(mesh), valences(mesh.vertexSlots(), 0)
+	/// @pre mesh is compact. @param what it is done for. @throws Cancelled
+	RingMeans(const SurfaceMesh& mesh, const Progress& progress, const char* what) :
+			mesh(mesh), what(what), valences(mesh.vertexSlots(), 0)
 	{
-		for (int h = 0; h < mesh.halfEdgeSlots(); ++h)
-			++valences[mesh.origin(h)];
+		reportedLoop(
+			mesh.halfEdgeSlots(), progress, what, [&](int h) { ++valences[mesh.origin(h)]; });
 	}
 
 	int valence(int v) const { return valences[v]; }
 
 	/// For each vertex the mean of `values` over its ring, (M x)_i = sum_j x_j / valence(i).
-	std::vector<Point3d> of(const std::vector<Point3d>& values) const
+	/// @throws Cancelled
+	std::vector<Point3d> of(const std::vector<Point3d>& values, const Progress& progress) const
 	{
-		// In the order of the half-edges, which lie side by side, unlike those of a ring.
+		// In the order of the faces, which lie side by side, unlike those of a ring.
 		std::vector<Point3d> mean(values.size(), Point3d(0, 0, 0));
-		for (int h = 0; h < mesh.halfEdgeSlots(); ++h)
-			mean[mesh.origin(h)] += values[mesh.target(h)];
+		reportedLoop(mesh.faceSlots(), progress, what, [&](int f) {
+			const auto [a, b, c] = mesh.triangle(f);
+			mean[a] += values[b];
+			mean[b] += values[c];
+			mean[c] += values[a];
+		});
 		for (size_t v = 0; v < mean.size(); ++v)
 			mean[v] /= double(valences[v]);
 		return mean;
@@ -46,10 +54,11 @@ public:
 
 private:
 	const SurfaceMesh& mesh;
+	const char* what;
 	std::vector<int> valences;
 };
 
-/// Euclidean norms of rows of (I - M)^2, one after the other.
+/// Rows of (I - M)^2, one after the other.
 class BilaplacianRows
 {
 public:
@@ -58,7 +67,15 @@ public:
 	{
 	}
 
-	double norm(int v)
+	struct Row
+	{
+		/// ((I - M)^2 x)_v for the positions x, mesh units.
+		Point3d ofPositions = Point3d(0, 0, 0);
+		/// Euclidean.
+		double norm = 0;
+	};
+
+	Row at(int v)
 	{
 		// The row has an entry for v, its ring, and the rings of its ring.
 		add(v, 1);
@@ -68,13 +85,17 @@ public:
 			const double share = 1.0 / (double(rings.valence(v)) * rings.valence(j));
 			mesh.forEachOutgoing(j, [&](int g) { add(mesh.target(g), share); });
 		});
+		Row row;
 		double squared = 0;
 		for (int column : columns) {
-			squared += entry[column] * entry[column]; // 0 where the column comes again
-			entry[column] = 0;
+			// The entries add up to zero: positions count from that of v.
+			row.ofPositions += (mesh.position[column] - mesh.position[v]) * entry[column];
+			squared += entry[column] * entry[column];
+			entry[column] = 0; // the column may come again
 		}
 		columns.clear();
-		return std::sqrt(squared);
+		row.norm = std::sqrt(squared);
+		return row;
 	}
 
 private:
@@ -103,44 +124,31 @@ private:
  * @throws Cancelled. Complexity: O(V).
  */
 inline std::vector<double> noiseLevel(
-	const SurfaceMesh& mesh, const Progress& progress = Progress())
+	const MeasuredSurface& surface, const Progress& progress = Progress())
 {
-	constexpr int enough = 50000, reportEvery = 1 << 12;
-	const char* const what = "Measuring the noise";
-	progress.report(0, what);
-	int components = 0;
-	const std::vector<int> component = connectedComponents(mesh, &components);
-	progress.report(0.05, what);
-	const detail::RingMeans rings(mesh);
-	std::vector<Point3d> normal = mesh.vertexNormals();
-	for (int round = 0; round < 3; ++round) {
-		progress.report(0.1 + 0.1 * round, what);
-		normal = rings.of(normal);
-	}
-	progress.report(0.4, what);
-	const std::vector<Point3d> once = rings.of(mesh.position);
-	std::vector<Point3d> rest(once.size());
-	for (size_t v = 0; v < rest.size(); ++v)
-		rest[v] = mesh.position[v] - once[v];
-	progress.report(0.5, what);
-	const std::vector<Point3d> restMean = rings.of(rest);
-	progress.report(0.55, what);
+	constexpr int enough = 50000, normalRounds = 3;
+	const SurfaceMesh& mesh = surface.mesh();
+	const detail::RingMeans rings(mesh, progress.part(0, 0.1), detail::measuringNoise);
+	std::vector<Point3d> normal = mesh.vertexNormals(progress.part(0.1, 0.2));
+	for (int round = 0; round < normalRounds; ++round)
+		normal = rings.of(normal, progress.part(0.2 + 0.2 * round, 0.4 + 0.2 * round));
 	detail::BilaplacianRows rows(mesh, rings);
+	const int components = surface.components();
 	std::vector<int> size(components, 0), seen(components, 0);
-	for (int c : component)
+	for (int c : surface.component())
 		++size[c];
 	std::vector<std::vector<double>> deviations(components);
-	for (int v = 0; v < mesh.vertexSlots(); ++v) {
-		if (v % reportEvery == 0)
-			progress.report(0.6 + 0.4 * v / mesh.vertexSlots(), what);
-		const int c = component[v];
-		if (seen[c]++ % (1 + size[c] / enough) != 0)
-			continue;
-		const double length = normal[v].Norm();
-		if (length > 0)
-			deviations[c].push_back(
-				std::abs((rest[v] - restMean[v]) * normal[v]) / length / rows.norm(v));
-	}
+	detail::reportedLoop(
+		mesh.vertexSlots(), progress.part(0.8, 1), detail::measuringNoise, [&](int v) {
+			const int c = surface.component()[v];
+			if (seen[c]++ % (1 + size[c] / enough) != 0)
+				return;
+			const double length = normal[v].Norm();
+			if (!(length > 0))
+				return;
+			const auto row = rows.at(v);
+			deviations[c].push_back(std::abs(row.ofPositions * normal[v]) / length / row.norm);
+		});
 	constexpr double deviationOfMedian = 1.4826; // of a normal distribution
 	std::vector<double> sigma(components, 0);
 	for (int c = 0; c < components; ++c) {
@@ -161,22 +169,23 @@ inline std::vector<double> noiseLevel(
  * @pre mesh is compact.
  * @throws Cancelled. Complexity: O(V) a round.
  */
-inline SurfaceMesh smoothed(
-	SurfaceMesh mesh, const std::vector<int>& rounds, const Progress& progress = Progress())
+inline SurfaceMesh smoothed(const MeasuredSurface& surface, const std::vector<int>& rounds,
+	const Progress& progress = Progress())
 {
 	constexpr double lambda = 0.5, passBand = 0.1;
 	constexpr double mu = 1 / (passBand - 1 / lambda);
-	const std::vector<int> component = connectedComponents(mesh);
+	const char* const what = "Smoothing noise";
+	SurfaceMesh mesh = surface.mesh();
 	const int most = rounds.empty() ? 0 : *std::max_element(rounds.begin(), rounds.end());
-	const detail::RingMeans rings(mesh);
-	for (int round = 0; round < most; ++round) {
-		progress.report(double(round) / most, "Smoothing noise");
-		for (double factor : {lambda, mu}) {
-			const std::vector<Point3d> mean = rings.of(mesh.position);
-			for (int v = 0; v < mesh.vertexSlots(); ++v)
-				if (round < rounds[component[v]])
-					mesh.position[v] += (mean[v] - mesh.position[v]) * factor;
-		}
+	const detail::RingMeans rings(mesh, progress.part(0, 0), what);
+	for (int half = 0; half < 2 * most; ++half) {
+		const Progress ofHalf = progress.part(half / (2.0 * most), (half + 1) / (2.0 * most));
+		const std::vector<Point3d> mean = rings.of(mesh.position, ofHalf.part(0, 0.8));
+		const double factor = half % 2 == 0 ? lambda : mu;
+		detail::reportedLoop(mesh.vertexSlots(), ofHalf.part(0.8, 1), what, [&](int v) {
+			if (half / 2 < rounds[surface.component()[v]])
+				mesh.position[v] += (mean[v] - mesh.position[v]) * factor;
+		});
 	}
 	return mesh;
 }
@@ -200,29 +209,29 @@ struct NoiseReport
  * than 3 % of the diagonal, noise cannot be told from shape, and nothing is done.
  * @pre mesh is compact. @throws Cancelled. Complexity: O(V).
  */
-inline NoiseReport measureNoise(const SurfaceMesh& mesh, const Progress& progress = Progress())
+inline NoiseReport measureNoise(
+	const MeasuredSurface& surface, const Progress& progress = Progress())
 {
 	constexpr double least = 3e-4, leastOfEdge = 0.05, strong = 1.5e-3;
 	constexpr double coarsestEdge = 0.03;
 	constexpr int fewRounds = 10, manyRounds = 40;
-	const char* const what = "Measuring the noise";
-	const std::vector<double> sigma = noiseLevel(mesh, progress.part(0, 0.9));
-	progress.report(0.9, what);
-	int components = 0;
-	const std::vector<int> component = connectedComponents(mesh, &components);
-	progress.report(0.95, what);
-	const std::vector<double> diagonal = componentDiagonals(mesh, component, components);
+	const SurfaceMesh& mesh = surface.mesh();
+	const std::vector<double> sigma = noiseLevel(surface, progress.part(0, 0.9));
+	const int components = surface.components();
 	std::vector<double> edgeSum(components, 0);
 	std::vector<int> edgeCount(components, 0);
-	for (int h = 0; h < mesh.halfEdgeSlots(); ++h) {
-		const int c = component[mesh.origin(h)];
-		edgeSum[c] += std::sqrt(mesh.squaredLength(h));
-		++edgeCount[c];
-	}
+	detail::reportedLoop(
+		mesh.halfEdgeSlots(), progress.part(0.9, 1), detail::measuringNoise, [&](int h) {
+			if (!mesh.isEdge(h))
+				return;
+			const int c = surface.component()[mesh.origin(h)];
+			edgeSum[c] += std::sqrt(mesh.squaredLength(h));
+			++edgeCount[c];
+		});
 	NoiseReport report;
 	for (int c = 0; c < components; ++c) {
-		const double edge = edgeSum[c] / edgeCount[c] / diagonal[c];
-		const double level = edge > coarsestEdge ? 0 : sigma[c] / diagonal[c];
+		const double edge = edgeSum[c] / edgeCount[c] / surface.diagonal(c);
+		const double level = edge > coarsestEdge ? 0 : sigma[c] / surface.diagonal(c);
 		const bool clean = level < least || level < leastOfEdge * edge;
 		report.level = std::max(report.level, level);
 		report.rounds.push_back(clean ? 0 : level < strong ? fewRounds : manyRounds);

@@ -6,7 +6,9 @@
 #ifndef VCG_MCF_PRINCIPAL_FRAME_H
 #define VCG_MCF_PRINCIPAL_FRAME_H
 
+#include "progress.h"
 #include "surface_mesh.h"
+#include "ticker.h"
 
 #include <Eigen/Eigenvalues>
 
@@ -44,45 +46,49 @@ public:
 	/**
 	 * The frames of the components of a surface.
 	 * @param component of each vertex slot, see connectedComponents().
-	 * @pre the positions are finite. Complexity: O(V + F).
+	 * @pre the positions are finite. @throws Cancelled. Complexity: O(V + F).
 	 */
-	static std::vector<PrincipalFrame> ofComponents(
-		const SurfaceMesh& mesh, const std::vector<int>& component, size_t components)
+	static std::vector<PrincipalFrame> ofComponents(const SurfaceMesh& mesh,
+		const std::vector<int>& component, size_t components, const Progress& progress = Progress())
 	{
-		const auto forEachPoint = [&](auto&& visit) {
-			for (int v = 0; v < mesh.vertexSlots(); ++v)
+		const auto forEachPoint = [&](const Progress& part, auto&& visit) {
+			detail::reportedLoop(mesh.vertexSlots(), part, what, [&](int v) {
 				if (mesh.isVertex(v))
 					visit(size_t(component[v]), mesh.position[v]);
+			});
 		};
-		const auto forEachCell = [&](auto&& visit) {
-			for (int f = 0; f < mesh.faceSlots(); ++f) {
+		const auto forEachCell = [&](const Progress& part, auto&& visit) {
+			detail::reportedLoop(mesh.faceSlots(), part, what, [&](int f) {
 				if (!mesh.isFace(f))
-					continue;
+					return;
 				const Triangle t = mesh.triangle(f);
 				visit(size_t(component[t[0]]),
 					std::array<Point3d, 3> {
 						mesh.position[t[0]], mesh.position[t[1]], mesh.position[t[2]]},
 					mesh.areaVector(f).Norm() / 2);
-			}
+			});
 		};
-		return made(components, forEachPoint, forEachCell);
+		return made(components, forEachPoint, forEachCell, progress);
 	}
 
-	/// The frames of sets of points, all points alike; `component` says which set. Complexity: O(V).
-	static std::vector<PrincipalFrame> ofPoints(
-		const std::vector<Point3d>& points, const std::vector<int>& component, size_t components)
+	/// The frames of sets of points, all points alike; `component` says which set.
+	/// @throws Cancelled. Complexity: O(V).
+	static std::vector<PrincipalFrame> ofPoints(const std::vector<Point3d>& points,
+		const std::vector<int>& component, size_t components, const Progress& progress = Progress())
 	{
-		const auto forEachPoint = [&](auto&& visit) {
-			for (size_t i = 0; i < points.size(); ++i)
-				visit(size_t(component[i]), points[i]);
+		const auto forEachPoint = [&](const Progress& part, auto&& visit) {
+			detail::reportedLoop(int(points.size()), part, what,
+				[&](int i) { visit(size_t(component[i]), points[i]); });
 		};
-		const auto forEachCell = [&](auto&& visit) {
-			for (size_t i = 0; i < points.size(); ++i)
-				visit(size_t(component[i]), std::array<Point3d, 1> {points[i]}, 1.0);
+		const auto forEachCell = [&](const Progress& part, auto&& visit) {
+			forEachPoint(part,
+				[&](size_t c, const Point3d& p) { visit(c, std::array<Point3d, 1> {p}, 1.0); });
 		};
-		return made(components, forEachPoint, forEachCell);
+		return made(components, forEachPoint, forEachCell, progress);
 	}
 
+	/// Area of the surface that the frame is of, mesh units squared; of points, their number.
+	double area() const { return weight; }
 	/// Diagonal of the bounding box along the axes, mesh units.
 	double size() const { return diagonal; }
 	/// The same in the coordinates inside, rounded for the same bits.
@@ -120,6 +126,8 @@ public:
 
 private:
 	using Axes = std::array<Point3d, 3>;
+
+	static constexpr const char* what = "Measuring the surface";
 
 	static double rounded(double x, int binaryDigits)
 	{
@@ -190,7 +198,7 @@ private:
 
 	Point3d origin = Point3d(0, 0, 0);
 	Axes axes = coordinateAxes();
-	double unit = 1, diagonal = 1;
+	double unit = 1, diagonal = 1, weight = 0;
 
 	static Axes coordinateAxes() { return {Point3d(1, 0, 0), Point3d(0, 1, 0), Point3d(0, 0, 1)}; }
 
@@ -200,25 +208,27 @@ private:
 	}
 
 	/**
-	 * @param forEachPoint calls visit(component, point) for all points that the box must hold.
-	 * @param forEachCell  calls visit(component, corners, area) for all cells of the integrals.
+	 * @param forEachPoint (progress, visit) calls visit(component, point) for all points that the box
+	 *                     must hold.
+	 * @param forEachCell  (progress, visit) calls visit(component, corners, area) for all cells of
+	 *                     the integrals.
 	 */
 	template <class ForEachPoint, class ForEachCell>
-	static std::vector<PrincipalFrame> made(
-		size_t components, ForEachPoint&& forEachPoint, ForEachCell&& forEachCell)
+	static std::vector<PrincipalFrame> made(size_t components, ForEachPoint&& forEachPoint,
+		ForEachCell&& forEachCell, const Progress& progress)
 	{
 		std::vector<PrincipalFrame> frame(components);
 		std::vector<Moments> moments(components);
 		// Moments are taken near the middle: far from the origin, they would lose all digits.
 		std::vector<Box3d> box(components);
-		forEachPoint([&](size_t c, const Point3d& p) { box[c].Add(p); });
+		forEachPoint(progress.part(0, 0.1), [&](size_t c, const Point3d& p) { box[c].Add(p); });
 		for (size_t c = 0; c < components; ++c)
 			if (!box[c].IsNull()) {
 				frame[c].origin = box[c].Center();
 				if (box[c].Diag() > 0)
 					frame[c].unit = frame[c].diagonal = box[c].Diag();
 			}
-		forEachCell([&](size_t c, auto corners, double area) {
+		forEachCell(progress.part(0.1, 0.5), [&](size_t c, auto corners, double area) {
 			const double scale = 1 / frame[c].unit;
 			for (Point3d& p : corners)
 				p = (p - frame[c].origin) * scale;
@@ -226,7 +236,7 @@ private:
 		});
 		for (size_t c = 0; c < components; ++c)
 			frame[c].align(moments[c]);
-		forEachCell([&](size_t c, const auto& corners, double area) {
+		forEachCell(progress.part(0.5, 0.9), [&](size_t c, const auto& corners, double area) {
 			const double scale = 1 / frame[c].unit;
 			for (int k = 0; k < 3; ++k) {
 				std::array<double, std::tuple_size_v<std::decay_t<decltype(corners)>>> u;
@@ -238,13 +248,14 @@ private:
 		std::vector<Box3d> along(components);
 		for (size_t c = 0; c < components; ++c)
 			frame[c].orient(moments[c]);
-		forEachPoint([&](size_t c, const Point3d& p) {
+		forEachPoint(progress.part(0.9, 1), [&](size_t c, const Point3d& p) {
 			along[c].Add(frame[c].turned(p - frame[c].origin));
 		});
 		for (size_t c = 0; c < components; ++c) {
 			if (!along[c].IsNull() && along[c].Diag() > 0)
 				frame[c].diagonal = along[c].Diag();
 			frame[c].unit *= moments[c].extent();
+			frame[c].weight = moments[c].weight;
 		}
 		return frame;
 	}

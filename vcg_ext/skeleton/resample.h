@@ -10,11 +10,12 @@
 #include "check_input.h"
 #include "errors.h"
 #include "isotropic_remesher.h"
+#include "measured_surface.h"
 #include "principal_frame.h"
 #include "progress.h"
 #include "surface_mesh.h"
-#include "target_length.h"
 #include "thin_triangles.h"
+#include "ticker.h"
 
 #include <algorithm>
 #include <cmath>
@@ -52,13 +53,13 @@ namespace vcg::tri::mcf {
  * Source: Botsch and Kobbelt, "A remeshing approach to multiresolution modeling", SGP 2004, Sec. 4;
  * the projection by walking, the creases and the coarsening are ours.
  */
-inline SurfaceMesh resample(const SurfaceMesh& surface,
+inline SurfaceMesh resample(const MeasuredSurface& surface,
 	const std::vector<double>& targetLengthOfComponent, int iterations,
 	const Progress& progress = Progress())
 {
 	constexpr double mostVertices = 2e7;
-	int components = 0;
-	const std::vector<int> component = connectedComponents(surface, &components);
+	const std::vector<int>& component = surface.component();
+	const int components = surface.components();
 	if (int(targetLengthOfComponent.size()) != components)
 		throw InvalidParameter("Resampling needs one target length for each of the "
 			+ std::to_string(components) + " components, not "
@@ -66,41 +67,38 @@ inline SurfaceMesh resample(const SurfaceMesh& surface,
 	for (double length : targetLengthOfComponent)
 		if (!(length > 0) || !std::isfinite(length))
 			throw InvalidParameter("The target length of a component must be greater than 0.");
-	SurfaceMesh reference = surface;
 	if (iterations <= 0) {
-		reference.compact();
-		return reference;
+		SurfaceMesh copy = surface.mesh();
+		copy.compact();
+		return copy;
 	}
-	const char* const what = "Ordering the surface";
-	progress.report(0, what);
-	const std::vector<PrincipalFrame> frame =
-		PrincipalFrame::ofComponents(surface, component, size_t(components));
-	progress.report(0, what);
 	std::vector<double> targetLength;
-	for (int c = 0; c < components; ++c)
-		targetLength.push_back(frame[c].lengthOnGrid(targetLengthOfComponent[c]));
-	for (int v = 0; v < surface.vertexSlots(); ++v)
-		if (surface.isVertex(v))
-			reference.position[v] = frame[component[v]].onGrid(surface.position[v]);
-	// The input as the passes like it: neighbours near each other, no triangles without a normal.
-	progress.report(0, what);
-	const Numbering number = breadthFirstOrder(
-		reference, leastHalfEdges(reference, component, components), progress.part(0, 0.1));
-	reference = reference.renumbered(number.vertex, number.face, number.firstCorner);
-	progress.report(0.1, what);
-	const auto lengthAt = [&](int v) { return targetLength[number.component[v]]; };
-	double expected = 0;
-	for (int f = 0; f < reference.faceSlots(); ++f) {
-		const double length = lengthAt(reference.origin(3 * f));
-		expected += reference.areaVector(f).Norm() / (std::sqrt(3.0) * length * length);
+	double expected = 0; // vertices
+	for (int c = 0; c < components; ++c) {
+		const double length = targetLengthOfComponent[c];
+		targetLength.push_back(surface.frame(c).lengthOnGrid(length));
+		expected += 2 * surface.area(c) / (std::sqrt(3.0) * length * length);
 	}
 	if (!(expected <= mostVertices))
 		throw InvalidParameter("Parameter target_length is too small: the surface would need "
 			+ std::to_string(std::llround(expected / 1e6)) + " million vertices.");
-	removeThinTriangles(reference, lengthAt);
-	progress.report(0.1, what);
-	detail::IsotropicRemesher remesher(reference, number.component, targetLength);
-	remesher.coarsen(progress.part(0.1, 0.4));
+	// The input as the passes like it: neighbours near each other, no triangles without a normal.
+	const char* const what = "Ordering the surface";
+	const auto onGrid = [&](int c, const Point3d& p) { return surface.frame(c).onGrid(p); };
+	progress.report(0, what);
+	const std::vector<int> seeds = leastHalfEdges(surface.mesh(), component, components,
+		[&](int v) { return onGrid(component[v], surface.mesh().position[v]); });
+	const Numbering number = breadthFirstOrder(surface.mesh(), seeds, progress.part(0, 0.06));
+	SurfaceMesh reference = surface.mesh().renumbered(
+		number.vertex, number.face, number.firstCorner, progress.part(0.06, 0.1));
+	detail::reportedLoop(reference.vertexSlots(), progress.part(0.1, 0.12), what,
+		[&](int v) { reference.position[v] = onGrid(number.component[v], reference.position[v]); });
+	removeThinTriangles(
+		reference, [&](int v) { return targetLength[number.component[v]]; },
+		progress.part(0.12, 0.13));
+	detail::IsotropicRemesher remesher(
+		reference, number.component, targetLength, progress.part(0.13, 0.15));
+	remesher.coarsen(progress.part(0.15, 0.4));
 	remesher.refine(progress.part(0.4, 0.5));
 	for (int i = 0; i < iterations; ++i) {
 		const Progress round =
@@ -120,7 +118,7 @@ inline SurfaceMesh resample(const SurfaceMesh& surface,
 		PrincipalFrame::ofPoints(result.position, componentOfResult, size_t(components));
 	for (int v = 0; v < result.vertexSlots(); ++v) {
 		const int c = componentOfResult[v];
-		result.position[v] = frame[c].out(frameOfResult[c].snapped(result.position[v]));
+		result.position[v] = surface.frame(c).out(frameOfResult[c].snapped(result.position[v]));
 	}
 	return result;
 }

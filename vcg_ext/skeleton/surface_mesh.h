@@ -8,6 +8,7 @@
 
 #include "errors.h"
 #include "progress.h"
+#include "ticker.h"
 
 #include <vcg/space/box3.h>
 #include <vcg/space/point3.h>
@@ -52,10 +53,10 @@ public:
 		const Progress& progress = Progress()) :
 			position(std::move(points))
 	{
-		setTriangles(triangles);
-		if (!pairTwins(progress))
+		setTriangles(triangles, progress.part(0, 0.1));
+		if (!pairTwins(progress.part(0.1, 0.9)))
 			throw InvalidInput("The mesh is not closed, or its faces are not oriented alike.");
-		chooseOutgoing();
+		chooseOutgoing(progress.part(0.9, 1));
 	}
 
 	/**
@@ -72,28 +73,24 @@ public:
 				return std::nullopt;
 		SurfaceMesh mesh;
 		mesh.position = std::move(points);
-		mesh.setTriangles(triangles);
-		if (!mesh.pairTwins(progress.part(0, 0.6)))
+		mesh.setTriangles(triangles, progress.part(0, 0.1));
+		if (!mesh.pairTwins(progress.part(0.1, 0.6)))
 			return std::nullopt;
-		mesh.chooseOutgoing();
+		mesh.chooseOutgoing(progress.part(0.6, 0.7));
 		// One ring of distinct neighbours at each vertex, and no half-edge outside of these rings.
 		long inRings = 0;
-		for (int v = 0; v < mesh.vertexSlots(); ++v) {
-			if (v % reportEvery == 0)
-				progress.report(0.6 + 0.4 * v / mesh.vertexSlots(), "Checking the surface");
-			if (!mesh.isVertex(v))
-				continue;
+		bool distinct = true;
+		detail::reportedLoop(mesh.vertexSlots(), progress.part(0.7, 1), checking, [&](int v) {
+			if (!distinct || !mesh.isVertex(v))
+				return;
 			const int stamp = mesh.nextStamp();
-			bool distinct = true;
 			mesh.forEachOutgoing(v, [&](int h) {
 				distinct &= mesh.stamps[mesh.target(h)] != stamp;
 				mesh.stamps[mesh.target(h)] = stamp;
 				++inRings;
 			});
-			if (!distinct)
-				return std::nullopt;
-		}
-		if (inRings != mesh.halfEdgeSlots())
+		});
+		if (!distinct || inRings != mesh.halfEdgeSlots())
 			return std::nullopt;
 		return mesh;
 	}
@@ -214,16 +211,17 @@ public:
 	}
 
 	/// Unit normal of each vertex slot, weighted by area; zero where it is not defined.
-	std::vector<Point3d> vertexNormals() const
+	/// @throws Cancelled
+	std::vector<Point3d> vertexNormals(const Progress& progress = Progress()) const
 	{
 		std::vector<Point3d> normals(vertexSlots(), Point3d(0, 0, 0));
-		for (int f = 0; f < faceSlots(); ++f) {
+		detail::reportedLoop(faceSlots(), progress, "Measuring the surface", [&](int f) {
 			if (!isFace(f))
-				continue;
+				return;
 			const Point3d n = areaVector(f);
 			for (int k = 0; k < 3; ++k)
 				normals[origins[3 * f + k]] += n;
-		}
+		});
 		for (Point3d& n : normals) {
 			const double length = n.Norm();
 			n = length > 0 ? Point3d(n / length) : Point3d(0, 0, 0);
@@ -505,36 +503,39 @@ public:
 	 * @param firstCorner for each face slot which of its corners shall be the first; empty: the one
 	 *                  that is.
 	 * @pre the new ids are those from 0 to the number of live elements, each once.
+	 * @throws Cancelled
 	 */
 	SurfaceMesh renumbered(const std::vector<int>& newVertex, const std::vector<int>& newFace,
-		const std::vector<char>& firstCorner = {}) const
+		const std::vector<char>& firstCorner = {}, const Progress& progress = Progress()) const
 	{
+		const char* const what = "Ordering the surface";
 		const auto newId = [&](int h) {
 			const int corner = firstCorner.empty() ? h % 3 : (h % 3 + 3 - firstCorner[h / 3]) % 3;
 			return 3 * newFace[h / 3] + corner;
 		};
 		SurfaceMesh result;
 		result.position.resize(liveVertices);
-		for (int v = 0; v < vertexSlots(); ++v)
+		detail::reportedLoop(vertexSlots(), progress.part(0, 0.2), what, [&](int v) {
 			if (newVertex[v] >= 0)
 				result.position[newVertex[v]] = position[v];
+		});
 		result.liveFaces = liveFaces;
 		result.origins.resize(3 * size_t(liveFaces));
 		result.twins.resize(3 * size_t(liveFaces));
-		for (int h = 0; h < halfEdgeSlots(); ++h) {
+		detail::reportedLoop(halfEdgeSlots(), progress.part(0.2, 0.8), what, [&](int h) {
 			if (newFace[h / 3] < 0)
-				continue;
+				return;
 			const int id = newId(h);
 			result.origins[id] = newVertex[origins[h]];
 			result.twins[id] = newId(twins[h]);
-		}
+		});
 		result.outgoings.assign(result.position.size(), -1);
-		result.chooseOutgoing();
+		result.chooseOutgoing(progress.part(0.8, 1));
 		return result;
 	}
 
 private:
-	static constexpr int reportEvery = 1 << 16;
+	static constexpr const char* checking = "Checking the surface";
 
 	std::vector<int> origins;
 	std::vector<int> twins;
@@ -569,12 +570,13 @@ private:
 		return ++stampClock;
 	}
 
-	void setTriangles(const std::vector<Triangle>& triangles)
+	void setTriangles(const std::vector<Triangle>& triangles, const Progress& progress)
 	{
 		origins.resize(3 * triangles.size());
-		for (size_t f = 0; f < triangles.size(); ++f)
+		detail::reportedLoop(int(triangles.size()), progress, checking, [&](int f) {
 			for (int k = 0; k < 3; ++k)
 				origins[3 * f + k] = triangles[f][k];
+		});
 		twins.assign(origins.size(), -1);
 		outgoings.assign(position.size(), -1);
 		liveFaces = int(triangles.size());
@@ -588,14 +590,12 @@ private:
 		const int n = int(position.size());
 		std::vector<int> start(n + 1, 0), bucket(origins.size());
 		const auto lower = [&](int h) { return std::min(origin(h), target(h)); };
-		for (int h = 0; h < halfEdgeSlots(); ++h)
-			++start[lower(h) + 1];
+		detail::reportedLoop(halfEdgeSlots(), progress.part(0, 0.2), checking,
+			[&](int h) { ++start[lower(h) + 1]; });
 		for (int v = 0; v < n; ++v)
 			start[v + 1] += start[v];
 		std::vector<int> end(start.begin(), start.end() - 1);
-		for (int h = 0; h < halfEdgeSlots(); ++h) {
-			if (h % reportEvery == 0)
-				progress.report(double(h) / halfEdgeSlots(), "Checking the surface");
+		detail::reportedLoop(halfEdgeSlots(), progress.part(0.2, 1), checking, [&](int h) {
 			const int low = lower(h);
 			for (int i = start[low]; i < end[low]; ++i) {
 				const int g = bucket[i];
@@ -607,14 +607,16 @@ private:
 			}
 			if (twins[h] < 0)
 				bucket[end[low]++] = h;
-		}
+		});
 		return std::find(twins.begin(), twins.end(), -1) == twins.end();
 	}
 
-	void chooseOutgoing()
+	/// @throws Cancelled
+	void chooseOutgoing(const Progress& progress = Progress())
 	{
-		for (int h = halfEdgeSlots() - 1; h >= 0; --h)
-			outgoings[origins[h]] = h;
+		const int last = halfEdgeSlots() - 1;
+		detail::reportedLoop(halfEdgeSlots(), progress, "Linking the surface",
+			[&](int i) { outgoings[origins[last - i]] = last - i; });
 		liveVertices =
 			int(std::count_if(outgoings.begin(), outgoings.end(), [](int h) { return h >= 0; }));
 		stamps.assign(outgoings.size(), 0);

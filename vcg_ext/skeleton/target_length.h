@@ -6,10 +6,8 @@
 #ifndef VCG_MCF_TARGET_LENGTH_H
 #define VCG_MCF_TARGET_LENGTH_H
 
-#include "check_input.h"
+#include "measured_surface.h"
 #include "parameters.h"
-#include "stage.h"
-#include "surface_mesh.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,31 +27,28 @@ namespace vcg::tri::mcf {
  * @param parameters targetLength > 0 is taken instead, as a fraction of each component's own
  *                   bounding box diagonal.
  * @return one length for each component, in the order of connectedComponents().
- * Complexity: O(V + F).
+ * Complexity: O(c), and O(V) for the bounding boxes.
  */
 inline std::vector<double> defaultTargetLength(
-	const SurfaceMesh& surface, const Parameters& parameters = Parameters())
+	const MeasuredSurface& surface, const Parameters& parameters = Parameters())
 {
 	constexpr double totalVertices = 45000, fewestVertices = 3000;
 	const double areaOfVertex = std::sqrt(3.0) / 2; // for edges of length 1
-	int count = 0;
-	const std::vector<int> component = connectedComponents(surface, &count);
+	const int count = surface.components();
 	std::vector<double> length(count);
 	if (parameters.targetLength > 0) {
 		std::vector<Box3d> box(count);
-		for (int v = 0; v < surface.vertexSlots(); ++v)
-			if (surface.isVertex(v))
-				box[component[v]].Add(surface.position[v]);
+		for (int v = 0; v < surface.mesh().vertexSlots(); ++v)
+			if (surface.mesh().isVertex(v))
+				box[surface.component()[v]].Add(surface.mesh().position[v]);
 		for (int c = 0; c < count; ++c)
 			length[c] = parameters.targetLength * box[c].Diag();
 		return length;
 	}
-	const std::vector<double> area = componentAreas(surface, component, size_t(count));
-	const std::vector<double> diagonal = componentDiagonals(surface, component, size_t(count));
 	const double vertices = std::max(fewestVertices, totalVertices / std::max(count, 1));
 	for (int c = 0; c < count; ++c)
-		length[c] = std::min(
-			std::sqrt(area[c] / (areaOfVertex * vertices)), 8 * parameters.epsilon * diagonal[c]);
+		length[c] = std::min(std::sqrt(surface.area(c) / (areaOfVertex * vertices)),
+			8 * parameters.epsilon * surface.diagonal(c));
 	return length;
 }
 

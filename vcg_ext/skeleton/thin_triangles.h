@@ -6,7 +6,9 @@
 #ifndef VCG_MCF_THIN_TRIANGLES_H
 #define VCG_MCF_THIN_TRIANGLES_H
 
+#include "progress.h"
 #include "surface_mesh.h"
+#include "ticker.h"
 
 #include <algorithm>
 #include <cmath>
@@ -61,40 +63,45 @@ inline bool flipCuresCap(const SurfaceMesh& mesh, int h, double length)
  * @param mesh     changes in place; its numbering keeps holes.
  * @param lengthAt double(vertex): the length that matters there, mesh units.
  * @return how many thin triangles are left, where the topology or a fold allows no more.
+ * @throws Cancelled
  * Complexity: O(F) if there are few of them.
  */
 template <class LengthAt>
-int removeThinTriangles(SurfaceMesh& mesh, LengthAt&& lengthAt)
+int removeThinTriangles(
+	SurfaceMesh& mesh, LengthAt&& lengthAt, const Progress& progress = Progress())
 {
 	constexpr int rounds = 20;
 	int left = 0;
 	for (int round = 0; round < rounds; ++round) {
 		left = 0;
 		bool changed = false;
-		for (int f = 0; f < mesh.faceSlots(); ++f) {
+		const auto treat = [&](int f) {
 			if (!mesh.isFace(f))
-				continue;
+				return;
 			const Triangle t = mesh.triangle(f);
 			const double length = lengthAt(t[0]);
 			if (!detail::isThin(
 					mesh.position[t[0]], mesh.position[t[1]], mesh.position[t[2]], length))
-				continue;
+				return;
 			++left;
 			const int shortest = detail::extremeEdge(mesh, f, std::less<double>());
 			const int longest = detail::extremeEdge(mesh, f, std::greater<double>());
 			const double matters = std::min(std::sqrt(mesh.squaredLength(longest)), length);
 			if (std::sqrt(mesh.squaredLength(shortest)) <= 2 * detail::thinness * matters) {
 				if (!mesh.isCollapsible(shortest))
-					continue;
+					return;
 				mesh.collapse(shortest);
 			}
 			else {
 				if (!detail::flipCuresCap(mesh, longest, length) || !mesh.isFlippable(longest))
-					continue;
+					return;
 				mesh.flip(longest);
 			}
 			changed = true;
-		}
+		};
+		detail::reportedLoop(mesh.faceSlots(),
+			progress.part(double(round) / rounds, double(round + 1) / rounds),
+			"Removing thin triangles", treat);
 		if (!changed)
 			break;
 	}

@@ -37,6 +37,22 @@ private:
 	std::uint32_t count = 0;
 };
 
+/**
+ * Calls visit(i) for all i in [0, count), in this order, and lets the user cancel now and then.
+ * @throws Cancelled
+ */
+template <class Visit>
+void reportedLoop(int count, const Progress& progress, const char* what, Visit&& visit)
+{
+	constexpr int reportEvery = 1 << 15;
+	for (int begin = 0; begin < count;) {
+		progress.report(double(begin) / count, what);
+		const int end = count - begin > reportEvery ? begin + reportEvery : count;
+		for (; begin < end; ++begin)
+			visit(begin);
+	}
+}
+
 } // namespace vcg::tri::mcf::detail
 
 #endif

@@ -39,13 +39,15 @@ public:
 	 * @param surface           may have holes in its numbering; must outlive this object.
 	 * @param componentOfVertex connected component of each vertex slot.
 	 * @param targetLength      of each component, mesh units: lengths that matter are parts of it.
+	 * @throws Cancelled
 	 */
 	TrackedMesh(const SurfaceMesh& surface, const std::vector<int>& componentOfVertex,
-		const std::vector<double>& targetLength) :
+		const std::vector<double>& targetLength, const Progress& progress) :
 			mesh(surface),
 			surface(surface),
-			surfaceCreases(surface,
-				[&](int v) { return shortestCrease * targetLength[componentOfVertex[v]]; }),
+			surfaceCreases(
+				surface, [&](int v) { return shortestCrease * targetLength[componentOfVertex[v]]; },
+				progress),
 			surfaceRoles(surfaceCreases.roles(surface)), creases(surfaceCreases),
 			role(surfaceRoles), component(componentOfVertex), length(targetLength),
 			track(surface.vertexSlots())
