@@ -72,7 +72,11 @@ public:
 	 */
 	Hit closest(const Point3d& query, int near) const
 	{
-		const Hit first = closestFrom(query, near);
+		return closest(query, closestFrom(query, near));
+	}
+	/// The same from what closestFrom() has found.
+	Hit closest(const Point3d& query, const Hit& first) const
+	{
 		Nearest nearest {query, -1, first.distance};
 		tree.search(nearest);
 		if (nearest.slot < 0)

@@ -74,18 +74,22 @@ public:
 	 *
 	 * Ball: `Point3d centre()`, `double reach()`, its radius, and `void visit(int slot, const Point3d&)`,
 	 * which may replace the ball by one inside it. `order()[slot]` is the point's id.
+	 * @tparam nearestFirst  visits the boxes nearest to the centre first: it pays where the ball is
+	 *                       much too large to begin with.
 	 * Complexity: O(log n) for a ball that holds few points.
 	 */
-	template <class Ball>
+	template <bool nearestFirst = false, class Ball>
 	void search(Ball& ball) const
 	{
 		std::array<Range, 64> stack; // three a level; 4^16 leaves fill it
 		int top = 0;
 		if (!ids.empty())
-			stack[top++] = {0, 0, int(ids.size())};
+			stack[top++] = {0, 0, int(ids.size()), 0};
 		while (top > 0) {
 			const Range range = stack[--top];
 			const SingleBall single = toSingle(ball.centre(), ball.reach());
+			if (nearestFirst && range.squaredDistance > single.squaredReach)
+				continue; // the ball has shrunk
 			if (range.node >= int(nodes.size())) {
 				visitLeaf(range, single, ball);
 				continue;
@@ -93,9 +97,16 @@ public:
 			float squaredDistance[4];
 			nodes[range.node].squaredDistances(single.centre, squaredDistance);
 			const std::array<int, 5> cuts = quarters(range.begin, range.end);
+			const int first = top;
 			for (int k = 0; k < 4; ++k)
 				if (squaredDistance[k] <= single.squaredReach)
-					stack[top++] = {4 * range.node + 1 + k, cuts[k], cuts[k + 1]};
+					stack[top++] = {
+						4 * range.node + 1 + k, cuts[k], cuts[k + 1], squaredDistance[k]};
+			if (nearestFirst)
+				std::sort(
+					stack.begin() + first, stack.begin() + top, [](const Range& a, const Range& b) {
+						return a.squaredDistance > b.squaredDistance;
+					});
 		}
 	}
 
@@ -103,7 +114,7 @@ public:
 	int nearest(const Point3d& x) const
 	{
 		Nearest ball {*this, x, std::numeric_limits<double>::max(), -1};
-		search(ball);
+		search<true>(ball);
 		return ball.id;
 	}
 
@@ -114,6 +125,7 @@ private:
 	struct Range
 	{
 		int node, begin, end;
+		float squaredDistance; ///< of its box from the centre, when it was found
 	};
 
 	/// A ball about the tree's origin in single precision, enlarged by what rounding may lose.
@@ -200,11 +212,14 @@ private:
 	void split(const std::vector<Point3d>& points, int begin, int middle, int end)
 	{
 		const int axis = bounds(points, begin, end).MaxDim();
-		std::nth_element(
-			ids.begin() + begin, ids.begin() + middle, ids.begin() + end, [&](int a, int b) {
-				const double x = points[a][axis], y = points[b][axis];
-				return x != y ? x < y : a < b;
-			});
+		// Side by side: to fetch coordinates point by point takes longer than all the rest.
+		std::vector<std::pair<double, int>> keys;
+		keys.reserve(end - begin);
+		for (int i = begin; i < end; ++i)
+			keys.emplace_back(points[ids[i]][axis], ids[i]);
+		std::nth_element(keys.begin(), keys.begin() + (middle - begin), keys.end());
+		for (int i = begin; i < end; ++i)
+			ids[i] = keys[i - begin].second;
 	}
 
 	void build(

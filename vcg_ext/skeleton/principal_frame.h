@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <tuple>
 #include <type_traits>
 #include <vector>
@@ -132,7 +133,8 @@ private:
 	static double rounded(double x, int binaryDigits)
 	{
 		constexpr double goldenPart = 0.6180339887498949; // (sqrt 5 - 1) / 2
-		return std::ldexp(std::floor(std::ldexp(x, binaryDigits) + goldenPart), -binaryDigits);
+		const double steps = double(std::int64_t(1) << binaryDigits);
+		return std::floor(x * steps + goldenPart) / steps;
 	}
 
 	/// Integrals about the origin of a frame, in its unit, weights in units of their own.

@@ -105,12 +105,13 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 			progress.report(double(++done) / total, what);
 		}
 	};
+	KnownClearances clearances(surface);
 	const auto tidy = [&](double spurProminence, double tipDistinctness) {
-		measureBranchEnds(skeleton, surface);
+		measureBranchEnds(skeleton, clearances);
 		skeleton = withoutSpurs(std::move(skeleton), spurProminence);
 		if (tipDistinctness > 0) {
-			skeleton = withoutCornerBranches(std::move(skeleton), surface, tipDistinctness);
-			skeleton = withoutCornerEnds(skeleton, surface, tipDistinctness);
+			skeleton = withoutCornerBranches(std::move(skeleton), clearances, tipDistinctness);
+			skeleton = withoutCornerEnds(skeleton, clearances, tipDistinctness);
 		}
 		skeleton = withWholeJunctions(std::move(skeleton), parameters.junctionProminence);
 		skeleton = evenlySampled(skeleton, surface, parameters.spacing);
@@ -118,7 +119,7 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 		progress.report(double(done) / total, what);
 	};
 	const auto extend = [&] {
-		measureBranchEnds(skeleton, surface);
+		measureBranchEnds(skeleton, clearances);
 		extendTips(skeleton, surface, tips);
 		progress.report(double(done) / total, what);
 	};
@@ -173,14 +174,21 @@ inline std::vector<int> componentOfNodes(
 inline int nearestAlong(const CurveSkeleton& skeleton,
 	const std::vector<std::vector<int>>& neighbours, int node, const Point3d& point)
 {
-	for (;;) {
+	double least = SquaredDistance(skeleton.position[node], point);
+	for (int from = -1;;) {
 		int nearest = node;
-		for (int w : neighbours[node])
-			if (SquaredDistance(skeleton.position[w], point)
-				< SquaredDistance(skeleton.position[nearest], point))
+		for (int w : neighbours[node]) {
+			if (w == from)
+				continue; // it was farther
+			const double squared = SquaredDistance(skeleton.position[w], point);
+			if (squared < least) {
+				least = squared;
 				nearest = w;
+			}
+		}
 		if (nearest == node)
 			return node;
+		from = node;
 		node = nearest;
 	}
 }

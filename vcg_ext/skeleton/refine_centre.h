@@ -78,7 +78,10 @@ inline void ascendAside(Contact& contact, const Point3d& tangent, const ClosestS
 		Point3d slope = (ball.centre * 2 - here.hit.point - ball.contact) / (2 * ball.radius);
 		slope -= tangent * (tangent * slope);
 		const Point3d aside = ball.centre + slope * (pace * ball.radius);
-		here.hit = surface.closest(aside, here.hit.face);
+		const ClosestSurface::Hit first = surface.closestFrom(aside, here.hit.face);
+		if (first.distance <= ball.radius) // and what is closest is closer still
+			return;
+		here.hit = surface.closest(aside, first);
 		if (here.hit.distance <= ball.radius || !surface.isInside(aside, here.hit))
 			return;
 		contact.target = aside;

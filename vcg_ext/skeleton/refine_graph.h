@@ -19,13 +19,32 @@
 
 namespace vcg::tri::mcf::refining {
 
+/// The distances of nodes from the surface, each measured once, wherever the node is numbered.
+class KnownClearances
+{
+public:
+	explicit KnownClearances(const ClosestSurface& surface) : surface(surface) {}
+
+	double at(const Point3d& node)
+	{
+		const auto [place, isNew] = known.emplace(node, 0);
+		if (isNew)
+			place->second = surface.clearance(node);
+		return place->second;
+	}
+
+private:
+	const ClosestSurface& surface;
+	std::map<Point3d, double> known;
+};
+
 /// Sets the radius of each junction and tip to its distance from the surface; 0 outside.
-inline void measureBranchEnds(CurveSkeleton& skeleton, const ClosestSurface& surface)
+inline void measureBranchEnds(CurveSkeleton& skeleton, KnownClearances& clearances)
 {
 	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
 	for (size_t v = 0; v < neighbours.size(); ++v)
 		if (neighbours[v].size() != 2)
-			skeleton.radius[v] = std::max(surface.clearance(skeleton.position[v]), 0.0);
+			skeleton.radius[v] = std::max(clearances.at(skeleton.position[v]), 0.0);
 }
 
 /**
@@ -76,25 +95,6 @@ inline CurveSkeleton withoutSpurs(CurveSkeleton skeleton, double least)
 			return prominence(s, branch.last(), branch.first());
 		});
 }
-
-/// The distances of nodes from the surface, each measured once, wherever the node is numbered.
-class KnownClearances
-{
-public:
-	explicit KnownClearances(const ClosestSurface& surface) : surface(surface) {}
-
-	double at(const Point3d& node)
-	{
-		const auto [place, isNew] = known.emplace(node, 0);
-		if (isNew)
-			place->second = surface.clearance(node);
-		return place->second;
-	}
-
-private:
-	const ClosestSurface& surface;
-	std::map<Point3d, double> known;
-};
 
 /// A terminal branch as the balls on it see it: for each node the way from the first one, and the
 /// distance from the surface.
@@ -153,9 +153,8 @@ inline double distinctness(
  * into corners and edges of the surface, of which a shape has many and a skeleton none.
  */
 inline CurveSkeleton withoutCornerBranches(
-	CurveSkeleton skeleton, const ClosestSurface& surface, double least)
+	CurveSkeleton skeleton, KnownClearances& clearances, double least)
 {
-	KnownClearances clearances(surface);
 	return withoutTerminalBranches(
 		std::move(skeleton), least, [&](const CurveSkeleton& s, const Branch& branch) {
 			return distinctness(s, clearances, branch);
@@ -168,13 +167,12 @@ inline CurveSkeleton withoutCornerBranches(
  * shorter than half a radius. What had merged there goes to the new tip.
  */
 inline CurveSkeleton withoutCornerEnds(
-	const CurveSkeleton& skeleton, const ClosestSurface& surface, double least)
+	const CurveSkeleton& skeleton, KnownClearances& clearances, double least)
 {
 	constexpr double shortest = 0.5;
 	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
 	std::vector<int> target(skeleton.position.size());
 	std::iota(target.begin(), target.end(), 0);
-	KnownClearances clearances(surface);
 	for (Branch branch : skeletonBranches(skeleton)) {
 		for (int side = 0; side < 2; ++side) {
 			std::reverse(branch.nodes.begin(), branch.nodes.end());
