@@ -48,6 +48,7 @@ public:
 		const SurfaceMesh& surface, ShortestAt&& shortest, const Progress& progress = Progress())
 	{
 		std::vector<int> candidates;
+		progress.report(0, findingCreases);
 		const std::vector<Point3d> normals = unitNormals(surface, progress.part(0, 0.5));
 		detail::reportedLoop(
 			surface.halfEdgeSlots(), progress.part(0.5, 1), findingCreases, [&](int h) {

@@ -7,11 +7,13 @@
 #define VCG_MCF_FIRST_STAGE_H
 
 #include "breadth_first_order.h"
+#include "measured_surface.h"
 #include "parameters.h"
 #include "poles.h"
 #include "progress.h"
 #include "stage.h"
 #include "staged_coarsening.h"
+#include "ticker.h"
 
 #include <utility>
 #include <vector>
@@ -40,7 +42,7 @@ struct CoarsenedSurface
 	std::vector<int> node;
 	/// Connected component of each vertex of `mesh`, in the order of connectedComponents().
 	std::vector<int> component;
-	/// Diagonal, see componentDiagonals(), and area of each component of the surface.
+	/// Diagonal, see MeasuredSurface, and area of each component of the surface.
 	std::vector<double> diagonal, area;
 };
 
@@ -54,30 +56,30 @@ inline CoarsenedSurface coarsenedForFlow(
 	const SurfaceMesh& surface, double epsilon, const Progress& progress = Progress())
 {
 	CoarsenedSurface result;
-	Numbering number = breadthFirstOrder(surface, {}, progress.part(0, 0.2));
+	Numbering number = breadthFirstOrder(surface, {}, progress.part(0, 0.1));
 	SurfaceMesh& mesh = result.mesh;
-	const auto ordered = [&] { progress.report(0.2, "Ordering the surface"); };
-	ordered();
-	mesh = surface.renumbered(number.vertex, number.face);
-	ordered();
-	result.diagonal = componentDiagonals(mesh, number.component, size_t(number.components));
-	result.area = componentAreas(mesh, number.component, size_t(number.components));
-	ordered();
+	mesh = surface.renumbered(number.vertex, number.face, {}, progress.part(0.1, 0.2));
+	{
+		const MeasuredSurface measured(mesh, progress.part(0.2, 0.3));
+		result.diagonal = measured.diagonals();
+		result.area = measured.areas();
+	}
 	std::vector<double> length;
 	for (double diagonal : result.diagonal)
 		length.push_back(coarseningOfEpsilon * epsilon * diagonal);
 	std::vector<int> mergedInto = coarsen(
-		mesh, [&](int v) { return length[number.component[v]]; }, progress.part(0.2, 1));
+		mesh, [&](int v) { return length[number.component[v]]; }, progress.part(0.3, 0.9));
 	const std::vector<int> place = mesh.compact();
 	result.component = renumbered(number.component, place, mesh.vertexSlots());
 	result.survivor.resize(mesh.vertexSlots());
 	result.node.resize(surface.vertexSlots());
-	for (int v = 0; v < surface.vertexSlots(); ++v) {
-		const int ordered = number.vertex[v];
-		result.node[v] = place[mergedInto[ordered]];
-		if (place[ordered] >= 0)
-			result.survivor[place[ordered]] = v;
-	}
+	detail::reportedLoop(
+		surface.vertexSlots(), progress.part(0.9, 1), "Ordering the surface", [&](int v) {
+			const int ordered = number.vertex[v];
+			result.node[v] = place[mergedInto[ordered]];
+			if (place[ordered] >= 0)
+				result.survivor[place[ordered]] = v;
+		});
 	return result;
 }
 
@@ -121,7 +123,10 @@ inline Stage firstStage(const SurfaceMesh& surface, const Parameters& parameters
 	stage.component = std::move(coarse.component);
 	stage.diagonal = std::move(coarse.diagonal);
 	stage.initialArea = std::move(coarse.area);
+	const auto report = [&] { progress.report(1, "Ordering the surface"); };
+	report();
 	stage.initialVolume = surface.volume();
+	report();
 	stage.surface = std::make_shared<const std::vector<Point3d>>(surface.position);
 	stage.mesh = std::move(coarse.mesh);
 	stage.node = std::move(coarse.node);

@@ -10,6 +10,7 @@
 #include "point_tree.h"
 #include "progress.h"
 #include "surface_mesh.h"
+#include "ticker.h"
 
 #include <algorithm>
 #include <array>
@@ -40,20 +41,15 @@ public:
 		const SurfaceMesh& mesh, const PointTree& tree, const Progress& progress = Progress()) :
 			mesh(mesh)
 	{
-		constexpr size_t reportEvery = 1 << 16;
 		const char* const what = "Sorting the surface";
-		progress.report(0, what);
-		sortFaces(tree.order());
-		progress.report(0.5, what);
+		sortFaces(tree.order(), progress.part(0, 0.5), what);
 		const Box3d all = mesh.bounds();
 		origin = all.Center();
 		slack = FourBoxes::slack(all.Diag());
 		double longest = 0;
 		std::vector<Box3d> boxes((faces.size() + 3) / 4);
 		levels.emplace_back(boxes.size());
-		for (size_t i = 0; i < faces.size(); ++i) {
-			if (i % reportEvery == 0)
-				progress.report(0.5 + 0.5 * double(i) / double(faces.size()), what);
+		detail::reportedLoop(int(faces.size()), progress.part(0.5, 1), what, [&](int i) {
 			Box3d box;
 			for (int k = 0; k < 3; ++k) {
 				const int h = 3 * faces[i] + k;
@@ -62,7 +58,7 @@ public:
 			}
 			levels.back()[i / 4].set(i % 4, box, origin);
 			boxes[i / 4].Add(box);
-		}
+		});
 		largestPower = longest / 3;
 		while (boxes.size() > 1) {
 			std::vector<FourBoxes> level((boxes.size() + 3) / 4);
@@ -102,7 +98,7 @@ private:
 	double largestPower; ///< of a point of a triangle to the triangle's circumcircle
 
 	/// Orders the faces by the lowest place of a corner in the order of the vertices.
-	void sortFaces(const std::vector<int>& order)
+	void sortFaces(const std::vector<int>& order, const Progress& progress, const char* what)
 	{
 		std::vector<int> place(order.size());
 		for (size_t i = 0; i < order.size(); ++i)
@@ -112,13 +108,13 @@ private:
 			return std::min({place[t[0]], place[t[1]], place[t[2]]});
 		};
 		std::vector<int> start(order.size() + 1, 0);
-		for (int f = 0; f < mesh.faceSlots(); ++f)
-			++start[key(f) + 1];
+		detail::reportedLoop(
+			mesh.faceSlots(), progress.part(0, 0.5), what, [&](int f) { ++start[key(f) + 1]; });
 		for (size_t i = 1; i < start.size(); ++i)
 			start[i] += start[i - 1];
 		faces.resize(mesh.faceSlots());
-		for (int f = 0; f < mesh.faceSlots(); ++f)
-			faces[start[key(f)]++] = f;
+		detail::reportedLoop(mesh.faceSlots(), progress.part(0.5, 1), what,
+			[&](int f) { faces[start[key(f)]++] = f; });
 	}
 
 	/// Whether the surface around v, seen as a cone of endless triangles, has the direction inside.

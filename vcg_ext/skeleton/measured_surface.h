@@ -48,6 +48,22 @@ public:
 	/// The size of a component: the diagonal of its bounding box along its principal axes, mesh units.
 	double diagonal(int c) const { return frames[c].size(); }
 
+	/// Both for all components.
+	std::vector<double> areas() const
+	{
+		std::vector<double> all;
+		for (const PrincipalFrame& frame : frames)
+			all.push_back(frame.area());
+		return all;
+	}
+	std::vector<double> diagonals() const
+	{
+		std::vector<double> all;
+		for (const PrincipalFrame& frame : frames)
+			all.push_back(frame.size());
+		return all;
+	}
+
 private:
 	const SurfaceMesh& surface;
 	int count = 0;

@@ -8,6 +8,7 @@
 
 #include "four_boxes.h"
 #include "progress.h"
+#include "ticker.h"
 
 #include <vcg/space/box3.h>
 #include <vcg/space/point3.h>
@@ -51,14 +52,14 @@ public:
 			width *= 4;
 		}
 		nodes.resize(inner);
-		build(points, 0, 0, int(points.size()), progress);
-		for (size_t i = 0; i < ids.size(); ++i)
+		build(points, 0, 0, int(points.size()), progress.part(0, 0.9));
+		for (std::vector<float>& values : coordinate)
+			values.assign(ids.size() + Lanes, std::numeric_limits<float>::infinity());
+		detail::reportedLoop(int(ids.size()), progress.part(0.9, 1), sorting, [&](int i) {
 			sorted[i] = points[ids[i]];
-		for (int axis = 0; axis < 3; ++axis) {
-			coordinate[axis].assign(ids.size() + Lanes, std::numeric_limits<float>::infinity());
-			for (size_t i = 0; i < ids.size(); ++i)
+			for (int axis = 0; axis < 3; ++axis)
 				coordinate[axis][i] = float(sorted[i][axis] - origin[axis]);
-		}
+		});
 	}
 
 	int size() const { return int(ids.size()); }
@@ -119,6 +120,7 @@ public:
 	}
 
 private:
+	static constexpr const char* sorting = "Sorting the surface";
 	static constexpr size_t LeafSize = 32;
 	static constexpr int Lanes = 4;
 
@@ -229,12 +231,18 @@ private:
 		if (node >= int(nodes.size()))
 			return;
 		const std::array<int, 5> cuts = quarters(begin, end);
-		if (end - begin >= reportFrom)
-			progress.report(double(begin) / double(points.size()), "Sorting the surface");
+		const auto report = [&](int done) {
+			if (end - begin >= reportFrom)
+				progress.report(double(done) / double(points.size()), sorting);
+		};
+		report(begin);
 		split(points, begin, cuts[2], end);
+		report(begin);
 		split(points, begin, cuts[1], cuts[2]);
+		report(begin);
 		split(points, cuts[2], cuts[3], end);
 		for (int k = 0; k < 4; ++k) {
+			report(cuts[k]);
 			nodes[node].set(k, bounds(points, cuts[k], cuts[k + 1]), origin);
 			build(points, 4 * node + 1 + k, cuts[k], cuts[k + 1], progress);
 		}

@@ -13,6 +13,7 @@
 #include "progress.h"
 #include "shrinking_balls.h"
 #include "surface_mesh.h"
+#include "ticker.h"
 #include "voronoi_poles.h"
 
 #include <numeric>
@@ -26,24 +27,28 @@ namespace detail {
  * Poles found in the shape's own coordinates: where several balls are as good, which one is found
  * depends on the order of the searches, and that on the coordinates. They are rounded, as contract()
  * does it.
- * @param find makes the poles of `vertices` of a mesh.
+ * @param find makes the poles of `vertices` of a mesh, with a progress window of its own.
  */
 template <class Find>
-PoleSet polesInShapeFrame(const SurfaceMesh& mesh, const std::vector<int>& vertices, Find&& find)
+PoleSet polesInShapeFrame(const SurfaceMesh& mesh, const std::vector<int>& vertices,
+	const Progress& progress, Find&& find)
 {
 	int components = 0;
-	const std::vector<int> component = connectedComponents(mesh, &components);
-	const std::vector<PrincipalFrame> frames =
-		PrincipalFrame::ofPoints(mesh.position, component, size_t(components));
+	const std::vector<int> component =
+		connectedComponents(mesh, &components, progress.part(0, 0.02));
+	const std::vector<PrincipalFrame> frames = PrincipalFrame::ofPoints(
+		mesh.position, component, size_t(components), progress.part(0.02, 0.04));
 	// Components may lie within each other: they have one frame for all, as fine as it needs to be.
 	const bool single = components == 1;
 	const PrincipalFrame frame = single
 		? frames.front()
 		: PrincipalFrame::ofPoints(mesh.position, std::vector<int>(component.size(), 0), 1).front();
 	SurfaceMesh own = mesh;
-	for (Point3d& p : own.position)
+	reportedLoop(own.vertexSlots(), progress.part(0.04, 0.05), "Measuring the surface", [&](int v) {
+		Point3d& p = own.position[v];
 		p = single ? frame.onGrid(p) : frame.in(p);
-	PoleSet poles = find(own);
+	});
+	PoleSet poles = find(own, progress.part(0.05, 1));
 	for (size_t i = 0; i < vertices.size(); ++i) {
 		Point3d& centre = poles.centre[i];
 		centre = single ? frame.out(PrincipalFrame::rounded(centre))
@@ -63,17 +68,18 @@ PoleSet polesInShapeFrame(const SurfaceMesh& mesh, const std::vector<int>& verti
 inline PoleSet polesAt(const SurfaceMesh& mesh, const std::vector<int>& vertices, PoleMethod method,
 	const Progress& progress = Progress())
 {
-	return detail::polesInShapeFrame(mesh, vertices, [&](const SurfaceMesh& own) {
+	const auto find = [&](const SurfaceMesh& own, const Progress& ofSearch) {
 		if (method == PoleMethod::Balls)
-			return shrinkingBallPoles(own, vertices, 0, progress);
-		const PoleSet all = voronoiPoles(own, progress);
+			return shrinkingBallPoles(own, vertices, 0, ofSearch);
+		const PoleSet all = voronoiPoles(own, ofSearch);
 		PoleSet poles;
 		for (int v : vertices) {
 			poles.centre.push_back(all.centre[v]);
 			poles.radius.push_back(all.radius[v]);
 		}
 		return poles;
-	});
+	};
+	return detail::polesInShapeFrame(mesh, vertices, progress, find);
 }
 
 /**

@@ -19,6 +19,7 @@
 #include "skeleton_radius.h"
 #include "stage.h"
 #include "surface_mesh.h"
+#include "ticker.h"
 
 #include <algorithm>
 #include <cmath>
@@ -228,10 +229,11 @@ inline CurveSkeleton refine(const CurveSkeleton& curve, const SurfaceMesh& surfa
 		if (v >= int(curve.position.size()))
 			throw InvalidInput("The skeleton's correspondence names nodes that it does not have.");
 
-	progress.report(0, "Refining the skeleton");
+	const char* const what = "Refining the skeleton";
+	progress.report(0, what);
 	int components = 0;
-	const std::vector<int> component = connectedComponents(surface, &components);
-	progress.report(0, "Refining the skeleton");
+	const std::vector<int> component =
+		connectedComponents(surface, &components, progress.part(0, 0.01));
 	const std::vector<int> componentOfNode = refining::componentOfNodes(curve, component);
 	std::vector<std::vector<int>> vertices(components), nodes(components), edges(components);
 	for (int v = 0; v < surface.vertexSlots(); ++v)
@@ -243,8 +245,8 @@ inline CurveSkeleton refine(const CurveSkeleton& curve, const SurfaceMesh& surfa
 		if (const int c = componentOfNode[curve.edges[e][0]]; c >= 0)
 			edges[c].push_back(int(e));
 	// Each component in coordinates of its own, where its diagonal is 1: however it is turned.
-	const std::vector<PrincipalFrame> frame =
-		PrincipalFrame::ofPoints(surface.position, component, size_t(components));
+	const std::vector<PrincipalFrame> frame = PrincipalFrame::ofPoints(
+		surface.position, component, size_t(components), progress.part(0.01, 0.02));
 	const auto toUnit = [&](const Point3d& p, int c) {
 		return frame[c].onGrid(p) / frame[c].sizeInside();
 	};
@@ -252,8 +254,8 @@ inline CurveSkeleton refine(const CurveSkeleton& curve, const SurfaceMesh& surfa
 		return frame[c].out(p * frame[c].sizeInside());
 	};
 	SurfaceMesh unit = surface;
-	for (int v = 0; v < surface.vertexSlots(); ++v)
-		unit.position[v] = toUnit(surface.position[v], component[v]);
+	detail::reportedLoop(surface.vertexSlots(), progress.part(0.02, 0.03), what,
+		[&](int v) { unit.position[v] = toUnit(surface.position[v], component[v]); });
 
 	CurveSkeleton refined;
 	refined.node.assign(curve.node.size(), -1);
@@ -272,17 +274,19 @@ inline CurveSkeleton refine(const CurveSkeleton& curve, const SurfaceMesh& surfa
 		for (int e : edges[c])
 			part.edges.push_back({number[curve.edges[e][0]], number[curve.edges[e][1]]});
 		const Progress ofComponent =
-			progress.part(double(c) / components, double(c + 1) / components);
+			progress.part(0.03 + 0.97 * c / components, 0.03 + 0.97 * (c + 1) / components);
 		const ClosestSurface closest(unit, vertices[c], sampleSpacing, ofComponent.part(0, 0.1));
-		part = refining::refineComponent(part, closest, parameters, ofComponent.part(0.1, 1));
+		part = refining::refineComponent(part, closest, parameters, ofComponent.part(0.1, 0.95));
 
 		const std::vector<std::vector<int>> neighbours = part.neighbours();
 		const int first = int(refined.position.size());
-		for (int s : vertices[c])
+		detail::reportedLoop(int(vertices[c].size()), ofComponent.part(0.95, 1), what, [&](int i) {
+			const int s = vertices[c][i];
 			if (curve.node[s] >= 0)
 				refined.node[s] = first
 					+ refining::nearestAlong(
 						part, neighbours, part.node[number[curve.node[s]]], unit.position[s]);
+		});
 		for (const Point3d& p : part.position)
 			refined.position.push_back(fromUnit(p, c));
 		for (const auto& [a, b] : part.edges)
@@ -290,7 +294,7 @@ inline CurveSkeleton refine(const CurveSkeleton& curve, const SurfaceMesh& surfa
 	}
 	refined.radius = meanSurfaceDistance(refined.position, surface.position, refined.node);
 	fillUnknownRadii(refined.radius, refined.neighbours());
-	progress.report(1, "Refining the skeleton");
+	progress.report(1, what);
 	return refined;
 }
 

@@ -245,6 +245,7 @@ inline PoleSet shrinkingBallPoles(const SurfaceMesh& mesh, const std::vector<int
 {
 	const UnitFrame frame(mesh.position);
 	const double tolerance = detail::ballTolerance(frame, delta);
+	progress.report(0, "Sorting the surface");
 	const PointTree tree(frame.in(mesh.position), progress.part(0, 0.2));
 	std::vector<int> place(mesh.vertexSlots(), -1);
 	for (size_t i = 0; i < vertices.size(); ++i)

@@ -6,7 +6,7 @@
 #ifndef VCG_MCF_STAGE_H
 #define VCG_MCF_STAGE_H
 
-#include "check_input.h"
+#include "measured_surface.h"
 #include "parameters.h"
 #include "pole_set.h"
 #include "principal_frame.h"
@@ -45,7 +45,7 @@ struct Stage
 	std::vector<int> rank;
 	int rankedVertices = 0;
 
-	/// Diagonal of each component of the surface, see componentDiagonals(): its unit of length.
+	/// Diagonal of each component of the surface, see MeasuredSurface: its unit of length.
 	std::vector<double> diagonal;
 	/// Area of each component, of the surface and of this stage.
 	std::vector<double> initialArea, area;
@@ -99,20 +99,10 @@ inline std::vector<double> componentAreas(
 	return area;
 }
 
-/// The size of each component of a mesh: the diagonal of its bounding box along its principal axes,
-/// see PrincipalFrame.
-inline std::vector<double> componentDiagonals(
-	const SurfaceMesh& mesh, const std::vector<int>& component, size_t components)
+/// Stage 0 of a surface. @pre the surface is compact; poles has an entry for each vertex.
+inline Stage initialStage(const MeasuredSurface& measured, const PoleSet& poles)
 {
-	std::vector<double> diagonal;
-	for (const PrincipalFrame& frame : PrincipalFrame::ofComponents(mesh, component, components))
-		diagonal.push_back(frame.size());
-	return diagonal;
-}
-
-/// Stage 0 of a surface. @pre surface is compact; poles has an entry for each vertex.
-inline Stage initialStage(const SurfaceMesh& surface, const PoleSet& poles)
-{
+	const SurfaceMesh& surface = measured.mesh();
 	Stage stage;
 	stage.mesh = surface;
 	stage.pole = poles.centre;
@@ -120,10 +110,9 @@ inline Stage initialStage(const SurfaceMesh& surface, const PoleSet& poles)
 	stage.fixed.assign(surface.vertexSlots(), 0);
 	stage.held.assign(surface.vertexSlots(), 0);
 	stage.sheet.assign(surface.vertexSlots(), 0);
-	int components = 0;
-	stage.component = connectedComponents(surface, &components);
-	stage.diagonal = componentDiagonals(surface, stage.component, components);
-	stage.initialArea = stage.area = componentAreas(surface, stage.component, components);
+	stage.component = measured.component();
+	stage.diagonal = measured.diagonals();
+	stage.initialArea = stage.area = measured.areas();
 	stage.initialVolume = stage.volume = surface.volume();
 	stage.surface = std::make_shared<const std::vector<Point3d>>(surface.position);
 	stage.node.resize(surface.vertexSlots());

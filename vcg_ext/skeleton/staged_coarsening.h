@@ -9,6 +9,7 @@
 #include "progress.h"
 #include "shape_tests.h"
 #include "surface_mesh.h"
+#include "ticker.h"
 
 #include <algorithm>
 #include <cmath>
@@ -103,8 +104,8 @@ std::vector<int> coarsen(
 		mesh.collapse(h);
 	};
 	detail::coarsenInStages(
-		mesh, lengthAt, [](int) { return true; }, collapse, progress, "Coarsening");
-	for (int v = 0; v < int(mergedInto.size()); ++v) {
+		mesh, lengthAt, [](int) { return true; }, collapse, progress.part(0, 0.95), "Coarsening");
+	detail::reportedLoop(int(mergedInto.size()), progress.part(0.95, 1), "Coarsening", [&](int v) {
 		int survivor = v;
 		while (mergedInto[survivor] != survivor)
 			survivor = mergedInto[survivor];
@@ -113,7 +114,7 @@ std::vector<int> coarsen(
 			mergedInto[w] = survivor;
 			w = onward;
 		}
-	}
+	});
 	return mergedInto;
 }
 

@@ -35,6 +35,8 @@ public:
 		if (diagonal > 0)
 			exponent = std::ilogb(diagonal);
 		unitDiagonal = std::ldexp(diagonal, -exponent);
+		scaleIn = lengthIn(1);
+		scaleOut = lengthOut(1);
 	}
 
 	/// The diagonal of the points in this frame: in [1, 2), or 0 if they coincide.
@@ -42,8 +44,8 @@ public:
 
 	double lengthIn(double length) const { return std::ldexp(length, -exponent); }
 	double lengthOut(double length) const { return std::ldexp(length, exponent); }
-	Point3d in(const Point3d& p) const { return (p - origin) * lengthIn(1); }
-	Point3d out(const Point3d& p) const { return p * lengthOut(1) + origin; }
+	Point3d in(const Point3d& p) const { return (p - origin) * scaleIn; }
+	Point3d out(const Point3d& p) const { return p * scaleOut + origin; }
 
 	std::vector<Point3d> in(const std::vector<Point3d>& points) const
 	{
@@ -58,6 +60,7 @@ private:
 	Point3d origin = Point3d(0, 0, 0);
 	int exponent = 0;
 	double unitDiagonal;
+	double scaleIn, scaleOut;
 };
 
 } // namespace vcg::tri::mcf
