@@ -8,6 +8,7 @@
 
 #include "skeleton/check_input.h"
 #include "skeleton/first_stage.h"
+#include "skeleton/measured_surface.h"
 #include "skeleton/noise.h"
 #include "skeleton/point_tree.h"
 #include "skeleton/resample.h"
@@ -64,6 +65,20 @@ TEST(ProgressGaps, PolesAndStepsReportAsTheSurfaceGrows)
 	EXPECT_EQ(stage.mesh.vertexCount(), mesh.vertexCount());
 	EXPECT_GE(
 		reportsOf([&](const Progress& p) { stage = step(stage, parameters, p); }), 2 * wanted);
+}
+
+TEST(ProgressGaps, ResamplingReportsAsItsInputGrows)
+{
+	const SurfaceMesh mesh = shapes::sphere(7).mesh();
+	const int wanted = mesh.vertexCount() / mostVerticesBetweenReports;
+	EXPECT_GE(reportsOf([&](const Progress& p) { MeasuredSurface(mesh, p); }), wanted);
+	const MeasuredSurface surface(mesh);
+	EXPECT_GE(reportsOf([&](const Progress& p) { smoothed(surface, {2}, p); }), 2 * wanted);
+	SurfaceMesh coarse;
+	const int reports =
+		reportsOf([&](const Progress& p) { coarse = resample(surface, {0.3}, 1, p); });
+	EXPECT_LT(coarse.vertexCount(), mesh.vertexCount() / 50);
+	EXPECT_GE(reports, 4 * wanted); // ordering, creases, coarsening
 }
 
 TEST(ProgressGaps, ResamplingReportsAsItsResultGrows)
