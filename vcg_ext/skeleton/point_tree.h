@@ -39,9 +39,11 @@ public:
 			ids(points.size()), sorted(points.size())
 	{
 		Box3d box;
-		for (size_t i = 0; i < ids.size(); ++i) {
-			ids[i] = int(i);
-			box.Add(points[i]);
+		std::vector<Sample> samples;
+		samples.reserve(points.size());
+		for (const Point3d& p : points) {
+			samples.push_back({p, int(samples.size())});
+			box.Add(p);
 		}
 		if (!points.empty())
 			origin = box.Center();
@@ -52,11 +54,12 @@ public:
 			width *= 4;
 		}
 		nodes.resize(inner);
-		build(points, 0, 0, int(points.size()), progress.part(0, 0.9));
+		build(samples, box, 0, 0, int(points.size()), progress.part(0, 0.9));
 		for (std::vector<float>& values : coordinate)
 			values.assign(ids.size() + Lanes, std::numeric_limits<float>::infinity());
 		detail::reportedLoop(int(ids.size()), progress.part(0.9, 1), sorting, [&](int i) {
-			sorted[i] = points[ids[i]];
+			ids[i] = samples[i].id;
+			sorted[i] = samples[i].point;
 			for (int axis = 0; axis < 3; ++axis)
 				coordinate[axis][i] = float(sorted[i][axis] - origin[axis]);
 		});
@@ -197,35 +200,45 @@ private:
 		}
 	}
 
+	/// A point on its way to its leaf, beside its id: fetched by the id, points would be far apart.
+	struct Sample
+	{
+		Point3d point;
+		int id;
+	};
+
 	static std::array<int, 5> quarters(int begin, int end)
 	{
 		const int middle = begin + (end - begin) / 2;
 		return {begin, begin + (middle - begin) / 2, middle, middle + (end - middle) / 2, end};
 	}
 
-	Box3d bounds(const std::vector<Point3d>& points, int begin, int end) const
+	static Box3d bounds(const std::vector<Sample>& samples, int begin, int end)
 	{
-		Box3d box;
-		for (int i = begin; i < end; ++i)
-			box.Add(points[ids[i]]);
-		return box;
+		// Without the branches of Box3d::Add().
+		Point3d low = samples[begin].point, high = low;
+		for (int i = begin + 1; i < end; ++i)
+			for (int axis = 0; axis < 3; ++axis) {
+				low[axis] = std::min(low[axis], samples[i].point[axis]);
+				high[axis] = std::max(high[axis], samples[i].point[axis]);
+			}
+		return Box3d(low, high);
 	}
 
-	void split(const std::vector<Point3d>& points, int begin, int middle, int end)
+	static void split(
+		std::vector<Sample>& samples, const Box3d& box, int begin, int middle, int end)
 	{
-		const int axis = bounds(points, begin, end).MaxDim();
-		// Side by side: to fetch coordinates point by point takes longer than all the rest.
-		std::vector<std::pair<double, int>> keys;
-		keys.reserve(end - begin);
-		for (int i = begin; i < end; ++i)
-			keys.emplace_back(points[ids[i]][axis], ids[i]);
-		std::nth_element(keys.begin(), keys.begin() + (middle - begin), keys.end());
-		for (int i = begin; i < end; ++i)
-			ids[i] = keys[i - begin].second;
+		const int axis = box.MaxDim();
+		std::nth_element(samples.begin() + begin, samples.begin() + middle, samples.begin() + end,
+			[axis](const Sample& a, const Sample& b) {
+				const double x = a.point[axis], y = b.point[axis];
+				return x != y ? x < y : a.id < b.id;
+			});
 	}
 
-	void build(
-		const std::vector<Point3d>& points, int node, int begin, int end, const Progress& progress)
+	/// @param box of the samples from `begin` to `end`.
+	void build(std::vector<Sample>& samples, const Box3d& box, int node, int begin, int end,
+		const Progress& progress)
 	{
 		constexpr int reportFrom = 1 << 13;
 		if (node >= int(nodes.size()))
@@ -233,18 +246,19 @@ private:
 		const std::array<int, 5> cuts = quarters(begin, end);
 		const auto report = [&](int done) {
 			if (end - begin >= reportFrom)
-				progress.report(double(done) / double(points.size()), sorting);
+				progress.report(double(done) / double(samples.size()), sorting);
 		};
 		report(begin);
-		split(points, begin, cuts[2], end);
+		split(samples, box, begin, cuts[2], end);
 		report(begin);
-		split(points, begin, cuts[1], cuts[2]);
+		split(samples, bounds(samples, begin, cuts[2]), begin, cuts[1], cuts[2]);
 		report(begin);
-		split(points, cuts[2], cuts[3], end);
+		split(samples, bounds(samples, cuts[2], end), cuts[2], cuts[3], end);
 		for (int k = 0; k < 4; ++k) {
 			report(cuts[k]);
-			nodes[node].set(k, bounds(points, cuts[k], cuts[k + 1]), origin);
-			build(points, 4 * node + 1 + k, cuts[k], cuts[k + 1], progress);
+			const Box3d quarter = bounds(samples, cuts[k], cuts[k + 1]);
+			nodes[node].set(k, quarter, origin);
+			build(samples, quarter, 4 * node + 1 + k, cuts[k], cuts[k + 1], progress);
 		}
 	}
 };
