@@ -176,8 +176,9 @@ FilterSpec fullSkeletonizeFilter()
 	std::vector<ParameterSpec> parameters = {
 		{ParameterKind::Boolean, "resample", double(defaults.resample), "Resample first",
 			"Covers the surface with even triangles first, as in the paper. Without, the skeleton is "
-			"only as good as the triangles of the input; edges much longer than 1.5 % of the diagonal "
-			"let it leave the shape."},
+			"only as good as the triangles of the input. On a coarse surface, where edges are longer "
+			"than 4 % of the diagonal and than the shape is thick, they are halved for the contraction, "
+			"so that the skeleton stays inside; not with held vertices or sheets."},
 		targetLengthParameter(),
 		resampleIterationsParameter().asAdvanced(),
 		denoiseParameter(),

@@ -25,7 +25,8 @@ void readSheets(const ParameterValues& values, vcg::tri::mcf::Parameters& parame
 
 /**
  * Stage 0 of a surface, with what it is to hold and what is to become a sheet, and a word about both
- * in the log. Such surfaces are not coarsened first, so that every vertex is there.
+ * in the log. The edges of such surfaces are neither merged nor halved first: every vertex is there, and no
+ * other.
  * @param held  1 for the vertices to hold; empty if there are none.
  */
 vcg::tri::mcf::Stage startOfFlow(FilterRun& run, const vcg::tri::mcf::Parameters& parameters,

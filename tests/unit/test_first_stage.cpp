@@ -106,7 +106,7 @@ TEST(FirstStage, FractionsAreOfTheSurfaceItself)
 	EXPECT_GT(stage.areaFraction(), 0.9);
 }
 
-TEST(FirstStage, LeavesACoarseSurfaceWithAllItsVertices)
+TEST(FirstStage, LeavesASurfaceOfEdgesAboveEpsilonAsItIs)
 {
 	const SurfaceMesh surface = shapes::torus().mesh();
 	const Stage stage = firstStage(surface, Parameters());

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-/// @file From a surface to the stage that the flow starts from: coarsening, poles, numbering.
+/// @file From a surface to the stage that the flow starts from: edge lengths, poles, numbering.
 
 #ifndef VCG_MCF_FIRST_STAGE_H
 #define VCG_MCF_FIRST_STAGE_H
 
 #include "breadth_first_order.h"
+#include "halved_edges.h"
 #include "measured_surface.h"
 #include "parameters.h"
 #include "poles.h"
@@ -15,6 +16,9 @@
 #include "staged_coarsening.h"
 #include "ticker.h"
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -28,16 +32,21 @@ constexpr double coarseningOfEpsilon = 2;
 
 /**
  * The surface as the flow starts on it: without edges far below epsilon, on which time would go
- * that changes nothing.
+ * that changes nothing, and without those that are too long for it.
  *
- * The vertices of `mesh` are a subset of the surface's, where they were, in breadth-first order:
- * neighbours in the mesh are neighbours in memory.
+ * The vertices of `mesh` are a subset of the surface's, where they were, and of the middles of its
+ * long edges, in breadth-first order: neighbours in the mesh are neighbours in memory.
  */
-struct CoarsenedSurface
+struct FlowSurface
 {
 	SurfaceMesh mesh;
-	/// For each vertex of `mesh` the surface's vertex that it is.
+	/// For each vertex of `mesh` the surface's vertex that it is, -1 for the middle of an edge.
 	std::vector<int> survivor;
+	/// The surface with its long edges halved, see withHalvedEdges(), in an order that follows from the
+	/// places of its vertices; nothing where none are too long.
+	std::optional<SurfaceMesh> finer;
+	/// For each vertex of `mesh` the vertex of `finer` that it is; empty where there is none.
+	std::vector<int> inFiner;
 	/// For each vertex of the surface the vertex of `mesh` that it has merged into.
 	std::vector<int> node;
 	/// Connected component of each vertex of `mesh`, in the order of connectedComponents().
@@ -47,22 +56,49 @@ struct CoarsenedSurface
 };
 
 /**
- * Merges edges shorter than two epsilon: see coarsen().
+ * Merges edges shorter than two epsilon, see coarsen(), and halves those of coarse components that
+ * are too long, see coarseComponents().
  * @param surface  compact, closed.
  * @param epsilon  as in Parameters, of the diagonal of each component.
- * @throws Cancelled. Complexity: O(V + F).
+ * @param polesOfSurface (progress): gives the poles of all vertices of the surface, a PoleSet; called
+ *                 once if a component may be coarse.
+ * @throws Cancelled. Complexity: O(V + F), and O(s log s) for s halved edges.
  */
-inline CoarsenedSurface coarsenedForFlow(
-	const SurfaceMesh& surface, double epsilon, const Progress& progress = Progress())
+template <class PolesOfSurface>
+FlowSurface surfaceForFlow(const SurfaceMesh& surface, double epsilon,
+	PolesOfSurface&& polesOfSurface, const Progress& progress = Progress())
 {
-	CoarsenedSurface result;
+	FlowSurface result;
 	Numbering number = breadthFirstOrder(surface, {}, progress.part(0, 0.1));
 	SurfaceMesh& mesh = result.mesh;
 	mesh = surface.renumbered(number.vertex, number.face, {}, progress.part(0.1, 0.2));
+	const auto isAny = [](const std::vector<char>& coarse) {
+		return std::find(coarse.begin(), coarse.end(), 1) != coarse.end();
+	};
+	bool mayBeCoarse = false;
 	{
 		const MeasuredSurface measured(mesh, progress.part(0.2, 0.3));
 		result.diagonal = measured.diagonals();
 		result.area = measured.areas();
+		mayBeCoarse = isAny(coarseComponents(measured, epsilon));
+	}
+	if (mayBeCoarse) {
+		const Progress part = progress.part(0.3, 0.3);
+		const MeasuredSurface measured(surface, part);
+		const std::vector<char> coarse =
+			coarseComponents(measured, epsilon, polesOfSurface(part).radius);
+		if (isAny(coarse)) {
+			const SurfaceMesh halved =
+				withHalvedEdges(measured, longestEdgesForFlow(measured, coarse, epsilon), part);
+			const std::vector<int> component = connectedComponents(halved);
+			const auto placeOf = [&](int v) {
+				return measured.frame(component[v]).onGrid(halved.position[v]);
+			};
+			number = breadthFirstOrder(
+				halved, leastHalfEdges(halved, component, measured.components(), placeOf), part);
+			mesh = halved.renumbered(number.vertex, number.face, number.firstCorner);
+			result.finer = mesh;
+		}
 	}
 	std::vector<double> length;
 	for (double diagonal : result.diagonal)
@@ -71,7 +107,8 @@ inline CoarsenedSurface coarsenedForFlow(
 		mesh, [&](int v) { return length[number.component[v]]; }, progress.part(0.3, 0.9));
 	const std::vector<int> place = mesh.compact();
 	result.component = renumbered(number.component, place, mesh.vertexSlots());
-	result.survivor.resize(mesh.vertexSlots());
+	result.survivor.assign(mesh.vertexSlots(), -1);
+	result.inFiner.resize(result.finer ? mesh.vertexSlots() : 0);
 	result.node.resize(surface.vertexSlots());
 	detail::reportedLoop(
 		surface.vertexSlots(), progress.part(0.9, 1), "Ordering the surface", [&](int v) {
@@ -80,19 +117,24 @@ inline CoarsenedSurface coarsenedForFlow(
 			if (place[ordered] >= 0)
 				result.survivor[place[ordered]] = v;
 		});
+	if (result.finer)
+		for (size_t v = 0; v < place.size(); ++v)
+			if (place[v] >= 0)
+				result.inFiner[place[v]] = int(v);
 	return result;
 }
 
 /**
- * Stage 0: the coarsened surface with its poles.
+ * Stage 0: the surface with edges of the flow's length, and its poles.
  *
  * Lengths, areas and volumes are measured on the surface itself, and its vertices keep their
- * correspondence. Poles are found for the vertices that remain, against all vertices of the surface.
+ * correspondence. Poles are found for the vertices that remain, against all vertices of the surface;
+ * those in the middle of halved edges have theirs against all vertices of the finer surface.
  *
  * @param surface    compact, closed; see checkedSurface().
  * @param parameters epsilon and poleMethod are used.
  * @param poles      of all vertices of the surface where they are known already; null: they are
- *                   computed.
+ *                   computed. Those in the middle of halved edges are always computed.
  * @throws SolverError, Cancelled, InvalidParameter. Complexity: O(V log V), dominated by the poles.
  */
 inline Stage firstStage(const SurfaceMesh& surface, const Parameters& parameters,
@@ -100,36 +142,57 @@ inline Stage firstStage(const SurfaceMesh& surface, const Parameters& parameters
 {
 	parameters.check();
 	const double polesFrom = poles ? 1 : 0.3;
-	CoarsenedSurface coarse =
-		coarsenedForFlow(surface, parameters.epsilon, progress.part(0, polesFrom));
-	Stage stage;
-	const size_t count = coarse.survivor.size();
-	const auto take = [&](const PoleSet& from, auto&& placeOf) {
-		stage.pole.resize(count);
-		stage.poleRadius.resize(count);
-		for (size_t v = 0; v < count; ++v) {
-			stage.pole[v] = from.centre[placeOf(v)];
-			stage.poleRadius[v] = from.radius[placeOf(v)];
+	PoleSet found;
+	const auto polesOfSurface = [&](const Progress& part) -> const PoleSet& {
+		if (!poles) {
+			found = medialPoles(surface, parameters.poleMethod, part);
+			poles = &found;
 		}
+		return *poles;
+	};
+	FlowSurface start =
+		surfaceForFlow(surface, parameters.epsilon, polesOfSurface, progress.part(0, polesFrom));
+	Stage stage;
+	const size_t count = start.survivor.size();
+	stage.pole.resize(count);
+	stage.poleRadius.resize(count);
+	// The vertices of the mesh that are the surface's, those that are not, and what they are.
+	std::vector<int> own, added, ownOf, addedOf;
+	for (size_t v = 0; v < count; ++v) {
+		const bool isOwn = start.survivor[v] >= 0;
+		(isOwn ? own : added).push_back(int(v));
+		(isOwn ? ownOf : addedOf).push_back(isOwn ? start.survivor[v] : start.inFiner[v]);
+	}
+	const auto take = [&](int v, const PoleSet& from, size_t i) {
+		stage.pole[v] = from.centre[i];
+		stage.poleRadius[v] = from.radius[i];
 	};
 	if (poles)
-		take(*poles, [&](size_t v) { return coarse.survivor[v]; });
-	else
-		take(polesAt(surface, coarse.survivor, parameters.poleMethod, progress.part(polesFrom, 1)),
-			[](size_t v) { return v; });
+		for (size_t i = 0; i < own.size(); ++i)
+			take(own[i], *poles, size_t(ownOf[i]));
+	else {
+		found = polesAt(surface, ownOf, parameters.poleMethod, progress.part(polesFrom, 1));
+		for (size_t i = 0; i < own.size(); ++i)
+			take(own[i], found, i);
+	}
+	if (!added.empty()) {
+		found = polesAt(*start.finer, addedOf, parameters.poleMethod, progress.part(polesFrom, 1));
+		for (size_t i = 0; i < added.size(); ++i)
+			take(added[i], found, i);
+	}
 	stage.fixed.assign(count, 0);
 	stage.held.assign(count, 0);
 	stage.sheet.assign(count, 0);
-	stage.component = std::move(coarse.component);
-	stage.diagonal = std::move(coarse.diagonal);
-	stage.initialArea = std::move(coarse.area);
+	stage.component = std::move(start.component);
+	stage.diagonal = std::move(start.diagonal);
+	stage.initialArea = std::move(start.area);
 	const auto report = [&] { progress.report(1, "Ordering the surface"); };
 	report();
 	stage.initialVolume = surface.volume();
 	report();
 	stage.surface = std::make_shared<const std::vector<Point3d>>(surface.position);
-	stage.mesh = std::move(coarse.mesh);
-	stage.node = std::move(coarse.node);
+	stage.mesh = std::move(start.mesh);
+	stage.node = std::move(start.node);
 	stage.area = componentAreas(stage.mesh, stage.component, stage.diagonal.size());
 	stage.volume = stage.mesh.volume();
 	return stage;
