@@ -198,8 +198,8 @@ FilterSpec fullSkeletonizeFilter()
 	parameters.push_back({ParameterKind::Boolean, "refine", double(defaults.refine),
 		"Refine the skeleton",
 		"Goes beyond the paper at the end: removes spurs, samples the branches evenly, centres and "
-		"smooths them, and extends the tips to the ends of their features. Without, the skeleton is "
-		"the paper's own. Also a filter of its own."});
+		"smooths them, extends the tips to the ends of their features, and grows branches into limbs "
+		"that the curve lacks. Without, the skeleton is the paper's own. Also a filter of its own."});
 	parameters.push_back(fixSelectedParameter());
 	parameters.push_back(keepSheetsParameter());
 	parameters.push_back(sheetThresholdParameter());

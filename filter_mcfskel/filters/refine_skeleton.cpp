@@ -38,9 +38,9 @@ FilterSpec refineSkeletonFilter()
 		helpPage(
 			"Makes the current skeleton a better one of its surface, as a new layer NAME_refined: "
 			"removes spurs, makes one of shattered junctions, samples the branches evenly, centres the "
-			"nodes in the maximal balls of the surface and smooths the branches, and extends the tips "
-			"to the ends of their features. Components and cycles stay as they are, and nothing leaves "
-			"the shape.<br><br>"
+			"nodes in the maximal balls of the surface and smooths the branches, extends the tips to "
+			"the ends of their features, and grows branches into limbs that the curve lacks. "
+			"Components and cycles stay as they are, and nothing leaves the shape.<br><br>"
 			"The surface's <i>mcfskel_node</i> follows. This stage goes beyond the paper."),
 		FilterCategory::Remeshing, MeshModel::MM_NONE,
 		{surfaceParameter("The surface that the skeleton is refined in."),

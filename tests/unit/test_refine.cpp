@@ -318,6 +318,34 @@ TEST(Refine, KeepsAShortPointedFeatureOfALargeBody)
 	EXPECT_GE(farthest(tips(s), 0), 1.5) << "within about a radius of the end";
 }
 
+TEST(Refine, GrowsABranchIntoALimbThatTheCurveLacks)
+{
+	const SurfaceMesh mesh = barWithArm(12).mesh();
+	const CurveSkeleton curve = CurveMaker().line({2.5, 2.5, 2.5}, {18.5, 2.5, 2.5}).in(mesh);
+	const CurveSkeleton s = refine(curve, mesh);
+	EXPECT_TRUE(isInside(s, mesh));
+	ASSERT_EQ(tips(s).size(), 3u);
+	EXPECT_EQ(statistics(s).junctions, 1);
+	EXPECT_GE(farthest(tips(s), 1), 13) << "within about a radius of the arm's end";
+	const double aside = meanDistance(s, [](const Point3d& p) {
+		const double bar = std::hypot(p[1] - 2.5, p[2] - 2.5);
+		return std::min(bar, std::hypot(p[0] - 10.5, p[2] - 2.5));
+	});
+	EXPECT_LE(aside, 0.1) << "in the middle of bar and arm";
+	RefineParameters without;
+	without.featureHeight = 100;
+	EXPECT_EQ(tips(refine(curve, mesh, without)).size(), 2u);
+}
+
+TEST(Refine, GrowsNoBranchIntoCornersOrRims)
+{
+	const SurfaceMesh bar = shapes::cells(30, 10, 10, [](int, int, int) { return true; }).mesh();
+	EXPECT_EQ(tips(refine(CurveMaker().line({5, 5, 5}, {25, 5, 5}).in(bar), bar)).size(), 2u);
+	const SurfaceMesh plate = shapes::cells(30, 20, 3, [](int, int, int) { return true; }).mesh();
+	EXPECT_EQ(
+		tips(refine(CurveMaker().line({6, 10, 1.5}, {24, 10, 1.5}).in(plate), plate)).size(), 2u);
+}
+
 TEST(Refine, MakesOneJunctionOfSeveralPieces)
 {
 	// Four arms that meet in the middle of a plus, the curve in two junctions.
@@ -580,6 +608,12 @@ TEST(Refine, SaysWhatIsWrong)
 	EXPECT_THROW(refine(curve, mesh, bad), InvalidParameter);
 	bad = RefineParameters();
 	bad.tipGain = 0;
+	EXPECT_THROW(refine(curve, mesh, bad), InvalidParameter);
+	bad = RefineParameters();
+	bad.featureGain = 0;
+	EXPECT_THROW(refine(curve, mesh, bad), InvalidParameter);
+	bad = RefineParameters();
+	bad.featureHeight = -1;
 	EXPECT_THROW(refine(curve, mesh, bad), InvalidParameter);
 	CurveSkeleton wrong = curve;
 	wrong.node.front() = int(curve.position.size());

@@ -13,6 +13,7 @@
 #include "principal_frame.h"
 #include "progress.h"
 #include "refine_centre.h"
+#include "refine_features.h"
 #include "refine_graph.h"
 #include "refine_tips.h"
 #include "skeleton_branches.h"
@@ -57,6 +58,12 @@ struct RefineParameters
 	double tipGain = 0.2;
 	/// A tip's ball is no smaller than this when it has been extended; fraction of the diagonal, > 0.
 	double tipRadius = 0.003;
+	/// Where the balls leave a part of the surface out that is higher than this part of the radius of
+	/// the ball next to it, and limb-like, it gets a branch: see growFeatures(); >= 0.
+	double featureHeight = 0.75;
+	/// On the way into such a feature the balls reach further by at least this part of the way; in
+	/// (0, 1]. The corners of a box have 0.42, limbs of even thickness 1.
+	double featureGain = 0.55;
 
 	/// @throws InvalidParameter naming the first parameter that is out of its range.
 	void check() const
@@ -70,6 +77,8 @@ struct RefineParameters
 		require(
 			tipDistinctness >= 0 && tipDistinctness <= 1, "tip_distinctness", "between 0 and 1");
 		require(tipGain > 0 && tipGain <= 1, "tip_gain", "in (0, 1]");
+		require(featureHeight >= 0 && std::isfinite(featureHeight), "feature_height", "at least 0");
+		require(featureGain > 0 && featureGain <= 1, "feature_gain", "in (0, 1]");
 		require(tipRadius > 0 && std::isfinite(tipRadius), "tip_radius", "greater than 0");
 	}
 
@@ -85,15 +94,18 @@ namespace refining {
 
 /// Refines the skeleton of one component, in coordinates where the component's diagonal is 1.
 inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurface& surface,
-	const RefineParameters& parameters, const Progress& progress)
+	const SurfaceComponent& component, const RefineParameters& parameters, const Progress& progress)
 {
 	const char* what = "Refining the skeleton";
 	constexpr double stiffer = 10, referenceSpacing = 0.005;
 	// Between two searches of the whole surface the contacts are followed from round to round.
 	constexpr int roundsOfSearch = 3;
 	const double kappa = parameters.smoothing * std::pow(referenceSpacing / parameters.spacing, 4);
+	constexpr double leastWay = 0.75, leastProminence = 0.05, leastRise = 0.005;
+	const FeatureRule features = {parameters.featureGain, leastWay, parameters.featureHeight,
+		leastProminence, leastRise, parameters.spacing};
 	const TipRule tips = {parameters.spacing, parameters.tipGain, parameters.tipRadius};
-	const int total = parameters.stiffRounds + parameters.rounds + parameters.lastRounds + 1;
+	const int total = parameters.stiffRounds + parameters.rounds + parameters.lastRounds + 2;
 	int done = 0;
 	const auto centreRounds = [&](int rounds, double weight, bool ascend) {
 		std::vector<Contact> contacts;
@@ -124,6 +136,12 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 		extendTips(skeleton, surface, tips);
 		progress.report(double(done) / total, what);
 	};
+	const auto grow = [&] {
+		growFeatures(skeleton, component, surface, clearances, features,
+			progress.part(double(done) / total, double(done + 1) / total));
+		++done;
+		extend();
+	};
 	progress.report(0, what);
 	for (size_t v = 0; v < skeleton.position.size(); ++v)
 		skeleton.radius[v] = std::max(surface.clearance(skeleton.position[v]), 0.0);
@@ -133,6 +151,7 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 	tidy(hopeless, 0);
 	centreRounds(parameters.stiffRounds, stiffer * kappa, false);
 	extend();
+	grow();
 	tidy(parameters.spurProminence, parameters.tipDistinctness);
 	centreRounds(parameters.rounds, kappa, true);
 	extend();
@@ -199,7 +218,8 @@ inline int nearestAlong(const CurveSkeleton& skeleton,
 /**
  * Refines a curve skeleton within the surface that it was extracted from: removes spurs, merges
  * shattered junctions, samples the branches evenly, centres the nodes in the maximal balls of the
- * surface while it smooths the branches, and extends the tips to the ends of their features.
+ * surface while it smooths the branches, extends the tips to the ends of their features, and grows
+ * branches into limbs that the curve lacks.
  *
  * Components and cycles stay as they are. No node or edge leaves the surface; nodes that were
  * outside are moved in where possible. The result depends on the shape of each component only, not
@@ -238,6 +258,10 @@ inline CurveSkeleton refine(const CurveSkeleton& curve, const SurfaceMesh& surfa
 	std::vector<std::vector<int>> vertices(components), nodes(components), edges(components);
 	for (int v = 0; v < surface.vertexSlots(); ++v)
 		vertices[component[v]].push_back(v);
+	std::vector<int> place(surface.vertexSlots());
+	for (const std::vector<int>& ofComponent : vertices)
+		for (size_t i = 0; i < ofComponent.size(); ++i)
+			place[ofComponent[i]] = int(i);
 	for (size_t v = 0; v < componentOfNode.size(); ++v)
 		if (componentOfNode[v] >= 0)
 			nodes[componentOfNode[v]].push_back(int(v));
@@ -276,7 +300,8 @@ inline CurveSkeleton refine(const CurveSkeleton& curve, const SurfaceMesh& surfa
 		const Progress ofComponent =
 			progress.part(0.03 + 0.97 * c / components, 0.03 + 0.97 * (c + 1) / components);
 		const ClosestSurface closest(unit, vertices[c], sampleSpacing, ofComponent.part(0, 0.1));
-		part = refining::refineComponent(part, closest, parameters, ofComponent.part(0.1, 0.95));
+		part = refining::refineComponent(
+			part, closest, {unit, vertices[c], place}, parameters, ofComponent.part(0.1, 0.95));
 
 		const std::vector<std::vector<int>> neighbours = part.neighbours();
 		const int first = int(refined.position.size());

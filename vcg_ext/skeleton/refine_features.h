@@ -1,0 +1,375 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file Refinement, the features: small limbs on a large body that the flow lost get their branches.
+
+#ifndef VCG_MCF_REFINE_FEATURES_H
+#define VCG_MCF_REFINE_FEATURES_H
+
+#include "closest_surface.h"
+#include "curve_skeleton.h"
+#include "parallel_blocks.h"
+#include "progress.h"
+#include "refine_centre.h"
+#include "refine_graph.h"
+#include "skeleton_branches.h"
+#include "surface_mesh.h"
+#include "ticker.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace vcg::tri::mcf::refining {
+
+/// What is a feature. Heights are distances from the union of the skeleton's balls.
+struct FeatureRule
+{
+	/// On the branch into a feature the balls reach further by at least this part of the way, ...
+	double leastGain;
+	/// ... which is at least this many radii of the ball that it starts in.
+	double leastWay;
+	/// The peak of a feature is as high as this part of the radius of the ball that is nearest, ...
+	double leastHeight;
+	/// ... and rises from its surroundings by this part of it, and by this many diagonals.
+	double leastProminence, leastRise;
+	/// Longest step of a branch, in diagonals.
+	double spacing;
+};
+
+/// A component of a surface; its vertices are numbered by their place in it.
+struct SurfaceComponent
+{
+	const SurfaceMesh& mesh;
+	const std::vector<int>& vertices;
+	/// Place of each vertex of the mesh in its own component.
+	const std::vector<int>& place;
+
+	int size() const { return int(vertices.size()); }
+	const Point3d& position(int i) const { return mesh.position[vertices[i]]; }
+	template <class Visitor>
+	void forEachNeighbour(int i, Visitor&& visit) const
+	{
+		mesh.forEachOutgoing(vertices[i], [&](int h) { visit(place[mesh.target(h)]); });
+	}
+};
+
+/// The height of each vertex above the union of the skeleton's balls, and the node of the nearest one.
+struct Heights
+{
+	std::vector<double> height;
+	std::vector<int> node;
+};
+
+/// Nodes whose balls cover, but for a hundredth of their radius, what all balls cover.
+inline std::vector<int> coveringNodes(const CurveSkeleton& skeleton)
+{
+	constexpr double apart = 0.25; // in radii; leaves out apart^2 / 8 of one
+	std::vector<int> covering;
+	for (const Branch& branch : skeletonBranches(skeleton)) {
+		double way = std::numeric_limits<double>::infinity();
+		for (size_t i = 0; i < branch.nodes.size(); ++i) {
+			const int v = branch.nodes[i];
+			if (i > 0)
+				way += Distance(skeleton.position[v], skeleton.position[branch.nodes[i - 1]]);
+			if (way < apart * skeleton.radius[v] && i + 1 < branch.nodes.size())
+				continue;
+			covering.push_back(v);
+			way = 0;
+		}
+	}
+	std::sort(covering.begin(), covering.end());
+	covering.erase(std::unique(covering.begin(), covering.end()), covering.end());
+	return covering;
+}
+
+/// @pre radius of the covering nodes is their distance from the surface.
+/// Complexity: O(V * covering nodes).
+inline Heights heightsAbove(const CurveSkeleton& skeleton, const std::vector<int>& covering,
+	const SurfaceComponent& surface, const Progress& progress)
+{
+	Heights heights = {std::vector<double>(surface.size()), std::vector<int>(surface.size())};
+	forEachBlock(surface.size(), progress, "Refining the skeleton", [&](int begin, int end) {
+		// Vertices of a block are mostly near each other: few balls can be the nearest of one.
+		Box3d box;
+		for (int i = begin; i < end; ++i)
+			box.Add(surface.position(i));
+		const double extent = box.Diag() / 2;
+		const auto heightOfMiddle = [&](int node) {
+			return Distance(box.Center(), skeleton.position[node]) - skeleton.radius[node];
+		};
+		double most = std::numeric_limits<double>::infinity();
+		for (int node : covering)
+			most = std::min(most, heightOfMiddle(node) + extent);
+		std::vector<int> near;
+		for (int node : covering)
+			if (heightOfMiddle(node) - extent <= most)
+				near.push_back(node);
+		for (int i = begin, nearest = near.front(); i < end; ++i) {
+			const Point3d& p = surface.position(i);
+			double least = Distance(p, skeleton.position[nearest]) - skeleton.radius[nearest];
+			for (int node : near) {
+				const double reach = least + skeleton.radius[node];
+				const double squared = SquaredDistance(p, skeleton.position[node]);
+				if (reach <= 0 || squared >= reach * reach)
+					continue;
+				least = std::sqrt(squared) - skeleton.radius[node];
+				nearest = node;
+			}
+			heights.height[i] = least;
+			heights.node[i] = nearest;
+		}
+	});
+	return heights;
+}
+
+/**
+ * A vertex where the height is greatest within a part of the surface from which every way to a higher
+ * one leads down. The part above a level l, which rises h - l above it, reaches to a distance E(l)
+ * from the peak; the spikiness is the greatest (h - l) / E(l), at most 1, since the height changes no
+ * faster than the place: near 1 for a limb, cos a for a cone with half angle a, and near 0 for a rim.
+ */
+struct Peak
+{
+	int vertex;
+	double extent = 0, spikiness = 0;
+};
+
+/**
+ * The peaks that are high enough, rise far enough and are no mere rims; the highest first.
+ * Complexity: O(V log V) in the vertices above the balls.
+ */
+inline std::vector<Peak> peaks(const CurveSkeleton& skeleton, const SurfaceComponent& surface,
+	const Heights& heights, const FeatureRule& rule, const Progress& progress)
+{
+	constexpr double leastSpikiness = 0.12;
+	const std::vector<double>& height = heights.height;
+	std::vector<int> falling;
+	for (int v = 0; v < surface.size(); ++v)
+		if (height[v] > 0)
+			falling.push_back(v);
+	std::sort(falling.begin(), falling.end(), [&](int a, int b) {
+		return height[a] != height[b] ? height[a] > height[b]
+									  : surface.position(a) < surface.position(b);
+	});
+	// The parts above a level that falls, as a forest; they are numbered from the highest peak down.
+	std::vector<int> parent(surface.size(), -1), partOfRoot(surface.size(), -1);
+	std::vector<Peak> parts;
+	const auto root = [&](int v) {
+		while (parent[v] != v)
+			v = parent[v] = parent[parent[v]];
+		return v;
+	};
+	const auto join = [&](int a, int b) {
+		if (partOfRoot[a] > partOfRoot[b])
+			std::swap(a, b);
+		Peak& higher = parts[partOfRoot[a]];
+		const Peak& lower = parts[partOfRoot[b]];
+		higher.extent = std::max(higher.extent,
+			lower.extent
+				+ Distance(surface.position(higher.vertex), surface.position(lower.vertex)));
+		parent[b] = a;
+	};
+	detail::Ticker ticker(progress, "Refining the skeleton", int(falling.size()));
+	for (int v : falling) {
+		ticker.tick();
+		int part = -1;
+		surface.forEachNeighbour(v, [&](int w) {
+			if (parent[w] < 0)
+				return;
+			const int other = root(w);
+			if (part >= 0 && part != other)
+				join(part, other);
+			part = root(other);
+		});
+		if (part < 0) {
+			parent[v] = v;
+			partOfRoot[v] = int(parts.size());
+			parts.push_back({v});
+			continue;
+		}
+		parent[v] = part;
+		Peak& grown = parts[partOfRoot[part]];
+		grown.extent =
+			std::max(grown.extent, Distance(surface.position(grown.vertex), surface.position(v)));
+		const double rise = height[grown.vertex] - height[v];
+		const double radius = skeleton.radius[heights.node[grown.vertex]];
+		if (rise >= std::max(rule.leastRise, rule.leastProminence * radius))
+			grown.spikiness = std::max(grown.spikiness, rise / grown.extent);
+	}
+	const auto isSmall = [&](const Peak& peak) {
+		const double radius = skeleton.radius[heights.node[peak.vertex]];
+		return peak.spikiness < leastSpikiness || height[peak.vertex] < rule.leastHeight * radius;
+	};
+	parts.erase(std::remove_if(parts.begin(), parts.end(), isSmall), parts.end());
+	return parts;
+}
+
+/// The middle of the surface around a peak down to a height: a point within the tip of its feature.
+inline Point3d middleOfTip(
+	const SurfaceComponent& surface, const Heights& heights, int peak, double lowest)
+{
+	std::vector<int> tip(1, peak);
+	std::vector<char> seen(surface.size(), 0);
+	seen[peak] = 1;
+	Box3d box;
+	for (size_t i = 0; i < tip.size(); ++i) {
+		box.Add(surface.position(tip[i]));
+		surface.forEachNeighbour(tip[i], [&](int w) {
+			if (!seen[w] && heights.height[w] >= lowest) {
+				seen[w] = 1;
+				tip.push_back(w);
+			}
+		});
+	}
+	return box.Center();
+}
+
+/// The node whose ball a point is deepest in, in radii; -1 outside of all.
+inline int holdingNode(const CurveSkeleton& skeleton, const Point3d& point)
+{
+	int holding = -1;
+	double least = 1;
+	for (size_t v = 0; v < skeleton.position.size(); ++v)
+		if (const double r = skeleton.radius[v]; r > 0)
+			if (const double depth = Distance(skeleton.position[v], point) / r; depth < least) {
+				least = depth;
+				holding = int(v);
+			}
+	return holding;
+}
+
+/// A branch that is to be: points from the tip of a feature into one of the skeleton's balls.
+struct FeatureBranch
+{
+	std::vector<Point3d> points;
+	std::vector<double> radii;
+	/// The node of that ball; -1 where the way leaves the surface or ends in none.
+	int joint = -1;
+	/// The part of the points about which the shape is wide and flat.
+	double flat = 0;
+
+	double way() const
+	{
+		double sum = 0;
+		for (size_t i = 1; i < points.size(); ++i)
+			sum += Distance(points[i - 1], points[i]);
+		return sum;
+	}
+};
+
+/**
+ * From within a feature's tip to the skeleton: up the slope of the distance from the surface, which in
+ * a limb leads to its body, and where that is flat towards a node, kept in the middle.
+ * @param towards  the node that is nearest to the feature.
+ */
+inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const ClosestSurface& surface,
+	const Point3d& start, int towards, double spacing)
+{
+	constexpr int mostSteps = 400;
+	// Of the next direction; the slope is 1 where the way leads straight away from the surface.
+	constexpr double pull = 0.3, keeping = 0.5;
+	// Flat: this many radii to both sides the surface is still this many away.
+	constexpr double wide = 1.5, flatness = 0.5;
+	FeatureBranch branch;
+	int flat = 0;
+	Point3d x = start, direction(0, 0, 0);
+	for (int i = 0; i < mostSteps; ++i) {
+		ClosestSurface::Hit hit = surface.closest(x);
+		if (hit.distance <= 0 || !surface.isInside(x, hit))
+			return branch;
+		const ClosestSurface::Ball ball = medialBall(surface, x, hit);
+		Point3d slope(0, 0, 0);
+		if (isMedial(ball)) {
+			slope = (ball.centre * 2 - hit.point - ball.contact) / (2 * ball.radius);
+			Point3d aside = ball.centre - x;
+			aside -= direction * (direction * aside);
+			const double length = aside.Norm(), most = i == 0 ? length : spacing / 2;
+			x += length > most ? aside * (most / length) : aside;
+			hit = surface.closest(x, hit.face);
+			if (hit.distance <= 0 || !surface.isInside(x, hit))
+				return branch;
+			const Point3d side = (hit.point - ball.contact) ^ direction;
+			if (const double norm = side.Norm(); norm > 0) {
+				const Point3d far = side * (wide * hit.distance / norm);
+				flat += surface.clearance(x + far) > flatness * hit.distance
+					&& surface.clearance(x - far) > flatness * hit.distance;
+			}
+		}
+		if (i > 0
+			&& !isSegmentInside(
+				surface, branch.points.back(), branch.radii.back(), x, hit.distance))
+			return branch;
+		branch.points.push_back(x);
+		branch.radii.push_back(hit.distance);
+		branch.joint = holdingNode(skeleton, x);
+		if (branch.joint >= 0) {
+			branch.flat = double(flat) / double(branch.points.size());
+			return branch;
+		}
+		const Point3d there = skeleton.position[towards] - x;
+		direction = slope + there * (pull / there.Norm()) + direction * keeping;
+		direction /= std::max(direction.Norm(), 1e-12);
+		x += direction * std::min(spacing, hit.distance / 2);
+	}
+	return branch;
+}
+
+/**
+ * Whether a branch leads into a limb: not into the corner of a box, on the way to which the balls
+ * shrink nearly as fast as they advance, and not through a plate, in which it could lead anywhere.
+ */
+inline bool leadsIntoLimb(const FeatureBranch& branch, const FeatureRule& rule)
+{
+	constexpr double mostFlat = 0.45, evenGain = 0.8, mostFlatIfEven = 0.1;
+	const double way = branch.way();
+	if (branch.joint < 0 || way < rule.leastWay * branch.radii.back())
+		return false;
+	const double gain = 1 + (branch.radii.front() - branch.radii.back()) / way;
+	return gain >= rule.leastGain && branch.flat <= (gain > evenGain ? mostFlatIfEven : mostFlat);
+}
+
+/**
+ * Gives each feature without a branch one: where the surface is left far uncovered and comes to a
+ * point, and where the way there leads through a limb. Rims and corners, which curve skeletons leave
+ * out, are none.
+ * @pre radius holds the distances from the surface, or lower bounds. @post the same.
+ * Complexity: O(V * N + V log V).
+ */
+inline void growFeatures(CurveSkeleton& skeleton, const SurfaceComponent& component,
+	const ClosestSurface& surface, KnownClearances& clearances, const FeatureRule& rule,
+	const Progress& progress = Progress())
+{
+	if (skeleton.edges.empty())
+		return;
+	const std::vector<int> covering = coveringNodes(skeleton);
+	for (int v : covering)
+		skeleton.radius[v] = std::max(clearances.at(skeleton.position[v]), 0.0);
+	const Heights heights = heightsAbove(skeleton, covering, component, progress.part(0, 0.5));
+	for (const Peak& peak : peaks(skeleton, component, heights, rule, progress.part(0.5, 1))) {
+		// Down from the peak until what is above encloses a point of the inside.
+		FeatureBranch branch;
+		const double height = heights.height[peak.vertex];
+		for (double down = rule.leastRise; branch.points.empty() && down < height; down *= 2)
+			branch = traceBranch(skeleton, surface,
+				middleOfTip(component, heights, peak.vertex, height - down),
+				heights.node[peak.vertex], rule.spacing);
+		if (!leadsIntoLimb(branch, rule))
+			continue;
+		int last = branch.joint;
+		for (size_t i = branch.points.size(); i-- > 0;) {
+			const int next = int(skeleton.position.size());
+			skeleton.position.push_back(branch.points[i]);
+			skeleton.radius.push_back(branch.radii[i]);
+			skeleton.edges.push_back({last, next});
+			last = next;
+		}
+	}
+	std::sort(skeleton.edges.begin(), skeleton.edges.end());
+}
+
+} // namespace vcg::tri::mcf::refining
+
+#endif
