@@ -202,6 +202,32 @@ TEST(CollapseToCurve, DoesNotZigzag)
 	EXPECT_LT(turn, 1.05 * 2 * M_PI);
 }
 
+TEST(CollapseToCurve, RemovesSpurs)
+{
+	// In a capsule about the x axis, a stub whose ball lies within the one at its foot.
+	const Stage stage = plainStage(shapes::capsule(2, 0.35).mesh());
+	CurveSkeleton skeleton;
+	skeleton.position = {{-1, 0, 0}, {0, 0, 0}, {1, 0, 0}, {0, 0.1, 0}};
+	skeleton.edges = {{0, 1}, {1, 2}, {1, 3}};
+	skeleton.radius.assign(4, 0);
+	for (const Point3d& p : *stage.surface)
+		skeleton.node.push_back(p[0] < -0.5 ? 0 : p[0] > 0.5 ? 2 : p[1] > 0.3 ? 3 : 1);
+	const std::vector<int> component(4, 0);
+	std::vector<char> held(4, 0);
+	const auto pruned = [&](double least) {
+		return detail::withoutSpurs(skeleton, stage, component, held, least, Progress());
+	};
+	const CurveSkeleton without = pruned(0.12);
+	ASSERT_EQ(without.position.size(), 3u);
+	EXPECT_EQ(statistics(without).terminals, 2);
+	for (size_t s = 0; s < skeleton.node.size(); ++s)
+		EXPECT_EQ(without.node[s], skeleton.node[s] == 3 ? 1 : skeleton.node[s])
+			<< "what had merged into the stub goes to its foot";
+	EXPECT_EQ(pruned(-0.5).position.size(), 4u) << "if told so, it stays";
+	held[3] = 1;
+	EXPECT_EQ(pruned(0.12).position.size(), 4u) << "held nodes stay";
+}
+
 TEST(CollapseToCurve, IsTheSameWhateverTheScale)
 {
 	const SurfaceMesh mesh = shapes::plate(2).mesh();

@@ -7,6 +7,7 @@
 #define VCG_MCF_COLLAPSE_TO_CURVE_H
 
 #include "curve_skeleton.h"
+#include "curve_spurs.h"
 #include "errors.h"
 #include "glued_complex.h"
 #include "progress.h"
@@ -166,8 +167,8 @@ inline void straightenZigzag(GluedComplex& complex, const Stage& stage, double s
 
 /**
  * Turns a stage into its curve skeleton: repeatedly collapses the shortest edge that has faces, then
- * straightens the zigzag that this leaves. Lengths are compared in the shape's own coordinates, see
- * StageFrames.
+ * straightens the zigzag that this leaves and removes the spurs. Lengths are compared in the shape's
+ * own coordinates, see StageFrames.
  *
  * The stage need not have converged; its sheets and volumes become curves too. The result has a
  * component for each component of the stage and as many cycles as its genus (see GluedComplex), no
@@ -189,11 +190,14 @@ inline CurveSkeleton collapseToCurve(
 	detail::contractShortCurveEdges(complex, stage, shortestEdge);
 
 	CurveSkeleton skeleton;
-	std::vector<int> number(complex.nodeSlots(), -1);
+	std::vector<int> number(complex.nodeSlots(), -1), component;
+	std::vector<char> held;
 	for (int A = 0; A < complex.nodeSlots(); ++A)
 		if (complex.find(A) == A) {
 			number[A] = int(skeleton.position.size());
 			skeleton.position.push_back(frames.out(stage.component[A], complex.position(A)));
+			component.push_back(stage.component[A]);
+			held.push_back(complex.isHeld(A));
 		}
 	for (int A = 0; A < complex.nodeSlots(); ++A)
 		if (number[A] >= 0)
@@ -203,6 +207,11 @@ inline CurveSkeleton collapseToCurve(
 	skeleton.node.resize(stage.node.size());
 	for (size_t s = 0; s < stage.node.size(); ++s)
 		skeleton.node[s] = number[complex.find(stage.node[s])];
+
+	constexpr double spurProminence = 0.12; // some more than a tenth: balls reach to vertices only
+	skeleton.radius.assign(skeleton.position.size(), 0);
+	skeleton = detail::withoutSpurs(
+		std::move(skeleton), stage, component, held, spurProminence, progress.part(0.95, 1));
 
 	// A node of split vertices only has no surface vertex: it takes the mean of its neighbours' radii.
 	skeleton.radius = meanSurfaceDistance(skeleton.position, *stage.surface, skeleton.node);
