@@ -336,7 +336,7 @@ inline bool leadsIntoLimb(const FeatureBranch& branch, const FeatureRule& rule)
  * point, and where the way there leads through a limb. Rims and corners, which curve skeletons leave
  * out, are none.
  * @pre radius holds the distances from the surface, or lower bounds. @post the same.
- * Complexity: O(V * N + V log V).
+ * @throws Cancelled. Complexity: O(V * N + V log V), and O(V + log V) for each peak.
  */
 inline void growFeatures(CurveSkeleton& skeleton, const SurfaceComponent& component,
 	const ClosestSurface& surface, KnownClearances& clearances, const FeatureRule& rule,
@@ -347,8 +347,9 @@ inline void growFeatures(CurveSkeleton& skeleton, const SurfaceComponent& compon
 	const std::vector<int> covering = coveringNodes(skeleton);
 	for (int v : covering)
 		skeleton.radius[v] = std::max(clearances.at(skeleton.position[v]), 0.0);
-	const Heights heights = heightsAbove(skeleton, covering, component, progress.part(0, 0.5));
-	for (const Peak& peak : peaks(skeleton, component, heights, rule, progress.part(0.5, 1))) {
+	const Heights heights = heightsAbove(skeleton, covering, component, progress.part(0, 0.4));
+	for (const Peak& peak : peaks(skeleton, component, heights, rule, progress.part(0.4, 0.8))) {
+		progress.report(0.8, "Refining the skeleton");
 		// Down from the peak until what is above encloses a point of the inside.
 		FeatureBranch branch;
 		const double height = heights.height[peak.vertex];
