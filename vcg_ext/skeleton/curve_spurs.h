@@ -61,7 +61,7 @@ inline CurveSkeleton withoutSpurs(CurveSkeleton skeleton, const Stage& stage,
 		std::move(skeleton), least, [](const CurveSkeleton& s, const Branch& branch) {
 			const bool isHeld = std::any_of(branch.nodes.begin(), branch.nodes.end(),
 				[&](int v) { return std::isinf(s.radius[v]); });
-			return isHeld ? infinity : prominence(s, branch.last(), branch.first());
+			return isHeld ? infinity : terminalProminence(s, branch);
 		});
 }
 

@@ -125,6 +125,12 @@ CurveSkeleton withMergedJunctions(CurveSkeleton skeleton, double least, const Me
 	}
 }
 
+/// The prominence() of a terminal branch, seen from its junction.
+inline double terminalProminence(const CurveSkeleton& skeleton, const Branch& fromJunction)
+{
+	return prominence(skeleton, fromJunction.last(), fromJunction.first());
+}
+
 /// What prune() removes. Lengths in mesh units.
 struct PruneParameters
 {
@@ -184,12 +190,9 @@ inline CurveSkeleton prune(const CurveSkeleton& skeleton, const PruneParameters&
 	const Progress& progress = Progress())
 {
 	parameters.check();
-	const auto branchProminence = [](const CurveSkeleton& s, const Branch& branch) {
-		return prominence(s, branch.last(), branch.first());
-	};
 	const auto withoutSpurs = [&](CurveSkeleton s, double from, double to) {
 		return parameters.spurProminence > 0 ? withoutTerminalBranches(std::move(s),
-				   parameters.spurProminence, branchProminence, progress.part(from, to))
+				   parameters.spurProminence, terminalProminence, progress.part(from, to))
 											 : s;
 	};
 	CurveSkeleton pruned = withoutSpurs(skeleton, 0, 0.2);

@@ -61,10 +61,26 @@ inline Point3d tangentAt(const CurveSkeleton& skeleton, const std::vector<int>& 
 	return length > 0 ? t / length : Point3d(0, 0, 0);
 }
 
+/// The slope of the distance from the surface within the medial axis: half the sum of the directions
+/// from both contacts of a ball to its centre.
+inline Point3d medialSlope(const Point3d& contact, const ClosestSurface::Ball& ball)
+{
+	return (ball.centre * 2 - contact - ball.contact) / (2 * ball.radius);
+}
+
+/// The point moved across a direction towards the centre of a ball, by `most` at most.
+inline Point3d movedAside(
+	const Point3d& point, const ClosestSurface::Ball& ball, const Point3d& direction, double most)
+{
+	Point3d aside = ball.centre - point;
+	aside -= direction * (direction * aside);
+	const double length = aside.Norm();
+	return point + (length > most ? aside * (most / length) : aside);
+}
+
 /**
  * Moves a ball's centre within the medial axis and across the branch towards where the ball grows,
- * the middle of a cross-section that is not round: half the sum of the directions from both contacts
- * is the slope of the radius. Stays where the ball would not grow.
+ * the middle of a cross-section that is not round. Stays where the ball would not grow.
  */
 inline void ascendAside(Contact& contact, const Point3d& tangent, const ClosestSurface& surface)
 {
@@ -75,7 +91,7 @@ inline void ascendAside(Contact& contact, const Point3d& tangent, const ClosestS
 		const ClosestSurface::Ball& ball = here.ball;
 		if (!isMedial(ball) || ball.spokeAngle > flattest)
 			return;
-		Point3d slope = (ball.centre * 2 - here.hit.point - ball.contact) / (2 * ball.radius);
+		Point3d slope = medialSlope(here.hit.point, ball);
 		slope -= tangent * (tangent * slope);
 		const Point3d aside = ball.centre + slope * (pace * ball.radius);
 		const ClosestSurface::Hit first = surface.closestFrom(aside, here.hit.face);

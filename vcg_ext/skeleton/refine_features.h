@@ -283,11 +283,10 @@ inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const ClosestSur
 		const ClosestSurface::Ball ball = medialBall(surface, x, hit);
 		Point3d slope(0, 0, 0);
 		if (isMedial(ball)) {
-			slope = (ball.centre * 2 - hit.point - ball.contact) / (2 * ball.radius);
-			Point3d aside = ball.centre - x;
-			aside -= direction * (direction * aside);
-			const double length = aside.Norm(), most = i == 0 ? length : spacing / 2;
-			x += length > most ? aside * (most / length) : aside;
+			slope = medialSlope(hit.point, ball);
+			const bool isFirst = i == 0;
+			x = movedAside(x, ball, direction,
+				isFirst ? std::numeric_limits<double>::infinity() : spacing / 2);
 			hit = surface.closest(x, hit.face);
 			if (hit.distance <= 0 || !surface.isInside(x, hit))
 				return branch;

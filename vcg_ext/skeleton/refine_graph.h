@@ -90,10 +90,7 @@ inline bool isEdgeInside(CurveSkeleton& skeleton, const ClosestSurface& surface,
  */
 inline CurveSkeleton withoutSpurs(CurveSkeleton skeleton, double least)
 {
-	return withoutTerminalBranches(
-		std::move(skeleton), least, [](const CurveSkeleton& s, const Branch& branch) {
-			return prominence(s, branch.last(), branch.first());
-		});
+	return withoutTerminalBranches(std::move(skeleton), least, terminalProminence);
 }
 
 /// A terminal branch as the balls on it see it: for each node the way from the first one, and the

@@ -88,12 +88,8 @@ inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, c
 			if (hit.distance <= 0 || !surface.isInside(y, hit))
 				break;
 			const ClosestSurface::Ball ball = medialBall(surface, y, hit);
-			if (isMedial(ball)) {
-				Point3d aside = ball.centre - y;
-				aside -= direction * (direction * aside);
-				const double length = aside.Norm(), most = step / 2;
-				y += length > most ? aside * (most / length) : aside;
-			}
+			if (isMedial(ball))
+				y = movedAside(y, ball, direction, step / 2);
 			const double s = Distance(x, y);
 			const double reached = std::max(surface.clearance(y), 0.0);
 			const Point3d front = y + (y - x) * (reached / s);
