@@ -39,9 +39,7 @@ inline CurveSkeleton withoutSpurs(CurveSkeleton skeleton, const Stage& stage,
 		neighbours.begin(), neighbours.end(), [](const auto& n) { return n.size() > 2; });
 	if (!branched)
 		return skeleton;
-	std::vector<int> componentOfPoint;
-	for (int v : stage.node)
-		componentOfPoint.push_back(stage.component[v]);
+	const std::vector<int> componentOfPoint = componentOfSurfaceVertices(stage);
 	for (size_t v = 0; v < neighbours.size(); ++v) {
 		if (held[v]) {
 			skeleton.radius[v] = infinity;

@@ -99,6 +99,16 @@ inline std::vector<double> componentAreas(
 	return area;
 }
 
+/// The component of each vertex of the surface that a stage came from.
+inline std::vector<int> componentOfSurfaceVertices(const Stage& stage)
+{
+	std::vector<int> component;
+	component.reserve(stage.node.size());
+	for (int v : stage.node)
+		component.push_back(stage.component[v]);
+	return component;
+}
+
 /// Stage 0 of a surface. @pre the surface is compact; poles has an entry for each vertex.
 inline Stage initialStage(const MeasuredSurface& measured, const PoleSet& poles)
 {

@@ -33,11 +33,9 @@ public:
 	explicit StageFrames(Stage& stage)
 	{
 		if (!stage.frames) {
-			std::vector<int> component(stage.node.size());
-			for (size_t s = 0; s < component.size(); ++s)
-				component[s] = stage.component[stage.node[s]];
-			stage.frames = std::make_shared<const std::vector<PrincipalFrame>>(
-				PrincipalFrame::ofPoints(*stage.surface, component, stage.diagonal.size()));
+			stage.frames =
+				std::make_shared<const std::vector<PrincipalFrame>>(PrincipalFrame::ofPoints(
+					*stage.surface, componentOfSurfaceVertices(stage), stage.diagonal.size()));
 		}
 		frames = stage.frames;
 	}
