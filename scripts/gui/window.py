@@ -11,11 +11,13 @@ import signal
 import subprocess
 import tempfile
 import time
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Callable, Optional, TypeVar
 
-SIZE = (1280, 900)
+from display import SIZE, display
+
 PATIENCE = 180.0  # seconds: a busy machine is slow, and nothing is gained by giving up early
 
 T = TypeVar("T")
@@ -77,6 +79,7 @@ class Window:
         self.folder = Path(tempfile.mkdtemp(prefix="window"))
         self.log_file = self.folder / "log"
         self.started: list[subprocess.Popen] = []
+        self.resources = ExitStack()
         try:
             self.start(program, meshes, data or self.folder / "data")
         except BaseException:
@@ -102,12 +105,12 @@ class Window:
         for name in ["WAYLAND_DISPLAY", "XAUTHORITY", "QT_QPA_PLATFORM", "AT_SPI_BUS_ADDRESS"]:
             environment.pop(name, None)
         self.environment = environment
-        server = self.run("Xvfb", "-displayfd", "1", "-screen", "0", "{}x{}x24".format(*SIZE),
-                          "-nolisten", "tcp", stdout=subprocess.PIPE)
-        environment["DISPLAY"] = ":" + self.first_line(server)
+        environment["DISPLAY"] = self.resources.enter_context(display())
         bus = self.run("dbus-daemon", "--session", "--nofork", "--print-address=1",
                        stdout=subprocess.PIPE)
-        environment["DBUS_SESSION_BUS_ADDRESS"] = self.first_line(bus)
+        environment["DBUS_SESSION_BUS_ADDRESS"] = bus.stdout.readline().decode().strip()
+        if not environment["DBUS_SESSION_BUS_ADDRESS"]:
+            raise RuntimeError("dbus-daemon did not start")
         with open(self.log_file, "wb") as log:
             self.meshlab = self.run(str(program), *map(str, meshes), stdout=log,
                                     stderr=subprocess.STDOUT)
@@ -142,12 +145,6 @@ class Window:
         self.started.append(process)
         return process
 
-    def first_line(self, process: subprocess.Popen) -> str:
-        line = process.stdout.readline().decode().strip()
-        if not line:
-            raise RuntimeError(f"{process.args[0]} did not start")
-        return line
-
     def stop(self) -> None:
         for process in reversed(self.started):
             try:
@@ -155,6 +152,7 @@ class Window:
             except ProcessLookupError:
                 pass
             process.wait()
+        self.resources.close()
         shutil.rmtree(self.folder, ignore_errors=True)
 
     @property

@@ -5,6 +5,7 @@ Scripts for them, and what they leave."""
 
 import os
 import subprocess
+import sys
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -15,6 +16,9 @@ import numpy as np
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "scripts" / "gui"))
+from display import display  # noqa: E402
+
 PREFIX = "Mean Curvature Skeleton: "
 SCRIPTS = {path.stem: path for path in (ROOT / "examples").glob("*.mlx")}
 Server = Callable[..., subprocess.CompletedProcess]
@@ -41,28 +45,12 @@ def host(name: str) -> Host:
 
 
 @contextmanager
-def display() -> Iterator[dict[str, str]]:
-    """An environment with an X display of its own, without a screen."""
-    reading, writing = os.pipe()
-    server = subprocess.Popen(
-        ["Xvfb", "-displayfd", str(writing), "-screen", "0", "1280x900x24", "-nolisten", "tcp"],
-        pass_fds=[writing], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    os.close(writing)
-    try:
-        with os.fdopen(reading) as pipe:
-            number = pipe.readline().strip()
-        assert number, "Xvfb does not start"
-        yield os.environ | {"DISPLAY": f":{number}", "LIBGL_ALWAYS_SOFTWARE": "1"}
-    finally:
-        server.terminate()
-        server.wait()
-
-
-@contextmanager
 def meshlabserver(home: Path) -> Iterator[Server]:
     """A function that runs meshlabserver on a mesh and a script; its log is the output."""
     program = host("meshlab-2020.09")
-    with display() as environment:
+    with display() as name:
+        environment = os.environ | {"DISPLAY": name, "LIBGL_ALWAYS_SOFTWARE": "1"}
+
         def run(mesh: Path, script: Path, *outputs: object) -> subprocess.CompletedProcess:
             return subprocess.run(
                 [program.folder / "bin/meshlabserver", "-i", mesh, "-s", script, *map(str, outputs)],
