@@ -59,6 +59,7 @@ public:
 	ClosestSurface(const SurfaceMesh& surface, const std::vector<int>& vertices, double spacing,
 		const Progress& progress = Progress()) :
 			surface(surface),
+			vertexCount(int(vertices.size())),
 			tree(samples(vertices, spacing, progress.part(0, 0.3)), progress.part(0.3, 1))
 	{
 		for (int v : vertices)
@@ -87,6 +88,18 @@ public:
 	Hit closest(const Point3d& query) const
 	{
 		return closestFrom(query, faceOfSample[tree.nearest(query)]);
+	}
+
+	/// The places of the vertices among those given at the beginning, in an order in which neighbours are
+	/// near each other.
+	std::vector<int> vertexOrder() const
+	{
+		std::vector<int> order;
+		order.reserve(vertexCount);
+		for (int sample : tree.order())
+			if (sample < vertexCount)
+				order.push_back(sample);
+		return order;
 	}
 
 	/// The closest point that a walk downhill from a face leads to: for queries that moved little.
@@ -180,6 +193,7 @@ private:
 	};
 
 	const SurfaceMesh& surface;
+	int vertexCount; ///< the first samples are the vertices
 	std::vector<int> faceOfSample;
 	PointTree tree;
 	Box3d box;

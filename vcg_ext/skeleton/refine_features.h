@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -85,41 +86,60 @@ inline std::vector<int> coveringNodes(const CurveSkeleton& skeleton)
 	return covering;
 }
 
-/// @pre radius of the covering nodes is their distance from the surface.
-/// Complexity: O(V * covering nodes).
-inline Heights heightsAbove(const CurveSkeleton& skeleton, const std::vector<int>& covering,
-	const SurfaceComponent& surface, const Progress& progress)
+/// The balls that may be the nearest of points in a box: all others are farther than one of them from
+/// any point in it. @pre there are balls to choose from.
+inline void selectNearBalls(const CurveSkeleton& skeleton, const std::vector<int>& balls,
+	const Box3d& box, std::vector<int>& near)
 {
+	const Point3d middle = box.Center();
+	const double extent = box.Diag() / 2;
+	double most = std::numeric_limits<double>::infinity();
+	std::vector<double> height;
+	height.reserve(balls.size());
+	for (int node : balls) {
+		height.push_back(Distance(middle, skeleton.position[node]) - skeleton.radius[node]);
+		most = std::min(most, height.back() + extent);
+	}
+	near.clear();
+	for (size_t i = 0; i < balls.size(); ++i)
+		if (height[i] - extent <= most)
+			near.push_back(balls[i]);
+}
+
+/// @param order of the vertices, one in which neighbours are near each other.
+/// @pre radius of the covering nodes is their distance from the surface.
+/// Complexity: O(V * covering nodes), with a small factor.
+inline Heights heightsAbove(const CurveSkeleton& skeleton, const std::vector<int>& covering,
+	const SurfaceComponent& surface, const std::vector<int>& order, const Progress& progress)
+{
+	constexpr int groupSize = 16;
 	Heights heights = {std::vector<double>(surface.size()), std::vector<int>(surface.size())};
 	forEachBlock(surface.size(), progress, "Refining the skeleton", [&](int begin, int end) {
-		// Vertices of a block are mostly near each other: few balls can be the nearest of one.
-		Box3d box;
-		for (int i = begin; i < end; ++i)
-			box.Add(surface.position(i));
-		const double extent = box.Diag() / 2;
-		const auto heightOfMiddle = [&](int node) {
-			return Distance(box.Center(), skeleton.position[node]) - skeleton.radius[node];
+		const auto boxOf = [&](int first, int last) {
+			Box3d box;
+			for (int i = first; i < last; ++i)
+				box.Add(surface.position(order[i]));
+			return box;
 		};
-		double most = std::numeric_limits<double>::infinity();
-		for (int node : covering)
-			most = std::min(most, heightOfMiddle(node) + extent);
-		std::vector<int> near;
-		for (int node : covering)
-			if (heightOfMiddle(node) - extent <= most)
-				near.push_back(node);
-		for (int i = begin, nearest = near.front(); i < end; ++i) {
-			const Point3d& p = surface.position(i);
-			double least = Distance(p, skeleton.position[nearest]) - skeleton.radius[nearest];
-			for (int node : near) {
-				const double reach = least + skeleton.radius[node];
-				const double squared = SquaredDistance(p, skeleton.position[node]);
-				if (reach <= 0 || squared >= reach * reach)
-					continue;
-				least = std::sqrt(squared) - skeleton.radius[node];
-				nearest = node;
+		std::vector<int> nearBlock, nearGroup;
+		selectNearBalls(skeleton, covering, boxOf(begin, end), nearBlock);
+		for (int first = begin; first < end; first += groupSize) {
+			const int last = std::min(first + groupSize, end);
+			selectNearBalls(skeleton, nearBlock, boxOf(first, last), nearGroup);
+			for (int i = first; i < last; ++i) {
+				const Point3d& p = surface.position(order[i]);
+				double least = std::numeric_limits<double>::infinity();
+				int nearest = -1;
+				for (int node : nearGroup)
+					if (const double height =
+							Distance(p, skeleton.position[node]) - skeleton.radius[node];
+						height < least) {
+						least = height;
+						nearest = node;
+					}
+				heights.height[order[i]] = least;
+				heights.node[order[i]] = nearest;
 			}
-			heights.height[i] = least;
-			heights.node[i] = nearest;
 		}
 	});
 	return heights;
@@ -137,23 +157,79 @@ struct Peak
 	double extent = 0, spikiness = 0;
 };
 
+/// The vertices of positive height, the highest first; of several the one with the least coordinates.
+class VerticesByHeight
+{
+public:
+	/// Complexity: O(V).
+	VerticesByHeight(const SurfaceComponent& surface, const std::vector<double>& height) :
+			surface(surface)
+	{
+		const double top = *std::max_element(height.begin(), height.end());
+		// In slices of equal thickness, each of them sorted when its turn comes.
+		const int slices = std::max(1, surface.size());
+		const auto slice = [&](int v) {
+			return std::min(slices - 1, int((1 - height[v] / top) * slices));
+		};
+		ends.assign(slices + 1, 0);
+		for (int v = 0; v < surface.size(); ++v)
+			if (height[v] > 0)
+				++ends[slice(v) + 1];
+		std::partial_sum(ends.begin(), ends.end(), ends.begin());
+		entries.resize(ends.back());
+		for (int v = 0; v < surface.size(); ++v)
+			if (height[v] > 0)
+				entries[ends[slice(v)]++] = {height[v], v};
+	}
+
+	int size() const { return int(entries.size()); }
+
+	/// The next vertex down, -1 after the last.
+	int next()
+	{
+		if (place == size())
+			return -1;
+		if (place == sorted) {
+			while (ends[current] == place)
+				++current;
+			sorted = ends[current];
+			std::sort(entries.begin() + place, entries.begin() + sorted,
+				[&](const auto& a, const auto& b) {
+					return a.first != b.first
+						? a.first > b.first
+						: surface.position(a.second) < surface.position(b.second);
+				});
+		}
+		return entries[place++].second;
+	}
+
+private:
+	const SurfaceComponent& surface;
+	std::vector<std::pair<double, int>> entries;
+	std::vector<int> ends; ///< of the slices
+	int current = 0, place = 0, sorted = 0;
+};
+
 /**
  * The peaks that are high enough, rise far enough and are no mere rims; the highest first.
- * Complexity: O(V log V) in the vertices above the balls.
+ * Complexity: about O(V).
  */
 inline std::vector<Peak> peaks(const CurveSkeleton& skeleton, const SurfaceComponent& surface,
 	const Heights& heights, const FeatureRule& rule, const Progress& progress)
 {
 	constexpr double leastSpikiness = 0.12;
 	const std::vector<double>& height = heights.height;
-	std::vector<int> falling;
+	const auto leastRise = [&](int peak) {
+		return std::max(rule.leastRise, rule.leastProminence * skeleton.radius[heights.node[peak]]);
+	};
+	const auto isHigh = [&](int v) {
+		return height[v] >= rule.leastHeight * skeleton.radius[heights.node[v]]
+			&& height[v] >= leastRise(v);
+	};
+	VerticesByHeight falling(surface, height);
+	int highLeft = 0;
 	for (int v = 0; v < surface.size(); ++v)
-		if (height[v] > 0)
-			falling.push_back(v);
-	std::sort(falling.begin(), falling.end(), [&](int a, int b) {
-		return height[a] != height[b] ? height[a] > height[b]
-									  : surface.position(a) < surface.position(b);
-	});
+		highLeft += height[v] > 0 && isHigh(v);
 	// The parts above a level that falls, as a forest; they are numbered from the highest peak down.
 	std::vector<int> parent(surface.size(), -1), partOfRoot(surface.size(), -1);
 	std::vector<Peak> parts;
@@ -162,19 +238,31 @@ inline std::vector<Peak> peaks(const CurveSkeleton& skeleton, const SurfaceCompo
 			v = parent[v] = parent[parent[v]];
 		return v;
 	};
+	// Peaks that are high enough and may still turn out to be no rims.
+	int open = 0;
+	const auto isOpen = [&](const Peak& peak) {
+		return isHigh(peak.vertex) && peak.spikiness < leastSpikiness
+			&& height[peak.vertex] >= leastSpikiness * peak.extent;
+	};
 	const auto join = [&](int a, int b) {
 		if (partOfRoot[a] > partOfRoot[b])
 			std::swap(a, b);
 		Peak& higher = parts[partOfRoot[a]];
 		const Peak& lower = parts[partOfRoot[b]];
+		open -= isOpen(higher) + isOpen(lower);
 		higher.extent = std::max(higher.extent,
 			lower.extent
 				+ Distance(surface.position(higher.vertex), surface.position(lower.vertex)));
+		open += isOpen(higher);
 		parent[b] = a;
 	};
-	detail::Ticker ticker(progress, "Refining the skeleton", int(falling.size()));
-	for (int v : falling) {
+	detail::Ticker ticker(progress, "Refining the skeleton", falling.size());
+	while (highLeft > 0 || open > 0) {
 		ticker.tick();
+		const int v = falling.next();
+		if (v < 0)
+			break;
+		highLeft -= isHigh(v);
 		int part = -1;
 		surface.forEachNeighbour(v, [&](int w) {
 			if (parent[w] < 0)
@@ -188,20 +276,21 @@ inline std::vector<Peak> peaks(const CurveSkeleton& skeleton, const SurfaceCompo
 			parent[v] = v;
 			partOfRoot[v] = int(parts.size());
 			parts.push_back({v});
+			open += isOpen(parts.back());
 			continue;
 		}
 		parent[v] = part;
 		Peak& grown = parts[partOfRoot[part]];
+		open -= isOpen(grown);
 		grown.extent =
 			std::max(grown.extent, Distance(surface.position(grown.vertex), surface.position(v)));
 		const double rise = height[grown.vertex] - height[v];
-		const double radius = skeleton.radius[heights.node[grown.vertex]];
-		if (rise >= std::max(rule.leastRise, rule.leastProminence * radius))
+		if (rise >= leastRise(grown.vertex))
 			grown.spikiness = std::max(grown.spikiness, rise / grown.extent);
+		open += isOpen(grown);
 	}
 	const auto isSmall = [&](const Peak& peak) {
-		const double radius = skeleton.radius[heights.node[peak.vertex]];
-		return peak.spikiness < leastSpikiness || height[peak.vertex] < rule.leastHeight * radius;
+		return peak.spikiness < leastSpikiness || !isHigh(peak.vertex);
 	};
 	parts.erase(std::remove_if(parts.begin(), parts.end(), isSmall), parts.end());
 	return parts;
@@ -346,7 +435,8 @@ inline void growFeatures(CurveSkeleton& skeleton, const SurfaceComponent& compon
 	const std::vector<int> covering = coveringNodes(skeleton);
 	for (int v : covering)
 		skeleton.radius[v] = std::max(clearances.at(skeleton.position[v]), 0.0);
-	const Heights heights = heightsAbove(skeleton, covering, component, progress.part(0, 0.4));
+	const Heights heights =
+		heightsAbove(skeleton, covering, component, surface.vertexOrder(), progress.part(0, 0.4));
 	for (const Peak& peak : peaks(skeleton, component, heights, rule, progress.part(0.4, 0.8))) {
 		progress.report(0.8, "Refining the skeleton");
 		// Down from the peak until what is above encloses a point of the inside.
