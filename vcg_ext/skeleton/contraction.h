@@ -78,10 +78,10 @@ inline void contract(
 	const Point3d middle = mesh.bounds().Center();
 	SymmetricRows M;
 	M.diagonal.resize(n);
-	M.start.reserve(n + 1);
-	M.start.push_back(0);
-	M.column.reserve(6 * size_t(n));
-	M.value.reserve(6 * size_t(n));
+	M.start.resize(n + 1);
+	M.column.resize(mesh.halfEdgeSlots());
+	M.value.resize(mesh.halfEdgeSlots());
+	int entries = 0;
 	std::vector<double> D(n);
 	std::vector<Point3d> known(n), x(n), b(n);
 	for (int i = 0; i < n; ++i) {
@@ -93,14 +93,14 @@ inline void contract(
 			const int j = mesh.target(h);
 			sum += w;
 			if (unknown[j] >= 0) {
-				M.column.push_back(unknown[j]);
-				M.value.push_back(-w);
+				M.column[entries] = unknown[j];
+				M.value[entries++] = -w;
 			}
 			else
 				known[i] -= (mesh.position[j] - middle) * w;
 		});
 		M.diagonal[i] = sum;
-		M.start.push_back(int(M.column.size()));
+		M.start[i + 1] = entries;
 		const Point3d& p = mesh.position[v];
 		x[i] = p - middle;
 		D[i] = wH2;

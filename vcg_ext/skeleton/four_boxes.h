@@ -9,6 +9,8 @@
 #include <vcg/space/box3.h>
 #include <vcg/space/point3.h>
 
+#include <Eigen/Core>
+
 #include <limits>
 
 namespace vcg::tri::mcf {
@@ -48,25 +50,30 @@ public:
 	/// Squared distances from x to the boxes; 0 inside.
 	void squaredDistances(const float (&x)[3], float (&result)[4]) const
 	{
-		for (int k = 0; k < 4; ++k)
-			result[k] = 0;
-		for (int axis = 0; axis < 3; ++axis)
-			for (int k = 0; k < 4; ++k) {
-				const float below = low[axis][k] - x[axis], above = x[axis] - high[axis][k];
-				float outside = below > above ? below : above;
-				outside = outside > 0 ? outside : 0;
-				result[k] += outside * outside;
-			}
+		using Four = Eigen::Array4f;
+		Four sum = Four::Zero();
+		for (int axis = 0; axis < 3; ++axis) {
+			const Four below = Eigen::Map<const Four>(low[axis]) - x[axis];
+			const Four above = x[axis] - Eigen::Map<const Four>(high[axis]);
+			sum += below.max(above).max(0.f).square();
+		}
+		Eigen::Map<Four> out(result);
+		out = sum;
 	}
 
-	/// 1 for each box that shares a point with [from, to], else 0.
-	void overlaps(const float (&from)[3], const float (&to)[3], int (&result)[4]) const
+	/// How far [from, to] is from each box along the axis on which it is farthest; 0 or less where they
+	/// share a point.
+	void gaps(const float (&from)[3], const float (&to)[3], float (&result)[4]) const
 	{
-		for (int k = 0; k < 4; ++k)
-			result[k] = 1;
-		for (int axis = 0; axis < 3; ++axis)
-			for (int k = 0; k < 4; ++k)
-				result[k] &= int(low[axis][k] <= to[axis]) & int(high[axis][k] >= from[axis]);
+		using Four = Eigen::Array4f;
+		Four gap = Four::Constant(-std::numeric_limits<float>::infinity());
+		for (int axis = 0; axis < 3; ++axis) {
+			const Four below = Eigen::Map<const Four>(low[axis]) - to[axis];
+			const Four above = from[axis] - Eigen::Map<const Four>(high[axis]);
+			gap = gap.max(below.max(above));
+		}
+		Eigen::Map<Four> out(result);
+		out = gap;
 	}
 
 private:

@@ -50,20 +50,23 @@ public:
 		inverseDiagonal.resize(n);
 		start.resize(n + 1);
 		start[0] = 0;
-		entries.reserve(10 * size_t(n));
+		entries.resize(10 * size_t(n));
 		std::vector<Row> rows(n);
 		for (int k = 0; k < n; ++k) {
 			const float own = float(M.diagonal[k] + shift[k]);
 			rows[k].pivot = own;
 			rows[k].least = dropTolerance * dropTolerance * own;
 		}
-		std::vector<int> position(n), nextInChain(n), pattern(n);
+		std::vector<Sum> sums(n);
+		std::vector<Column> columns(n);
+		std::vector<int> pattern(n);
 		const auto chain = [&](int j, int nextEntry) {
-			if (position[j] == start[j + 1])
+			Column& column = columns[j];
+			if (column.position == column.end)
 				return;
-			std::swap(entries[position[j]], entries[nextEntry]);
-			int& first = rows[entries[position[j]].row].chain;
-			nextInChain[j] = first;
+			std::swap(entries[column.position], entries[nextEntry]);
+			int& first = rows[entries[column.position].row].chain;
+			column.nextInChain = first;
 			first = j;
 		};
 		constexpr int reportEvery = 1 << 13; // the last columns of a large system cost the most
@@ -77,22 +80,22 @@ public:
 					"has degenerate triangles. Resample it first.");
 			const float diagonal = std::max(pivot, 1e-7f * own), inverse = 1 / diagonal;
 			inverseDiagonal[k] = inverse;
-			rows[k].pivot = diagonal;
 			int count = 0;
 			const auto add = [&](int r, float value) {
-				Row& row = rows[r];
-				row.value += value;
+				Sum& sum = sums[r];
+				sum.value += value;
 				pattern[count] = r; // without a branch, which could not be foretold
-				count += row.stamp != k;
-				row.stamp = k;
+				count += sum.stamp != k;
+				sum.stamp = k;
 			};
 			for (int e = M.start[k]; e < M.start[k + 1]; ++e)
 				if (M.column[e] > k)
 					add(M.column[e], float(M.value[e]));
 			for (int j = rows[k].chain, next; j >= 0; j = next) {
-				next = nextInChain[j];
-				const int begin = position[j]++, end = start[j + 1];
-				const float y = entries[begin].value * rows[j].pivot;
+				Column& column = columns[j];
+				next = column.nextInChain;
+				const int begin = column.position++, end = column.end;
+				const float y = entries[begin].value * column.diagonal;
 				int lowest = begin + 1;
 				for (int e = lowest; e < end; ++e) {
 					add(entries[e].row, -entries[e].value * y);
@@ -100,20 +103,26 @@ public:
 				}
 				chain(j, lowest);
 			}
-			position[k] = start[k];
-			int lowest = start[k];
+			const int first = start[k];
+			int lowest = first;
+			if (entries.size() < size_t(first) + count)
+				entries.resize(std::max(entries.size() * 3 / 2, size_t(first) + count));
+			int end = first;
 			for (int i = 0; i < count; ++i) {
+				Sum& sum = sums[pattern[i]];
+				const float value = sum.value, contribution = value * value * inverse;
+				sum.value = 0;
 				Row& row = rows[pattern[i]];
-				const float value = row.value, contribution = value * value * inverse;
-				row.value = 0;
 				if (contribution < row.least)
 					continue;
 				row.pivot -= contribution;
-				entries.push_back({pattern[i], value * inverse});
+				entries[end] = {pattern[i], value * inverse};
 				if (pattern[i] < entries[lowest].row)
-					lowest = int(entries.size()) - 1;
+					lowest = end;
+				++end;
 			}
-			start[k + 1] = int(entries.size());
+			start[k + 1] = end;
+			columns[k] = {first, end, -1, diagonal};
 			chain(k, lowest);
 		}
 	}
@@ -139,11 +148,23 @@ private:
 	/// A row while the columns before it are made.
 	struct Row
 	{
-		float pivot;     ///< what is left of its diagonal
-		float least;     ///< entries that take less from it are dropped
-		float value = 0; ///< its entry in the column at hand, if stamped with it
-		int stamp = -1;
+		float pivot;    ///< what is left of its diagonal
+		float least;    ///< entries that take less from it are dropped
 		int chain = -1; ///< the first column with its next entry in this row
+	};
+
+	/// A row's entry in the column at hand, if stamped with it.
+	struct Sum
+	{
+		float value = 0;
+		int stamp = -1;
+	};
+
+	/// A column that is made: its next entry, and the next column of the chain in that entry's row.
+	struct Column
+	{
+		int position, end, nextInChain;
+		float diagonal;
 	};
 
 	struct Entry

@@ -168,22 +168,22 @@ private:
 		{
 			int level, index;
 		};
-		std::array<Place, 64> stack; // three a level
+		std::array<Place, 64> stack; // three a level and one to spare
 		int top = 0;
 		stack[top++] = {int(levels.size()) - 1, 0};
 		while (top > 0) {
 			const Place place = stack[--top];
-			int overlaps[4];
-			levels[place.level][place.index].overlaps(from, to, overlaps);
-			for (int k = 0; k < 4; ++k) {
-				const int below = 4 * place.index + k;
-				if (!overlaps[k])
-					continue;
-				if (place.level > 0)
-					stack[top++] = {place.level - 1, below};
-				else if (crossesFace(faces[below], v, segment))
-					return true;
-			}
+			float gaps[4];
+			levels[place.level][place.index].gaps(from, to, gaps);
+			if (place.level > 0)
+				for (int k = 0; k < 4; ++k) { // without a branch, which could not be foretold
+					stack[top] = {place.level - 1, 4 * place.index + k};
+					top += gaps[k] <= 0;
+				}
+			else
+				for (int k = 0; k < 4; ++k)
+					if (gaps[k] <= 0 && crossesFace(faces[4 * place.index + k], v, segment))
+						return true;
 		}
 		return false;
 	}

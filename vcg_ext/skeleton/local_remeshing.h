@@ -12,6 +12,7 @@
 #include "stage.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <queue>
@@ -46,6 +47,63 @@ inline void mergeVertexState(Stage& stage, int removed, int survivor)
 		stage.rank[survivor] = std::max(stage.rank[survivor], stage.rank[removed]);
 }
 
+/// Whether the angles at the corners of a triangle may have a cosine below `widest`: that opposite of
+/// its half-edge k is result[k]. Some that have it nearly are among them.
+inline std::array<bool, 3> maybeWideAngles(const SurfaceMesh& mesh, int face, double widest)
+{
+	if (widest > 0)
+		return {true, true, true};
+	constexpr double rounding = 1e-9;
+	const double least = widest * widest * (1 - rounding);
+	const auto [i, j, k] = mesh.triangle(face);
+	const Point3d &a = mesh.position[i], &b = mesh.position[j], &c = mesh.position[k];
+	const Point3d ab = b - a, bc = c - b, ca = a - c;
+	const double ab2 = ab.SquaredNorm(), bc2 = bc.SquaredNorm(), ca2 = ca.SquaredNorm();
+	const auto isWide = [&](double minusDot, double squaredLengths) {
+		return (minusDot > 0) & (minusDot * minusDot >= least * squaredLengths);
+	};
+	return {isWide(bc * ca, bc2 * ca2), isWide(ca * ab, ca2 * ab2), isWide(ab * bc, ab2 * bc2)};
+}
+
+/// The edges that splitWideAngles() starts with: those that there are, by the half-edge that stands for
+/// them, and among them those that are due to be looked at.
+class EdgesToSplit
+{
+public:
+	EdgesToSplit(const SurfaceMesh& mesh, double widest) : mesh(mesh), state(mesh.halfEdgeSlots())
+	{
+		std::vector<char> wide(state.size());
+		for (int f = 0; f < mesh.faceSlots(); ++f) {
+			if (!mesh.isFace(f))
+				continue;
+			const std::array<bool, 3> atFace = maybeWideAngles(mesh, f, widest);
+			for (int h = 3 * f, k = 0; k < 3; ++k, ++h) {
+				wide[h] = atFace[k];
+				state[h] = h < mesh.twin(h) ? edge : 0;
+			}
+		}
+		for (size_t h = 0; h < state.size(); ++h)
+			if (wide[h] && wide[mesh.twin(int(h))])
+				state[h] |= due;
+	}
+
+	size_t size() const { return state.size(); }
+	bool isDue(size_t h) const { return state[h] == (edge | due); }
+	/// Looks at the edges of a changed triangle, if it is their turn yet, again.
+	void touch(int face)
+	{
+		for (int h = 3 * face; h < 3 * face + 3; ++h)
+			for (int side : {h, mesh.twin(h)})
+				if (size_t(side) < state.size())
+					state[side] |= due;
+	}
+
+private:
+	static constexpr char edge = 1, due = 2;
+	const SurfaceMesh& mesh;
+	std::vector<char> state;
+};
+
 } // namespace detail
 
 /**
@@ -66,10 +124,12 @@ inline std::vector<int> collapseShortEdges(
 	const auto entry = [&](int h) {
 		return Entry(mesh.squaredLength(h), std::min(h, mesh.twin(h)));
 	};
+	std::vector<double> squaredLimit; // by component
+	for (double diagonal : stage.diagonal)
+		squaredLimit.push_back(epsilon * diagonal * (epsilon * diagonal));
 	const auto mayCollapse = [&](const Entry& e) {
 		const int a = mesh.origin(e.second), b = mesh.target(e.second);
-		const double limit = epsilon * stage.diagonal[stage.component[a]];
-		return e.first < limit * limit && !(stage.fixed[a] && stage.fixed[b]);
+		return e.first < squaredLimit[stage.component[a]] && !(stage.fixed[a] && stage.fixed[b]);
 	};
 	// The edges of a round, sorted at once; what a collapse makes short is few, and waits beside them.
 	std::vector<Entry> sorted;
@@ -117,10 +177,22 @@ inline std::vector<int> collapseShortEdges(
 		}
 		sorted.clear();
 	};
-	for (int h = 0; h < mesh.halfEdgeSlots(); ++h)
-		if (mesh.isEdge(h))
-			if (const Entry e = entry(h); mayCollapse(e))
-				sorted.push_back(e);
+	// Face by face each length is measured twice, but read in the order of the memory, and few are short.
+	for (int f = 0; f < mesh.faceSlots(); ++f) {
+		if (!mesh.isFace(f))
+			continue;
+		const auto [a, b, c] = mesh.triangle(f);
+		const Point3d &p = mesh.position[a], &q = mesh.position[b], &r = mesh.position[c];
+		const double limit = squaredLimit[stage.component[a]];
+		const double squaredLengths[3] = {
+			SquaredDistance(p, q), SquaredDistance(q, r), SquaredDistance(r, p)};
+		if (std::min({squaredLengths[0], squaredLengths[1], squaredLengths[2]}) >= limit)
+			continue;
+		for (int k = 0; k < 3; ++k)
+			if (squaredLengths[k] < limit && mesh.isEdge(3 * f + k))
+				if (const Entry e(squaredLengths[k], 3 * f + k); mayCollapse(e))
+					sorted.push_back(e);
+	}
 	collapseQueued();
 	// A collapse elsewhere may have freed a blocked edge.
 	for (;;) {
@@ -172,17 +244,20 @@ inline void splitWideAngles(Stage& stage, const Parameters& parameters, MergeFor
 		const double lengths = std::sqrt(u.SquaredNorm() * v.SquaredNorm());
 		return lengths > 0 && dot / lengths < widest ? dot / lengths : 2.0;
 	};
+	// The edges of the beginning have their turn in the order of their ids, those of new triangles then.
+	detail::EdgesToSplit initial(mesh, widest);
 	std::vector<int> queue;
-	for (int h = 0; h < mesh.halfEdgeSlots(); ++h)
-		if (mesh.isEdge(h))
-			queue.push_back(h);
 	// Each split shortens the longest edge of its triangles; the cap only guards against the worst.
 	const size_t mostVertices = 4 * size_t(mesh.vertexCount()) + 1000;
-	for (size_t next = 0; next < queue.size() && size_t(mesh.vertexCount()) < mostVertices;
+	for (size_t next = 0;
+		 next < initial.size() + queue.size() && size_t(mesh.vertexCount()) < mostVertices;
 		 ++next) {
 		if (next % 65536 == 65535)
 			progress.report(0, "Splitting wide angles");
-		const int h = queue[next];
+		const bool isInitial = next < initial.size();
+		if (isInitial && !initial.isDue(next))
+			continue;
+		const int h = isInitial ? int(next) : queue[next - initial.size()];
 		const double cosine = wideCosine(h);
 		if (cosine > 1)
 			continue;
@@ -217,6 +292,7 @@ inline void splitWideAngles(Stage& stage, const Parameters& parameters, MergeFor
 		mesh.forEachOutgoing(m, [&](int e) {
 			queue.push_back(e);
 			queue.push_back(SurfaceMesh::next(e));
+			initial.touch(e / 3);
 		});
 	}
 }

@@ -13,6 +13,8 @@
 #include <vcg/space/box3.h>
 #include <vcg/space/point3.h>
 
+#include <Eigen/Core>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -85,27 +87,28 @@ public:
 	template <bool nearestFirst = false, class Ball>
 	void search(Ball& ball) const
 	{
-		std::array<Range, 64> stack; // three a level; 4^16 leaves fill it
+		std::array<Range, 64> stack; // three a level and one to spare; 4^16 leaves fill it
 		int top = 0;
 		if (!ids.empty())
 			stack[top++] = {0, 0, int(ids.size()), 0};
+		SingleBall single = toSingle(ball.centre(), ball.reach());
 		while (top > 0) {
 			const Range range = stack[--top];
-			const SingleBall single = toSingle(ball.centre(), ball.reach());
 			if (nearestFirst && range.squaredDistance > single.squaredReach)
 				continue; // the ball has shrunk
 			if (range.node >= int(nodes.size())) {
-				visitLeaf(range, single, ball);
+				if (visitLeaf(range, single, ball))
+					single = toSingle(ball.centre(), ball.reach());
 				continue;
 			}
 			float squaredDistance[4];
 			nodes[range.node].squaredDistances(single.centre, squaredDistance);
 			const std::array<int, 5> cuts = quarters(range.begin, range.end);
 			const int first = top;
-			for (int k = 0; k < 4; ++k)
-				if (squaredDistance[k] <= single.squaredReach)
-					stack[top++] = {
-						4 * range.node + 1 + k, cuts[k], cuts[k + 1], squaredDistance[k]};
+			for (int k = 0; k < 4; ++k) { // without a branch, which could not be foretold
+				stack[top] = {4 * range.node + 1 + k, cuts[k], cuts[k + 1], squaredDistance[k]};
+				top += squaredDistance[k] <= single.squaredReach;
+			}
 			if (nearestFirst)
 				std::sort(
 					stack.begin() + first, stack.begin() + top, [](const Range& a, const Range& b) {
@@ -178,26 +181,33 @@ private:
 			{float(c[0]), float(c[1]), float(c[2])}, float(std::min(enlarged * enlarged, largest))};
 	}
 
+	/// @return whether any point was visited.
 	template <class Ball>
-	void visitLeaf(const Range& range, const SingleBall& single, Ball& ball) const
+	bool visitLeaf(const Range& range, const SingleBall& single, Ball& ball) const
 	{
+		using Four = Eigen::Array4f;
+		constexpr size_t groups = LeafSize / Lanes;
 		// The last group may hold points of the next leaf: they are points as good as any.
-		for (int first = range.begin; first < range.end; first += Lanes) {
-			float squaredDistance[Lanes];
-			int within = 0;
-			for (int k = 0; k < Lanes; ++k) {
-				const float dx = coordinate[0][first + k] - single.centre[0];
-				const float dy = coordinate[1][first + k] - single.centre[1];
-				const float dz = coordinate[2][first + k] - single.centre[2];
-				squaredDistance[k] = dx * dx + dy * dy + dz * dz;
-				within += squaredDistance[k] <= single.squaredReach;
-			}
-			if (within == 0)
-				continue;
-			for (int k = 0; k < Lanes; ++k)
-				if (squaredDistance[k] <= single.squaredReach)
-					ball.visit(first + k, sorted[first + k]);
+		Four squaredDistance[groups];
+		Four least = Four::Constant(std::numeric_limits<float>::infinity());
+		int count = 0;
+		for (int first = range.begin; first < range.end; first += Lanes, ++count) {
+			Four sum = Four::Zero();
+			for (int axis = 0; axis < 3; ++axis)
+				sum += (Eigen::Map<const Four>(&coordinate[axis][first]) - single.centre[axis])
+						   .square();
+			squaredDistance[count] = sum;
+			least = least.min(sum);
 		}
+		if (least.minCoeff() > single.squaredReach)
+			return false;
+		for (int group = 0; group < count; ++group)
+			for (int k = 0; k < Lanes; ++k)
+				if (squaredDistance[group][k] <= single.squaredReach) {
+					const int slot = range.begin + Lanes * group + k;
+					ball.visit(slot, sorted[slot]);
+				}
+		return true;
 	}
 
 	/// A point on its way to its leaf, beside its id: fetched by the id, points would be far apart.
