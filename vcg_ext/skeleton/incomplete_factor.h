@@ -105,8 +105,9 @@ public:
 			}
 			const int first = start[k];
 			int lowest = first;
-			if (entries.size() < size_t(first) + count)
-				entries.resize(std::max(entries.size() * 3 / 2, size_t(first) + count));
+			const size_t most = size_t(first) + count + Group;
+			if (entries.size() < most)
+				entries.resize(std::max(entries.size() * 3 / 2, most));
 			int end = first;
 			for (int i = 0; i < count; ++i) {
 				Sum& sum = sums[pattern[i]];
@@ -121,7 +122,9 @@ public:
 					lowest = end;
 				++end;
 			}
-			start[k + 1] = end;
+			start[k + 1] = first + (end - first + Group - 1) / Group * Group;
+			for (int e = end; e < start[k + 1]; ++e)
+				entries[e] = {k, 0};
 			columns[k] = {first, end, -1, diagonal};
 			chain(k, lowest);
 		}
@@ -133,13 +136,15 @@ public:
 		const int n = int(inverseDiagonal.size());
 		for (int i = 0; i < n; ++i) {
 			const FloatQuad xi = x[i];
-			for (int e = start[i]; e < start[i + 1]; ++e)
-				x[entries[e].row] -= entries[e].value * xi;
+			for (int e = start[i]; e < start[i + 1]; e += Group)
+				for (int k = e; k < e + Group; ++k)
+					x[entries[k].row] -= entries[k].value * xi;
 		}
 		for (int i = n - 1; i >= 0; --i) {
 			FloatQuad xi = x[i] * inverseDiagonal[i];
-			for (int e = start[i]; e < start[i + 1]; ++e)
-				xi -= entries[e].value * x[entries[e].row];
+			for (int e = start[i]; e < start[i + 1]; e += Group)
+				for (int k = e; k < e + Group; ++k)
+					xi -= entries[k].value * x[entries[k].row];
 			x[i] = xi;
 		}
 	}
@@ -172,6 +177,10 @@ private:
 		int row;
 		float value;
 	};
+
+	/// A column's entries are filled up to groups of so many, with zeros in its own row: loops of few
+	/// different lengths are foretold more often.
+	static constexpr int Group = 3;
 
 	std::vector<float> inverseDiagonal;
 	/// The entries of L below the diagonal by columns.
