@@ -346,6 +346,54 @@ TEST(Refine, GrowsNoBranchIntoCornersOrRims)
 		tips(refine(CurveMaker().line({6, 10, 1.5}, {24, 10, 1.5}).in(plate), plate)).size(), 2u);
 }
 
+TEST(Refine, TakesLowLimbsIfTheyAreLongAndFlatOnesIfTheyComeToAPoint)
+{
+	const refining::FeatureRule rule = {0.55, 0.75, 0.56, 0.35, 0.05, 0.005, 0.005};
+	// A way of balls that grow by two fifths of it.
+	const auto branch = [](double way, double flat) {
+		return refining::FeatureBranch {
+			{{0, 0, 0}, {way, 0, 0}}, {1, 1 + 0.4 * way}, /*joint*/ 0, flat};
+	};
+	const auto peak = [](double height, double spikiness) {
+		return refining::Peak {0, 1, spikiness, height};
+	};
+	const auto isLimb = [&](double way, double flat, double height, double spikiness) {
+		const refining::FeatureBranch b = branch(way, flat);
+		return refining::leadsIntoLimb(b, peak(height, spikiness), rule);
+	};
+	EXPECT_TRUE(isLimb(3, 0, 1, 0.3));
+	EXPECT_FALSE(isLimb(1, 0, 1, 0.3)) << "too short for the ball it ends in";
+	EXPECT_FALSE(isLimb(3, 0, 0.38, 0.3)) << "low, and too short for that";
+	EXPECT_TRUE(isLimb(20, 0, 0.6, 0.3)) << "low, but long";
+	EXPECT_TRUE(isLimb(3, 0.5, 1, 0.4)) << "an ear";
+	EXPECT_FALSE(isLimb(3, 0.5, 1, 0.2)) << "a rim";
+	EXPECT_FALSE(isLimb(3, 0.9, 1, 0.4)) << "a plate";
+}
+
+TEST(Refine, ANodeInTheBallOfAJunctionHasLittleSay)
+{
+	// Three limbs of radius 0.2 on a ball of radius 1.
+	CurveSkeleton s;
+	s.position = {{0, 0, 0}};
+	std::vector<double> distance = {1};
+	for (const Point3d& d : {Point3d(1, 0, 0), Point3d(0, 1, 0), Point3d(0, 0, 1)})
+		for (int i = 1; i <= 6; ++i) {
+			const int v = int(s.position.size());
+			s.position.push_back(d * (i * 0.25));
+			distance.push_back(std::max(0.2, 1 - i * 0.25));
+			s.edges.push_back({i == 1 ? 0 : v - 1, v});
+		}
+	const std::vector<double> share = refining::sharesOfCentring(s, s.neighbours(), distance);
+	EXPECT_EQ(share[0], 1) << "the junction is the ball's own";
+	for (int limb = 0; limb < 3; ++limb) {
+		const double* along = &share[1 + 6 * limb];
+		EXPECT_LE(along[0], 0.2);
+		EXPECT_LE(along[2], 0.2) << "its ball still ends where the large one does";
+		EXPECT_EQ(along[5], 1) << "outside of it";
+		EXPECT_TRUE(std::is_sorted(along, along + 6));
+	}
+}
+
 TEST(Refine, MakesOneJunctionOfSeveralPieces)
 {
 	// Four arms that meet in the middle of a plus, the curve in two junctions.
@@ -485,7 +533,8 @@ TEST(Refine, VerticesGoToTheNearestNodeAround)
 	for (size_t i = 0; i < s.node.size(); ++i)
 		for (int w : neighbours[s.node[i]])
 			EXPECT_LE(Distance(mesh.position[i], s.position[s.node[i]]),
-				Distance(mesh.position[i], s.position[w]));
+				Distance(mesh.position[i], s.position[w]) + 1e-4)
+				<< "as near, but for the rounding of the coordinates that nodes are told in";
 }
 
 TEST(Refine, RefinesEachComponentAsIfItWereAlone)

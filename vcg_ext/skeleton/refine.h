@@ -46,7 +46,7 @@ struct RefineParameters
 	double junctionProminence = 0.5;
 	/// kappa, weight of the smoothness along the branch against that of the centring, for a spacing
 	/// of 0.5 % where the shape's radius is 3.3 %; >= 0. Larger: smoother, less centred.
-	double smoothing = 40;
+	double smoothing = 20;
 	/// Rounds of centring with ten times that smoothness, which free curves that are caught on a
 	/// wrong sheet of the medial axis, then rounds with it before and after the tips are
 	/// extended; >= 0.
@@ -60,7 +60,7 @@ struct RefineParameters
 	double tipRadius = 0.003;
 	/// Where the balls leave a part of the surface out that is higher than this part of the radius of
 	/// the ball next to it, and limb-like, it gets a branch: see growFeatures(); >= 0.
-	double featureHeight = 0.75;
+	double featureHeight = 0.35;
 	/// On the way into such a feature the balls reach further by at least this part of the way; in
 	/// (0, 1]. The corners of a box have 0.42, limbs of even thickness 1.
 	double featureGain = 0.55;
@@ -101,9 +101,10 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 	// Between two searches of the whole surface the contacts are followed from round to round.
 	constexpr int roundsOfSearch = 3;
 	const double kappa = parameters.smoothing * std::pow(referenceSpacing / parameters.spacing, 4);
-	constexpr double leastWay = 0.75, leastProminence = 0.05, leastRise = 0.005;
-	const FeatureRule features = {parameters.featureGain, leastWay, parameters.featureHeight,
-		leastProminence, leastRise, parameters.spacing};
+	constexpr double leastWay = 0.75, leastProtrusion = 0.56;
+	constexpr double leastProminence = 0.05, leastRise = 0.005;
+	const FeatureRule features = {parameters.featureGain, leastWay, leastProtrusion,
+		parameters.featureHeight, leastProminence, leastRise, parameters.spacing};
 	const TipRule tips = {parameters.spacing, parameters.tipGain, parameters.tipRadius};
 	const int total = parameters.stiffRounds + parameters.rounds + parameters.lastRounds + 2;
 	int done = 0;

@@ -12,12 +12,14 @@
 #include "parallel_blocks.h"
 #include "progress.h"
 #include "refine_graph.h"
+#include "skeleton_branches.h"
 
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace vcg::tri::mcf::refining {
@@ -50,9 +52,11 @@ inline ClosestSurface::Ball medialBall(const ClosestSurface& surface, const Poin
 	return surface.maximalBall(node, hit, contactTolerance * hit.distance, near);
 }
 
-/// Direction of the branch at a node of degree 1 or 2, in steps to its neighbours.
+/// Direction of the branch at a node, in steps to its neighbours; a junction has none.
 inline Point3d tangentAt(const CurveSkeleton& skeleton, const std::vector<int>& neighbours, int v)
 {
+	if (neighbours.size() > 2)
+		return Point3d(0, 0, 0);
 	const Point3d& back = skeleton.position[neighbours.front()];
 	const Point3d& front =
 		neighbours.size() == 1 ? skeleton.position[v] : skeleton.position[neighbours.back()];
@@ -132,7 +136,7 @@ inline std::vector<Contact> findContacts(
 			contact.ball = medialBall(surface, x, contact.hit, nearOpposite);
 			contact.target = contact.ball.centre;
 			nearOpposite = contact.ball.face;
-			if (ascend && !neighbours[v].empty() && neighbours[v].size() <= 2)
+			if (ascend && !neighbours[v].empty())
 				ascendAside(contact, tangentAt(skeleton, neighbours[v], v), surface);
 		}
 	});
@@ -158,11 +162,39 @@ inline void followContacts(
 }
 
 /**
+ * How much the centring of each node counts. Where a limb leaves a body, its branch crosses the ball of
+ * the junction, and what is the middle there is the body's affair: nodes whose balls stick out of that
+ * ball by little, in parts of its radius, count little; from `whole` on they count fully.
+ * @param distance  of each node from the surface.
+ */
+inline std::vector<double> sharesOfCentring(const CurveSkeleton& skeleton,
+	const std::vector<std::vector<int>>& neighbours, const std::vector<double>& distance)
+{
+	constexpr double least = 0.1, whole = 0.35;
+	std::vector<double> share(skeleton.position.size(), 1);
+	for (const Branch& branch : skeletonBranches(skeleton))
+		for (int end : {branch.nodes.front(), branch.nodes.back()}) {
+			if (neighbours[end].size() < 3 || distance[end] <= 0)
+				continue;
+			for (int v : branch.nodes) {
+				if (v == end)
+					continue;
+				const double out = Distance(skeleton.position[v], skeleton.position[end])
+					+ distance[v] - distance[end];
+				share[v] =
+					std::min(share[v], std::clamp(out / (whole * distance[end]), least, 1.0));
+			}
+		}
+	return share;
+}
+
+/**
  * One round: solves
  *     min  sum_i w_i |x_i - c_i|^2 + kappa sum_k (r_k / R)^2 |x_{k-1} - 2 x_k + x_{k+1}|^2
  * over the inner nodes k of the branches, so that curves may meet at any angle in a junction. c_i is
  * the centre of the maximal ball at node i, moved back along the branch to where the node is: the
- * nodes keep their distances. Tips weigh more: the curve is not to shrink.
+ * nodes keep their distances. w_i falls where the ball has near contacts and where the node is in the
+ * ball of a junction, see sharesOfCentring(). Tips weigh more: the curve is not to shrink.
  *
  * No node moves by more than half its distance from the surface, and no edge leaves the surface:
  * the nodes of one that would stay where they are.
@@ -178,6 +210,10 @@ inline void centre(CurveSkeleton& skeleton, const std::vector<Contact>& contacts
 	const int n = int(skeleton.position.size());
 	std::vector<Eigen::Triplet<double>> entries;
 	Eigen::MatrixX3d right(n, 3);
+	std::vector<double> distance(n);
+	for (int v = 0; v < n; ++v)
+		distance[v] = contacts[v].hit.distance;
+	const std::vector<double> share = sharesOfCentring(skeleton, neighbours, distance);
 	for (int v = 0; v < n; ++v) {
 		const Point3d& x = skeleton.position[v];
 		const size_t degree = neighbours[v].size();
@@ -193,16 +229,16 @@ inline void centre(CurveSkeleton& skeleton, const std::vector<Contact>& contacts
 				target -= tangent * (tangent * (target - x));
 			}
 		}
-		if (degree == 1)
-			weight = tipWeight;
+		weight = degree == 1 ? tipWeight : weight * share[v];
 		entries.emplace_back(v, v, weight);
 		for (int k = 0; k < 3; ++k)
 			right(v, k) = weight * target[k];
 		if (degree != 2)
 			continue;
 		// A bend is judged by the thickness where it is: within a large ball, small ones mean nothing.
-		const double relative =
-			std::clamp(contacts[v].hit.distance / referenceRadius, thinnest, thickest);
+		// Unless the branch only crosses that ball, the bend may be the end's in a corner.
+		const double relative = std::clamp(distance[v] / referenceRadius, thinnest,
+			share[v] < 1 ? std::numeric_limits<double>::infinity() : thickest);
 		const double stiffness = kappa * relative * relative;
 		const int stencil[3] = {neighbours[v][0], v, neighbours[v][1]};
 		const double second[3] = {1, -2, 1};

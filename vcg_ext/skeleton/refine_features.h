@@ -30,8 +30,10 @@ struct FeatureRule
 {
 	/// On the branch into a feature the balls reach further by at least this part of the way, ...
 	double leastGain;
-	/// ... which is at least this many radii of the ball that it starts in.
+	/// ... which is at least this many radii of the ball that it ends in, ...
 	double leastWay;
+	/// ... and, times the relative height of its peak, at least this: low features are long ones.
+	double leastProtrusion;
 	/// The peak of a feature is as high as this part of the radius of the ball that is nearest, ...
 	double leastHeight;
 	/// ... and rises from its surroundings by this part of it, and by this many diagonals.
@@ -155,6 +157,8 @@ struct Peak
 {
 	int vertex;
 	double extent = 0, spikiness = 0;
+	/// Of the vertex, in radii of the nearest ball.
+	double relativeHeight = 0;
 };
 
 /// The vertices of positive height, the highest first; of several the one with the least coordinates.
@@ -238,11 +242,11 @@ inline std::vector<Peak> peaks(const CurveSkeleton& skeleton, const SurfaceCompo
 			v = parent[v] = parent[parent[v]];
 		return v;
 	};
-	// Peaks that are high enough and may still turn out to be no rims.
+	// Peaks that are high enough and may still turn out to be spikier.
 	int open = 0;
 	const auto isOpen = [&](const Peak& peak) {
-		return isHigh(peak.vertex) && peak.spikiness < leastSpikiness
-			&& height[peak.vertex] >= leastSpikiness * peak.extent;
+		return isHigh(peak.vertex)
+			&& height[peak.vertex] > std::max(peak.spikiness, leastSpikiness) * peak.extent;
 	};
 	const auto join = [&](int a, int b) {
 		if (partOfRoot[a] > partOfRoot[b])
@@ -289,6 +293,8 @@ inline std::vector<Peak> peaks(const CurveSkeleton& skeleton, const SurfaceCompo
 			grown.spikiness = std::max(grown.spikiness, rise / grown.extent);
 		open += isOpen(grown);
 	}
+	for (Peak& peak : parts)
+		peak.relativeHeight = height[peak.vertex] / skeleton.radius[heights.node[peak.vertex]];
 	const auto isSmall = [&](const Peak& peak) {
 		return peak.spikiness < leastSpikiness || !isHigh(peak.vertex);
 	};
@@ -407,16 +413,20 @@ inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const ClosestSur
 
 /**
  * Whether a branch leads into a limb: not into the corner of a box, on the way to which the balls
- * shrink nearly as fast as they advance, and not through a plate, in which it could lead anywhere.
+ * shrink nearly as fast as they advance, and not through a plate, in which it could lead anywhere,
+ * unless that comes to a point, as an ear does.
  */
-inline bool leadsIntoLimb(const FeatureBranch& branch, const FeatureRule& rule)
+inline bool leadsIntoLimb(const FeatureBranch& branch, const Peak& peak, const FeatureRule& rule)
 {
-	constexpr double mostFlat = 0.45, evenGain = 0.8, mostFlatIfEven = 0.1;
+	constexpr double mostFlatIfSpiky = 1.5, evenGain = 0.8, mostFlatIfEven = 0.1;
 	const double way = branch.way();
-	if (branch.joint < 0 || way < rule.leastWay * branch.radii.back())
+	if (branch.joint < 0
+		|| way < branch.radii.back()
+				* std::max(rule.leastWay, rule.leastProtrusion / peak.relativeHeight))
 		return false;
 	const double gain = 1 + (branch.radii.front() - branch.radii.back()) / way;
-	return gain >= rule.leastGain && branch.flat <= (gain > evenGain ? mostFlatIfEven : mostFlat);
+	return gain >= rule.leastGain
+		&& branch.flat <= (gain > evenGain ? mostFlatIfEven : mostFlatIfSpiky * peak.spikiness);
 }
 
 /**
@@ -446,7 +456,7 @@ inline void growFeatures(CurveSkeleton& skeleton, const SurfaceComponent& compon
 			branch = traceBranch(skeleton, surface,
 				middleOfTip(component, heights, peak.vertex, height - down),
 				heights.node[peak.vertex], rule.spacing);
-		if (!leadsIntoLimb(branch, rule))
+		if (!leadsIntoLimb(branch, peak, rule))
 			continue;
 		int last = branch.joint;
 		for (size_t i = branch.points.size(); i-- > 0;) {
