@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <set>
 #include <vector>
 
@@ -67,13 +68,42 @@ TEST(FirstStage, PolesAreMeasuredAgainstTheWholeSurface)
 {
 	// Against the vertices that remain alone the balls would be larger where they bend away.
 	const SurfaceMesh surface = denseScene().mesh();
-	const Stage stage = firstStage(surface, coarse());
+	Parameters parameters;
+	parameters.epsilon = 0.0045;
+	const Stage stage = firstStage(surface, parameters);
+	ASSERT_LT(stage.mesh.vertexCount(), surface.vertexCount());
+	ASSERT_GT(stage.mesh.vertexCount(), surface.vertexCount() / 2);
+	const PoleSet all = medialPoles(surface, PoleMethod::Balls);
+	std::map<Point3d, int> vertexAt;
+	for (int v = 0; v < surface.vertexSlots(); ++v)
+		vertexAt[surface.position[v]] = v;
 	for (int v = 0; v < stage.mesh.vertexSlots(); ++v) {
 		const double radius = stage.component[v] == 0 ? 1 : 3;
 		ASSERT_NEAR(stage.poleRadius[v], radius, 0.02 * radius);
+		ASSERT_NEAR(stage.poleRadius[v], all.radius[vertexAt.at(stage.mesh.position[v])],
+			0.005 * radius);
+	}
+}
+
+TEST(FirstStage, PolesOfADenseSurfaceAreThoseOfWhatIsLeft)
+{
+	const SurfaceMesh surface = denseScene().mesh();
+	Parameters parameters;
+	parameters.epsilon = 0.006;
+	const Stage stage = firstStage(surface, parameters);
+	ASSERT_LT(stage.mesh.vertexCount(), surface.vertexCount() / 2);
+	const PoleSet left = medialPoles(stage.mesh, PoleMethod::Balls);
+	EXPECT_EQ(stage.pole, left.centre);
+	EXPECT_EQ(stage.poleRadius, left.radius);
+	double sum = 0;
+	for (int v = 0; v < stage.mesh.vertexSlots(); ++v) {
+		const double radius = stage.component[v] == 0 ? 1 : 3;
+		sum += stage.poleRadius[v] / radius;
+		ASSERT_LT(stage.poleRadius[v], 1.02 * radius);
 		ASSERT_NEAR(
 			Distance(stage.mesh.position[v], stage.pole[v]), stage.poleRadius[v], 1e-6 * radius);
 	}
+	EXPECT_GT(sum / stage.mesh.vertexCount(), 0.98);
 }
 
 TEST(FirstStage, TakesThePolesThatAreKnown)
