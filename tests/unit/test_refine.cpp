@@ -348,18 +348,15 @@ TEST(Refine, GrowsNoBranchIntoCornersOrRims)
 
 TEST(Refine, TakesLowLimbsIfTheyAreLongAndFlatOnesIfTheyComeToAPoint)
 {
-	const refining::FeatureRule rule = {0.55, 0.75, 0.56, 0.35, 0.05, 0.005, 0.005};
+	const refining::FeatureRule rule = {0.55, 0.75, 0.56, 0.35, 0.05, 0.005, 0.05, 0.005};
 	// A way of balls that grow by two fifths of it.
 	const auto branch = [](double way, double flat) {
 		return refining::FeatureBranch {
 			{{0, 0, 0}, {way, 0, 0}}, {1, 1 + 0.4 * way}, /*joint*/ 0, flat};
 	};
-	const auto peak = [](double height, double spikiness) {
-		return refining::Peak {0, 1, spikiness, height};
-	};
 	const auto isLimb = [&](double way, double flat, double height, double spikiness) {
-		const refining::FeatureBranch b = branch(way, flat);
-		return refining::leadsIntoLimb(b, peak(height, spikiness), rule);
+		const refining::Peak peak = {0, 1, spikiness, /*diagonals*/ 0, height};
+		return refining::leadsIntoLimb(branch(way, flat), peak, rule);
 	};
 	EXPECT_TRUE(isLimb(3, 0, 1, 0.3));
 	EXPECT_FALSE(isLimb(1, 0, 1, 0.3)) << "too short for the ball it ends in";
@@ -368,6 +365,63 @@ TEST(Refine, TakesLowLimbsIfTheyAreLongAndFlatOnesIfTheyComeToAPoint)
 	EXPECT_TRUE(isLimb(3, 0.5, 1, 0.4)) << "an ear";
 	EXPECT_FALSE(isLimb(3, 0.5, 1, 0.2)) << "a rim";
 	EXPECT_FALSE(isLimb(3, 0.9, 1, 0.4)) << "a plate";
+	const auto isLobe = [&](double height, double spikiness, double size) {
+		refining::FeatureBranch way = branch(6, 0.9);
+		const refining::Peak peak = {0, 1, spikiness, height * way.radii.back() * size, height};
+		for (double& r : way.radii)
+			r *= size;
+		for (Point3d& p : way.points)
+			p *= size;
+		return refining::leadsIntoLimb(way, peak, rule);
+	};
+	EXPECT_TRUE(isLobe(6, 0.3, 0.01)) << "a lobe";
+	EXPECT_FALSE(isLobe(3, 0.3, 0.01)) << "not high";
+	EXPECT_FALSE(isLobe(6, 0.2, 0.01)) << "round";
+	EXPECT_FALSE(isLobe(6, 0.3, 0.002)) << "no large part of the shape";
+}
+
+TEST(Refine, GrowsABranchIntoAHighLobeOfAPlate)
+{
+	// A flat clover leaf with three lobes, the curve in two of them.
+	constexpr double reach = 12, lobe = 8;
+	const Point3d middle(22, 22, 1.5);
+	std::vector<Point3d> centres;
+	for (int k = 0; k < 3; ++k) {
+		const double angle = 2 * M_PI * k / 3;
+		centres.push_back(middle + Point3d(std::cos(angle), std::sin(angle), 0) * reach);
+	}
+	const auto isLeaf = [&](int i, int j, int) {
+		return std::any_of(centres.begin(), centres.end(), [&](const Point3d& c) {
+			return std::hypot(i + 0.5 - c[0], j + 0.5 - c[1]) <= lobe;
+		}) || std::hypot(i + 0.5 - middle[0], j + 0.5 - middle[1]) <= lobe / 2;
+	};
+	const SurfaceMesh mesh = shapes::cells(44, 44, 3, isLeaf).mesh();
+	const CurveSkeleton s =
+		refine(CurveMaker().line(centres[0], middle).line(middle, centres[1]).in(mesh), mesh);
+	EXPECT_TRUE(isInside(s, mesh));
+	ASSERT_EQ(tips(s).size(), 3u);
+	double nearest = reach;
+	for (const Point3d& tip : tips(s))
+		nearest = std::min(nearest, Distance(tip, centres[2]));
+	EXPECT_LE(nearest, lobe);
+}
+
+TEST(Refine, ABranchGrowsAroundAGap)
+{
+	// A bar with two arms side by side; the nearest ball to the thin one's end is in the other.
+	const SurfaceMesh mesh = shapes::cells(24, 20, 3, [](int i, int j, int) {
+		return j < 4 || (i >= 3 && i < 12) || (i >= 13 && i < 16);
+	}).mesh();
+	const CurveSkeleton s = refine(CurveMaker()
+									   .line({1.5, 2, 1.5}, {22.5, 2, 1.5})
+									   .line({8.025, 2, 1.5}, {7.5, 18, 1.5})
+									   .in(mesh),
+		mesh);
+	EXPECT_TRUE(isInside(s, mesh));
+	double nearest = 20;
+	for (const Point3d& tip : tips(s))
+		nearest = std::min(nearest, Distance(tip, Point3d(14.5, 18.5, 1.5)));
+	EXPECT_LE(nearest, 1);
 }
 
 TEST(Refine, ANodeInTheBallOfAJunctionHasLittleSay)

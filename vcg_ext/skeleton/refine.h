@@ -102,9 +102,9 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 	constexpr int roundsOfSearch = 3;
 	const double kappa = parameters.smoothing * std::pow(referenceSpacing / parameters.spacing, 4);
 	constexpr double leastWay = 0.75, leastProtrusion = 0.56;
-	constexpr double leastProminence = 0.05, leastRise = 0.005;
+	constexpr double leastProminence = 0.05, leastRise = 0.005, leastLobe = 0.05;
 	const FeatureRule features = {parameters.featureGain, leastWay, leastProtrusion,
-		parameters.featureHeight, leastProminence, leastRise, parameters.spacing};
+		parameters.featureHeight, leastProminence, leastRise, leastLobe, parameters.spacing};
 	const TipRule tips = {parameters.spacing, parameters.tipGain, parameters.tipRadius};
 	const int total = parameters.stiffRounds + parameters.rounds + parameters.lastRounds + 2;
 	int done = 0;

@@ -14,7 +14,10 @@
 #include "refine_peaks.h"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
+#include <queue>
+#include <utility>
 #include <vector>
 
 namespace vcg::tri::mcf::refining {
@@ -53,6 +56,36 @@ inline int holdingNode(const CurveSkeleton& skeleton, const Point3d& point)
 	return holding;
 }
 
+/// The node of the ball that the way over the surface from a peak meets first.
+/// Complexity: O(V + n log n) for V vertices and the n that are nearer.
+inline int nodeBelow(const CurveSkeleton& skeleton, const SurfaceComponent& surface,
+	const Heights& heights, int peak)
+{
+	constexpr double covered = 0.1; // in radii
+	using Visit = std::pair<double, int>;
+	std::vector<double> way(surface.size(), std::numeric_limits<double>::infinity());
+	std::priority_queue<Visit, std::vector<Visit>, std::greater<>> next;
+	way[peak] = 0;
+	next.push({0, peak});
+	while (!next.empty()) {
+		const auto [walked, v] = next.top();
+		next.pop();
+		if (walked > way[v])
+			continue;
+		const int node = heights.node[v];
+		if (heights.height[v] <= covered * skeleton.radius[node])
+			return node;
+		surface.forEachNeighbour(v, [&, from = v, walked = walked](int w) {
+			const double further = walked + Distance(surface.position(from), surface.position(w));
+			if (further < way[w]) {
+				way[w] = further;
+				next.push({further, w});
+			}
+		});
+	}
+	return heights.node[peak];
+}
+
 /// A branch that is to be: points from the tip of a feature into one of the skeleton's balls.
 struct FeatureBranch
 {
@@ -75,7 +108,7 @@ struct FeatureBranch
 /**
  * From within a feature's tip to the skeleton: up the slope of the distance from the surface, which in
  * a limb leads to its body, and where that is flat towards a node, kept in the middle.
- * @param towards  the node that is nearest to the feature.
+ * @param towards  a node next to the feature.
  */
 inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const ClosestSurface& surface,
 	const Point3d& start, int towards, double spacing)
@@ -131,19 +164,78 @@ inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const ClosestSur
 /**
  * Whether a branch leads into a limb: not into the corner of a box, on the way to which the balls
  * shrink nearly as fast as they advance, and not through a plate, in which it could lead anywhere,
- * unless that comes to a point, as an ear does.
+ * unless that comes to a point, as an ear does, or is itself a lobe, high above the balls and a large
+ * part of the shape.
  */
 inline bool leadsIntoLimb(const FeatureBranch& branch, const Peak& peak, const FeatureRule& rule)
 {
 	constexpr double mostFlatIfSpiky = 1.5, evenGain = 0.8, mostFlatIfEven = 0.1;
+	constexpr double lobeHeight = 5, lobeSpikiness = 0.25; // the height in radii
 	const double way = branch.way();
 	if (branch.joint < 0
 		|| way < branch.radii.back()
 				* std::max(rule.leastWay, rule.leastProtrusion / peak.relativeHeight))
 		return false;
 	const double gain = 1 + (branch.radii.front() - branch.radii.back()) / way;
-	return gain >= rule.leastGain
-		&& branch.flat <= (gain > evenGain ? mostFlatIfEven : mostFlatIfSpiky * peak.spikiness);
+	if (gain < rule.leastGain)
+		return false;
+	const bool isLobe = peak.height >= std::max(lobeHeight * branch.radii.back(), rule.leastLobe)
+		&& peak.spikiness >= lobeSpikiness;
+	return isLobe
+		|| branch.flat <= (gain > evenGain ? mostFlatIfEven : mostFlatIfSpiky * peak.spikiness);
+}
+
+/// The nearest node in view from a point that is nearer than `farthest`; -1 if there is none.
+/// Complexity: O(N), and O(log V) for each node that comes nearer than those before it.
+inline int nearestInView(const CurveSkeleton& skeleton, const ClosestSurface& surface,
+	const Point3d& point, double radius, double farthest)
+{
+	int nearest = -1;
+	for (size_t v = 0; v < skeleton.position.size(); ++v)
+		if (const double distance = Distance(skeleton.position[v], point); distance < farthest
+			&& isSegmentInside(surface, point, radius, skeleton.position[v], skeleton.radius[v])) {
+			farthest = distance;
+			nearest = int(v);
+		}
+	return nearest;
+}
+
+/**
+ * The branch from a peak's feature to the curve: towards the ball that is nearest or, where that lies
+ * across a gap, towards the one below the peak; and if the curve is in view nearer than that way is
+ * long, straight there. Its joint is -1 if it would run beside the curve even so, or if there is no way.
+ */
+inline FeatureBranch branchInto(const Peak& peak, const CurveSkeleton& skeleton,
+	const SurfaceComponent& component, const Heights& heights, const ClosestSurface& surface,
+	const FeatureRule& rule)
+{
+	// Down from the peak until what is above encloses a point with a way to the curve.
+	const auto branchTowards = [&](int node) {
+		FeatureBranch branch;
+		for (double down = rule.leastRise; branch.joint < 0 && down < peak.height; down *= 2)
+			branch = traceBranch(skeleton, surface,
+				middleOfTip(component, heights, peak.vertex, peak.height - down), node,
+				rule.spacing);
+		return branch;
+	};
+	const auto shortcut = [&](const FeatureBranch& branch) {
+		return nearestInView(
+			skeleton, surface, branch.points.front(), branch.radii.front(), branch.way());
+	};
+	const int nearest = heights.node[peak.vertex];
+	FeatureBranch branch = branchTowards(nearest);
+	if (branch.joint < 0)
+		if (const int below = nodeBelow(skeleton, component, heights, peak.vertex);
+			below != nearest)
+			branch = branchTowards(below);
+	if (branch.joint < 0)
+		return branch;
+	if (const int seen = shortcut(branch); seen >= 0) {
+		branch = branchTowards(seen);
+		if (branch.joint >= 0 && shortcut(branch) >= 0)
+			branch.joint = -1;
+	}
+	return branch;
 }
 
 /**
@@ -166,13 +258,7 @@ inline void growFeatures(CurveSkeleton& skeleton, const SurfaceComponent& compon
 		heightsAbove(skeleton, covering, component, surface.vertexOrder(), progress.part(0, 0.4));
 	for (const Peak& peak : peaks(skeleton, component, heights, rule, progress.part(0.4, 0.8))) {
 		progress.report(0.8, "Refining the skeleton");
-		// Down from the peak until what is above encloses a point of the inside.
-		FeatureBranch branch;
-		const double height = heights.height[peak.vertex];
-		for (double down = rule.leastRise; branch.points.empty() && down < height; down *= 2)
-			branch = traceBranch(skeleton, surface,
-				middleOfTip(component, heights, peak.vertex, height - down),
-				heights.node[peak.vertex], rule.spacing);
+		const FeatureBranch branch = branchInto(peak, skeleton, component, heights, surface, rule);
 		if (!leadsIntoLimb(branch, peak, rule))
 			continue;
 		int last = branch.joint;

@@ -34,6 +34,8 @@ struct FeatureRule
 	double leastHeight;
 	/// ... and rises from its surroundings by this part of it, and by this many diagonals.
 	double leastProminence, leastRise;
+	/// The lobe of a plate is at least this many diagonals high.
+	double leastLobe;
 	/// Longest step of a branch, in diagonals.
 	double spacing;
 };
@@ -153,8 +155,8 @@ struct Peak
 {
 	int vertex;
 	double extent = 0, spikiness = 0;
-	/// Of the vertex, in radii of the nearest ball.
-	double relativeHeight = 0;
+	/// Of the vertex; the same in radii of the nearest ball.
+	double height = 0, relativeHeight = 0;
 };
 
 /// The vertices of positive height, the highest first; of several the one with the least coordinates.
@@ -289,8 +291,10 @@ inline std::vector<Peak> peaks(const CurveSkeleton& skeleton, const SurfaceCompo
 			grown.spikiness = std::max(grown.spikiness, rise / grown.extent);
 		open += isOpen(grown);
 	}
-	for (Peak& peak : parts)
-		peak.relativeHeight = height[peak.vertex] / skeleton.radius[heights.node[peak.vertex]];
+	for (Peak& peak : parts) {
+		peak.height = height[peak.vertex];
+		peak.relativeHeight = peak.height / skeleton.radius[heights.node[peak.vertex]];
+	}
 	const auto isSmall = [&](const Peak& peak) {
 		return peak.spikiness < leastSpikiness || !isHigh(peak.vertex);
 	};
