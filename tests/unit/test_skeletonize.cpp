@@ -208,6 +208,20 @@ TEST(Skeletonize, StepsAreTheRunBitForBit)
 	}
 }
 
+TEST(Skeletonize, TheCorrespondenceOfADenseSurfaceIsThatOfItsSteps)
+{
+	const shapes::Soup soup = shapes::torus(1, 0.3, 240, 80);
+	Parameters parameters;
+	parameters.epsilon = 0.02;
+	parameters.maxIterations = 5;
+	const Stage start = firstStage(soup.mesh(), parameters);
+	ASSERT_GT(start.node.size(), 4 * size_t(start.mesh.vertexCount()));
+	const Stage unwatched = contractToSkeleton(start, parameters);
+	const Stage watched = contractToSkeleton(start, parameters, Progress(),
+		[&](const Stage& stage) { EXPECT_EQ(stage.node.size(), start.node.size()); });
+	EXPECT_TRUE(checks::sameBits(unwatched, watched));
+}
+
 TEST(Skeletonize, TwoRunsAreBitEqual)
 {
 	const shapes::Soup soup = shapes::fromFile("animal");

@@ -85,7 +85,8 @@ FlowSurface surfaceForFlow(const SurfaceMesh& surface, double epsilon,
 	};
 	bool mayBeCoarse = false;
 	{
-		const MeasuredSurface measured(mesh, progress.part(0.2, 0.3));
+		const MeasuredSurface measured(
+			mesh, number.component, number.components, progress.part(0.2, 0.3));
 		result.diagonal = measured.diagonals();
 		result.area = measured.areas();
 		mayBeCoarse = isAny(coarseComponents(measured, epsilon));

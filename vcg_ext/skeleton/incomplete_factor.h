@@ -50,7 +50,7 @@ public:
 		inverseDiagonal.resize(n);
 		start.resize(n + 1);
 		start[0] = 0;
-		entries.resize(10 * size_t(n));
+		entries.resize(14 * size_t(n)); // of the flow's matrices 11 to 13 are used
 		std::vector<Row> rows(n);
 		for (int k = 0; k < n; ++k) {
 			const float own = float(M.diagonal[k] + shift[k]);

@@ -11,6 +11,7 @@
 #include "progress.h"
 #include "surface_mesh.h"
 
+#include <utility>
 #include <vector>
 
 namespace vcg::tri::mcf {
@@ -33,6 +34,15 @@ public:
 			surface(mesh), ofVertex(connectedComponents(mesh, &count, progress.part(0, 0.2))),
 			frames(
 				PrincipalFrame::ofComponents(mesh, ofVertex, size_t(count), progress.part(0.2, 1)))
+	{
+	}
+
+	/// The same where the components are known already, numbered as by connectedComponents().
+	MeasuredSurface(const SurfaceMesh& mesh, std::vector<int> component, int components,
+		const Progress& progress = Progress()) :
+			surface(mesh),
+			count(components), ofVertex(std::move(component)),
+			frames(PrincipalFrame::ofComponents(mesh, ofVertex, size_t(count), progress))
 	{
 	}
 

@@ -17,6 +17,7 @@
 
 #include <cmath>
 #include <functional>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -108,6 +109,15 @@ inline Stage contractToSkeleton(Stage stage, const Parameters& parameters,
 	const Progress& progress = Progress(),
 	const std::function<void(const Stage&)>& onStage = nullptr)
 {
+	// A dense surface has many more vertices than its stages: where nobody looks at these, only what becomes
+	// of the first one's vertices is followed, and the surface's are told at the end.
+	std::vector<int> first;
+	if (!onStage) {
+		StageFrames {stage}; // found by the surface's own correspondence
+		first = std::move(stage.node);
+		stage.node.resize(stage.mesh.vertexSlots());
+		std::iota(stage.node.begin(), stage.node.end(), 0);
+	}
 	double done = 0;
 	while (!stage.converged && stage.iteration < parameters.maxIterations) {
 		// The area falls by a like factor each iteration: its logarithm tells how far it is.
@@ -116,6 +126,11 @@ inline Stage contractToSkeleton(Stage stage, const Parameters& parameters,
 		done = next;
 		if (onStage)
 			onStage(stage);
+	}
+	if (!onStage) {
+		for (int& node : first)
+			node = stage.node[node];
+		stage.node = std::move(first);
 	}
 	progress.report(1, "Contracting");
 	return stage;
