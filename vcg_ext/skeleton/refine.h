@@ -60,7 +60,7 @@ struct RefineParameters
 	double tipRadius = 0.003;
 	/// Where the balls leave a part of the surface out that is higher than this part of the radius of
 	/// the ball next to it, and limb-like, it gets a branch: see growFeatures(); >= 0.
-	double featureHeight = 0.35;
+	double featureHeight = 0.27;
 	/// On the way into such a feature the balls reach further by at least this part of the way; in
 	/// (0, 1]. The corners of a box have 0.42, limbs of even thickness 1.
 	double featureGain = 0.55;

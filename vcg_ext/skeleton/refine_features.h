@@ -169,7 +169,7 @@ inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const ClosestSur
  */
 inline bool leadsIntoLimb(const FeatureBranch& branch, const Peak& peak, const FeatureRule& rule)
 {
-	constexpr double mostFlatIfSpiky = 1.5, evenGain = 0.8, mostFlatIfEven = 0.1;
+	constexpr double mostFlatIfSpiky = 1.7, evenGain = 0.8, mostFlatIfEven = 0.1;
 	constexpr double lobeHeight = 5, lobeSpikiness = 0.25; // the height in radii
 	const double way = branch.way();
 	if (branch.joint < 0
