@@ -80,8 +80,8 @@ TEST(FirstStage, PolesAreMeasuredAgainstTheWholeSurface)
 	for (int v = 0; v < stage.mesh.vertexSlots(); ++v) {
 		const double radius = stage.component[v] == 0 ? 1 : 3;
 		ASSERT_NEAR(stage.poleRadius[v], radius, 0.02 * radius);
-		ASSERT_NEAR(stage.poleRadius[v], all.radius[vertexAt.at(stage.mesh.position[v])],
-			0.005 * radius);
+		ASSERT_NEAR(
+			stage.poleRadius[v], all.radius[vertexAt.at(stage.mesh.position[v])], 0.005 * radius);
 	}
 }
 
