@@ -109,11 +109,12 @@ inline Stage contractToSkeleton(Stage stage, const Parameters& parameters,
 	const Progress& progress = Progress(),
 	const std::function<void(const Stage&)>& onStage = nullptr)
 {
-	// A dense surface has many more vertices than its stages: where nobody looks at these, only what becomes
-	// of the first one's vertices is followed, and the surface's are told at the end.
+	// A dense surface has many more vertices than its stages: where nobody looks at these, only what
+	// becomes of the first one's vertices is followed, and the surface's are told at the end.
 	std::vector<int> first;
 	if (!onStage) {
-		StageFrames {stage}; // found by the surface's own correspondence
+		StageFrames {
+			stage}; // leaves the frames with the stage while its correspondence is the surface's
 		first = std::move(stage.node);
 		stage.node.resize(stage.mesh.vertexSlots());
 		std::iota(stage.node.begin(), stage.node.end(), 0);
