@@ -240,10 +240,10 @@ inline FeatureBranch branchInto(const Peak& peak, const CurveSkeleton& skeleton,
 
 /**
  * Gives each feature without a branch one: where the surface is left far uncovered and comes to a
- * point, and where the way there leads through a limb. Rims and corners, which curve skeletons leave
- * out, are none.
+ * point, and where the way there leads through a limb or into the lobe of a plate. Rims and the corners
+ * of solids, which curve skeletons leave out, are none.
  * @pre radius holds the distances from the surface, or lower bounds. @post the same.
- * @throws Cancelled. Complexity: O(V * N + V log V), and O(V + log V) for each peak.
+ * @throws Cancelled. Complexity: O(V * N + V log V), and O(V log V) for each peak.
  */
 inline void growFeatures(CurveSkeleton& skeleton, const SurfaceComponent& component,
 	const ClosestSurface& surface, KnownClearances& clearances, const FeatureRule& rule,
