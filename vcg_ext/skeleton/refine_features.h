@@ -61,26 +61,23 @@ inline int holdingNode(const CurveSkeleton& skeleton, const Point3d& point)
 inline int nodeBelow(const CurveSkeleton& skeleton, const SurfaceComponent& surface,
 	const Heights& heights, int peak)
 {
-	constexpr double covered = 0.1; // in radii
-	using Visit = std::pair<double, int>;
-	std::vector<double> way(surface.size(), std::numeric_limits<double>::infinity());
-	std::priority_queue<Visit, std::vector<Visit>, std::greater<>> next;
-	way[peak] = 0;
-	next.push({0, peak});
-	while (!next.empty()) {
-		const auto [walked, v] = next.top();
-		next.pop();
-		if (walked > way[v])
+	constexpr double covered = 0.1;       // in radii
+	using Entry = std::pair<double, int>; // way, vertex
+	std::vector<char> reached(surface.size(), 0);
+	std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
+	front.emplace(0, peak);
+	while (!front.empty()) {
+		const auto [way, v] = front.top();
+		front.pop();
+		if (reached[v])
 			continue;
-		const int node = heights.node[v];
-		if (heights.height[v] <= covered * skeleton.radius[node])
-			return node;
-		surface.forEachNeighbour(v, [&, from = v, walked = walked](int w) {
-			const double further = walked + Distance(surface.position(from), surface.position(w));
-			if (further < way[w]) {
-				way[w] = further;
-				next.push({further, w});
-			}
+		reached[v] = 1;
+		if (heights.height[v] <= covered * skeleton.radius[heights.node[v]])
+			return heights.node[v];
+		const Point3d& p = surface.position(v);
+		surface.forEachNeighbour(v, [&, way = way](int w) {
+			if (!reached[w])
+				front.emplace(way + Distance(p, surface.position(w)), w);
 		});
 	}
 	return heights.node[peak];

@@ -113,8 +113,8 @@ inline Stage contractToSkeleton(Stage stage, const Parameters& parameters,
 	// becomes of the first one's vertices is followed, and the surface's are told at the end.
 	std::vector<int> first;
 	if (!onStage) {
-		StageFrames {
-			stage}; // leaves the frames with the stage while its correspondence is the surface's
+		// The stage keeps its frames; they are found by the surface's own correspondence.
+		const StageFrames frames(stage);
 		first = std::move(stage.node);
 		stage.node.resize(stage.mesh.vertexSlots());
 		std::iota(stage.node.begin(), stage.node.end(), 0);
