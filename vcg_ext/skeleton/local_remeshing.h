@@ -59,7 +59,7 @@ inline std::array<bool, 3> maybeWideAngles(const SurfaceMesh& mesh, int face, do
 	const Point3d &a = mesh.position[i], &b = mesh.position[j], &c = mesh.position[k];
 	const Point3d ab = b - a, bc = c - b, ca = a - c;
 	const double ab2 = ab.SquaredNorm(), bc2 = bc.SquaredNorm(), ca2 = ca.SquaredNorm();
-	const auto isWide = [&](double minusDot, double squaredLengths) {
+	const auto isWide = [&](double minusDot, double squaredLengths) -> bool {
 		return (minusDot > 0) & (minusDot * minusDot >= least * squaredLengths);
 	};
 	return {isWide(bc * ca, bc2 * ca2), isWide(ca * ab, ca2 * ab2), isWide(ab * bc, ab2 * bc2)};
