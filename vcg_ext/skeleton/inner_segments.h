@@ -52,9 +52,10 @@ public:
 		detail::reportedLoop(int(faces.size()), progress.part(0.5, 1), what, [&](int i) {
 			Box3d box;
 			for (int k = 0; k < 3; ++k) {
-				const int h = 3 * faces[i] + k;
-				box.Add(mesh.position[mesh.origin(h)]);
-				longest = std::max(longest, mesh.squaredLength(h));
+				const Point3d& p = mesh.position[faces[i][k]];
+				box.Add(p);
+				longest =
+					std::max(longest, SquaredDistance(p, mesh.position[faces[i][(k + 1) % 3]]));
 			}
 			levels.back()[i / 4].set(i % 4, box, origin);
 			boxes[i / 4].Add(box);
@@ -74,15 +75,16 @@ public:
 
 	/**
 	 * Whether the segment from vertex v to c leaves v into the inside and crosses no triangle.
+	 * @param leadsInside  that the segment leaves v behind all of its triangles is known.
 	 * @pre no vertex lies deeper than `depth` in the ball around c through v.
 	 * Complexity: O(log F).
 	 */
-	bool staysInside(int v, const Point3d& c, double depth) const
+	bool staysInside(int v, const Point3d& c, double depth, bool leadsInside = false) const
 	{
 		const Point3d& p = mesh.position[v];
 		const Point3d direction = c - p;
 		const double r = direction.Norm();
-		if (!(r > 0) || !leavesInwards(v, direction))
+		if (!(r > 0) || !(leadsInside || leavesInwards(v, direction)))
 			return false;
 		const double power = largestPower + 2 * r * depth;
 		const double farthest = power < r * r ? power / (r + std::sqrt(r * r - power)) : r;
@@ -91,7 +93,7 @@ public:
 
 private:
 	const SurfaceMesh& mesh;
-	std::vector<int> faces;                     ///< neighbours in this order are near each other
+	std::vector<Triangle> faces;                ///< neighbours in this order are near each other
 	std::vector<std::vector<FourBoxes>> levels; ///< around single faces, 4 faces, 16 faces, ...
 	Point3d origin;
 	double slack;
@@ -114,7 +116,7 @@ private:
 			start[i] += start[i - 1];
 		faces.resize(mesh.faceSlots());
 		detail::reportedLoop(mesh.faceSlots(), progress.part(0.5, 1), what,
-			[&](int f) { faces[start[key(f)]++] = f; });
+			[&](int f) { faces[start[key(f)]++] = mesh.triangle(f); });
 	}
 
 	/// Whether the surface around v, seen as a cone of endless triangles, has the direction inside.
@@ -189,10 +191,9 @@ private:
 	}
 
 	/// Moeller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997.
-	bool crossesFace(int f, int v, const Point3d& segment) const
+	bool crossesFace(const Triangle& t, int v, const Point3d& segment) const
 	{
 		constexpr double rounding = 1e-9; // a segment through an edge must hit one of its triangles
-		const Triangle t = mesh.triangle(f);
 		if (t[0] == v || t[1] == v || t[2] == v)
 			return false;
 		const Point3d& a = mesh.position[t[0]];

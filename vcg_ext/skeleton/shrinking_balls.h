@@ -170,6 +170,14 @@ PoleSet maximalBalls(const std::vector<Touch>& touches, size_t count, const Unit
 	return poles;
 }
 
+/// See osculatingNormal().
+struct OsculatingNormal
+{
+	Point3d normal; ///< unit length, or zero
+	/// Whether the opposite of the normal leaves the vertex behind all of its triangles, by far.
+	bool leadsInside;
+};
+
 /**
  * The unit normal of a vertex that is exact where its neighbours lie on a sphere with it: cross
  * products over the squared lengths of both edges (Max, "Weights for computing vertex normals from
@@ -177,18 +185,33 @@ PoleSet maximalBalls(const std::vector<Touch>& touches, size_t count, const Unit
  * A tilt by t makes the ball against a neighbour at distance h on a surface of curvature k smaller
  * by a factor of 1 + 2 t / (h k): on a fine mesh the tilt of area-weighted normals costs a fifth.
  */
-inline Point3d osculatingNormal(const SurfaceMesh& mesh, int v)
+inline OsculatingNormal osculatingNormal(const SurfaceMesh& mesh, int v)
 {
+	constexpr double byFar = 1e-3; // cosine; rounding and the ball's own error are far below
 	Point3d normal(0, 0, 0);
+	std::array<Point3d, 12> areaVectors; // of more triangles nothing is said
+	size_t faces = 0;
 	mesh.forEachOutgoing(v, [&](int h) {
 		const Point3d a = mesh.position[mesh.target(h)] - mesh.position[v];
 		const Point3d b = mesh.position[mesh.apex(h)] - mesh.position[v];
 		const double aa = a.SquaredNorm(), bb = b.SquaredNorm();
+		const Point3d areaVector = a ^ b;
 		if (aa > 0 && bb > 0)
-			normal += (a ^ b) / aa / bb;
+			normal += areaVector / aa / bb;
+		if (faces < areaVectors.size())
+			areaVectors[faces] = areaVector;
+		++faces;
 	});
 	const double length = normal.Norm();
-	return length > 0 && std::isfinite(length) ? Point3d(normal / length) : Point3d(0, 0, 0);
+	if (!(length > 0 && std::isfinite(length)))
+		return {Point3d(0, 0, 0), false};
+	normal /= length;
+	bool leadsInside = faces <= areaVectors.size();
+	for (size_t i = 0; i < std::min(faces, areaVectors.size()); ++i) {
+		const double along = areaVectors[i] * normal;
+		leadsInside &= along > 0 && along * along > byFar * byFar * areaVectors[i].SquaredNorm();
+	}
+	return {normal, leadsInside};
 }
 
 inline double ballTolerance(const UnitFrame& frame, double delta)
@@ -252,18 +275,21 @@ inline PoleSet shrinkingBallPoles(const SurfaceMesh& mesh, const std::vector<int
 		place[vertices[i]] = int(i);
 	std::vector<detail::Touch> touches;
 	touches.reserve(vertices.size());
+	std::vector<char> leadsInside(vertices.size()); // found out while the triangles are at hand
 	for (int slot = 0; slot < tree.size(); ++slot) {
 		const int v = tree.order()[slot];
-		if (place[v] >= 0)
-			touches.push_back(
-				{tree.point(slot), detail::osculatingNormal(mesh, v), place[v], slot});
+		if (place[v] < 0)
+			continue;
+		const detail::OsculatingNormal found = detail::osculatingNormal(mesh, v);
+		touches.push_back({tree.point(slot), found.normal, place[v], slot});
+		leadsInside[place[v]] = found.leadsInside;
 	}
 	const InnerSegments segments(mesh, tree, progress.part(0.2, 0.4));
 	return detail::maximalBalls(touches, vertices.size(), frame, tree, tolerance,
 		progress.part(0.4, 1), [&](int i, const Point3d& centre, double radius) {
 			const double depth =
 				frame.lengthOut(tolerance) + detail::KnownBalls::negligible * radius;
-			return segments.staysInside(vertices[i], centre, depth);
+			return segments.staysInside(vertices[i], centre, depth, leadsInside[i]);
 		});
 }
 
