@@ -47,7 +47,7 @@ public:
 		inverseDiagonal.resize(n);
 		start.resize(n + 1);
 		start[0] = 0;
-		entries.resize(9 * size_t(n)); // of the flow's matrices 8 are used
+		entries.resize(10 * size_t(n)); // of the flow's matrices 8 to 9 are used
 		std::vector<Row> rows(n);
 		for (int k = 0; k < n; ++k) {
 			const float own = M.diagonal[k] + shift[k];
