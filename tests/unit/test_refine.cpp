@@ -380,6 +380,22 @@ TEST(Refine, TakesLowLimbsIfTheyAreLongAndFlatOnesIfTheyComeToAPoint)
 	EXPECT_FALSE(isLobe(6, 0.3, 0.002)) << "no large part of the shape";
 }
 
+TEST(Refine, InTheEndTakesOnlyWhatIsALimbBeyondDoubt)
+{
+	refining::FeatureRule rule = {0.55, 0.75, 0.56, 0.35, 0.05, 0.005, 0.05, 0.005};
+	rule.onlySure = true;
+	const auto isLimb = [&](double flat, double spikiness, double excessWidth) {
+		const refining::FeatureBranch branch = {
+			{{0, 0, 0}, {6, 0, 0}}, {1, 3}, /*joint*/ 0, flat, excessWidth};
+		const refining::Peak peak = {0, 1, spikiness, /*diagonals*/ 6, /*radii*/ 6};
+		return refining::leadsIntoLimb(branch, peak, rule);
+	};
+	EXPECT_TRUE(isLimb(0.1, 0.4, 2));
+	EXPECT_FALSE(isLimb(0.5, 0.4, 2)) << "flat";
+	EXPECT_FALSE(isLimb(0.1, 0.2, 2)) << "round";
+	EXPECT_FALSE(isLimb(0.1, 0.4, 5)) << "nearly as broad as high, the corner of a plate";
+}
+
 TEST(Refine, GrowsABranchIntoAHighLobeOfAPlate)
 {
 	// A flat clover leaf with three lobes, the curve in two of them.
@@ -485,6 +501,26 @@ TEST(Refine, KeepsJunctionsThatAreApart)
 		mesh);
 	EXPECT_EQ(statistics(s).junctions, 2);
 	EXPECT_EQ(statistics(s).terminals, 4);
+}
+
+TEST(Refine, ALimbThatForksWhereItLeavesABodyKeepsItsFork)
+{
+	const auto junctionsLeft = [](double fork, double radius) {
+		SurfaceMesh none;
+		CurveSkeleton s = CurveMaker()
+							  .chain({{-2, 0, 0}, {0, 0, 0}, {fork / 2, 0, 0}, {fork, 0, 0}})
+							  .chain({{0, -2, 0}, {0, 0, 0}})
+							  .chain({{fork, 0, 0}, {3, 1, 0}})
+							  .chain({{fork, 0, 0}, {3, -1, 0}})
+							  .in(none);
+		for (size_t v = 0; v < s.position.size(); ++v)
+			s.radius[v] = s.position[v] == Point3d(0, 0, 0) ? 1 : radius;
+		return statistics(refining::withWholeJunctions(s, 0.5)).junctions;
+	};
+	EXPECT_EQ(junctionsLeft(1.1, 0.1), 2) << "just outside the body";
+	EXPECT_EQ(junctionsLeft(0.8, 0.1), 1) << "within it";
+	EXPECT_EQ(junctionsLeft(0.4, 0.9), 1) << "two halves of one junction";
+	EXPECT_EQ(junctionsLeft(1.1, 0.9), 2) << "two bodies";
 }
 
 TEST(Refine, KeepsEveryCycle)

@@ -42,7 +42,7 @@ struct RefineParameters
 	/// part of the latter's radius is a spur and is removed; in [0, 1].
 	double spurProminence = 0.1;
 	/// Two junctions are one where the smaller ball sticks out of the larger one by less than this
-	/// part of the latter's radius; in [0, 1].
+	/// part of its own radius; in [0, 1].
 	double junctionProminence = 0.5;
 	/// kappa, weight of the smoothness along the branch against that of the centring, for a spacing
 	/// of 0.5 % where the shape's radius is 3.3 %; >= 0. Larger: smoother, less centred.
@@ -103,10 +103,10 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 	const double kappa = parameters.smoothing * std::pow(referenceSpacing / parameters.spacing, 4);
 	constexpr double leastWay = 0.75, leastProtrusion = 0.56;
 	constexpr double leastProminence = 0.05, leastRise = 0.005, leastLobe = 0.05;
-	const FeatureRule features = {parameters.featureGain, leastWay, leastProtrusion,
+	FeatureRule features = {parameters.featureGain, leastWay, leastProtrusion,
 		parameters.featureHeight, leastProminence, leastRise, leastLobe, parameters.spacing};
 	const TipRule tips = {parameters.spacing, parameters.tipGain, parameters.tipRadius};
-	const int total = parameters.stiffRounds + parameters.rounds + parameters.lastRounds + 2;
+	const int total = parameters.stiffRounds + parameters.rounds + parameters.lastRounds + 3;
 	int done = 0;
 	const auto centreRounds = [&](int rounds, double weight, bool ascend) {
 		std::vector<Contact> contacts;
@@ -137,7 +137,8 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 		extendTips(skeleton, surface, tips);
 		progress.report(double(done) / total, what);
 	};
-	const auto grow = [&] {
+	const auto grow = [&](bool onlySure) {
+		features.onlySure = onlySure;
 		growFeatures(skeleton, component, surface, clearances, features,
 			progress.part(double(done) / total, double(done + 1) / total));
 		++done;
@@ -152,10 +153,11 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 	tidy(hopeless, 0);
 	centreRounds(parameters.stiffRounds, stiffer * kappa, false);
 	extend();
-	grow();
+	grow(false);
 	tidy(parameters.spurProminence, parameters.tipDistinctness);
 	centreRounds(parameters.rounds, kappa, true);
 	extend();
+	grow(true); // what a neighbour hid that has its branch by now
 	tidy(parameters.spurProminence, parameters.tipDistinctness);
 	centreRounds(parameters.lastRounds, kappa, true);
 	tidy(parameters.spurProminence, parameters.tipDistinctness);

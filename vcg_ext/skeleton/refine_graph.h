@@ -195,17 +195,19 @@ inline CurveSkeleton withoutCornerEnds(
 }
 
 /**
- * Merges junctions that are one: those whose connecting branch has a prominence() below `least`,
- * seen from the larger ball, the least first. The one with the larger ball stays in its place.
- * Branches that close a cycle of the shape are kept.
+ * Merges junctions that are one: those whose smaller ball, by less than `least` of its own radius, sticks
+ * out of the larger one, the least first. So a limb that forks right where it leaves a body keeps its
+ * fork. What the connecting branch is longer than straight counts as sticking out. The junction with the
+ * larger ball stays in its place. Branches that close a cycle of the shape are kept.
  * @pre the radius of junctions and tips is their distance from the surface.
  */
 inline CurveSkeleton withWholeJunctions(CurveSkeleton skeleton, double least)
 {
 	return withMergedJunctions(std::move(skeleton), least,
 		[](const CurveSkeleton& s, int larger, int smaller, double detour) {
-			// A branch that winds about is no joint, however near its ends are.
-			return prominence(s, smaller, larger) + detour / std::max(s.radius[larger], 1e-300);
+			const double out = Distance(s.position[larger], s.position[smaller]) + detour
+				+ s.radius[smaller] - s.radius[larger];
+			return out / std::max(s.radius[smaller], 1e-300);
 		});
 }
 
