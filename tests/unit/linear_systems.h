@@ -29,15 +29,14 @@ inline Sparse sparse(const SymmetricRows& A)
 	for (int i = 0; i < A.size(); ++i) {
 		entries.emplace_back(i, i, A.diagonal[i]);
 		for (int k = A.start[i]; k < A.start[i + 1]; ++k)
-			entries.emplace_back(i, A.entries[k].index, A.entries[k].value);
+			entries.emplace_back(i, A.column[k], A.value[k]);
 	}
 	Sparse S(A.size(), A.size());
 	S.setFromTriplets(entries.begin(), entries.end());
 	return S;
 }
 
-template <class Scalar>
-Sparse diagonal(const std::vector<Scalar>& values)
+inline Sparse diagonal(const std::vector<double>& values)
 {
 	Sparse S(int(values.size()), int(values.size()));
 	for (int i = 0; i < int(values.size()); ++i)
@@ -60,10 +59,11 @@ inline SymmetricRows orderedLaplacian(const SurfaceMesh& mesh)
 		double sum = 0;
 		mesh.forEachOutgoing(v, [&](int h) {
 			sum += weight[h];
-			L.entries.push_back({number[mesh.target(h)], float(-weight[h])});
+			L.column.push_back(number[mesh.target(h)]);
+			L.value.push_back(-weight[h]);
 		});
-		L.diagonal.push_back(float(sum));
-		L.start.push_back(int(L.entries.size()));
+		L.diagonal.push_back(sum);
+		L.start.push_back(int(L.column.size()));
 	}
 	return L;
 }

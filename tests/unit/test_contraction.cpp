@@ -284,8 +284,8 @@ TEST(Contraction, DoesNotDependOnScaleAndPlace)
 			p = (p - shift) / scale;
 		return largestMove(other.mesh.position, stage.mesh.position);
 	};
-	EXPECT_LT(mapped(1e-6, {0, 0, 0}), 1e-6); // the moves are in single precision
-	EXPECT_LT(mapped(1e6, {0, 0, 0}), 1e-6);
+	EXPECT_LT(mapped(1e-6, {0, 0, 0}), 1e-9);
+	EXPECT_LT(mapped(1e6, {0, 0, 0}), 1e-9);
 	EXPECT_LT(mapped(1, {1000, -2000, 500}), 1e-6);
 	EXPECT_LT(mapped(1e-6, {1e-3, 1e-3, 1e-3}), 1e-6);
 }

@@ -54,7 +54,7 @@ TEST(EliminationOrder, HasEachFreeVertexOnce)
 TEST(EliminationOrder, RanksAreAPermutation)
 {
 	Stage stage = plainStage(shapes::plate(3).mesh());
-	rankByDissection(stage);
+	rankByMinimumDegree(stage);
 	std::vector<int> ranks = stage.rank;
 	std::sort(ranks.begin(), ranks.end());
 	for (size_t i = 0; i < ranks.size(); ++i)

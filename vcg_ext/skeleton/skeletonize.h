@@ -24,25 +24,6 @@
 
 namespace vcg::tri::mcf {
 
-namespace detail {
-
-/**
- * The weights of the next contraction. While a surface takes its shape, w_H keeps the steps small. Once a
- * tenth of the vertices has arrived on the curve, the rest only has to follow, and half of w_H saves up
- * to two fifths of the iterations. Where sheets are kept, or vertices are held, these count as arrived
- * from the start, so that w_H stays.
- */
-inline Parameters weightsOfStep(const Stage& stage, const Parameters& parameters)
-{
-	constexpr double enoughArrived = 0.1, whatStays = 0.5;
-	Parameters weights = parameters;
-	if (stage.fixedFraction() > enoughArrived && !stage.hasSheets() && stage.heldCount() == 0)
-		weights.wH *= whatStays;
-	return weights;
-}
-
-} // namespace detail
-
 /**
  * One iteration of the loop of Fig. 4: weights and contraction, then connectivity, then degeneracy.
  *
@@ -65,7 +46,7 @@ inline Stage step(Stage stage, const Parameters& parameters, const Progress& pro
 	const int before = mesh.vertexSlots();
 	StageFrames frames(stage);
 	frames.enter(stage);
-	contract(stage, detail::weightsOfStep(stage, parameters), progress.part(0, 0.8));
+	contract(stage, parameters, progress.part(0, 0.8));
 	for (int v = 0; v < mesh.vertexSlots(); ++v)
 		if (!stage.fixed[v])
 			mesh.position[v] = PrincipalFrame::rounded(mesh.position[v]);
@@ -104,14 +85,14 @@ inline Stage step(Stage stage, const Parameters& parameters, const Progress& pro
 	stage.rank.resize(left);
 	frames.leave(stage);
 
-	const Extent extent = measuredExtent(mesh, stage.component, stage.initialArea.size());
+	const std::vector<double> area =
+		componentAreas(mesh, stage.component, stage.initialArea.size());
 	constexpr double settled = 1e-4;
 	stage.converged = true;
-	for (size_t c = 0; c < extent.area.size(); ++c)
-		stage.converged &=
-			std::abs(extent.area[c] - stage.area[c]) < settled * stage.initialArea[c];
-	stage.area = extent.area;
-	stage.volume = extent.volume;
+	for (size_t c = 0; c < area.size(); ++c)
+		stage.converged &= std::abs(area[c] - stage.area[c]) < settled * stage.initialArea[c];
+	stage.area = area;
+	stage.volume = mesh.volume();
 	stage.converged &=
 		stage.volumeFraction() < 0.05 || stage.fixedFraction() > 0.5 || stage.heldCount() > 0;
 	++stage.iteration;
@@ -128,24 +109,15 @@ inline Stage contractToSkeleton(Stage stage, const Parameters& parameters,
 	const Progress& progress = Progress(),
 	const std::function<void(const Stage&)>& onStage = nullptr)
 {
-	// The surface, and the first stages, have many more vertices than the others. Where nobody looks at
-	// these, only what becomes of the vertices of one of them is followed, until half of these are gone;
-	// the surface's are told at the end.
-	std::vector<int> ofSurface, ofFirst;
-	const auto follow = [&](std::vector<int>& earlier) {
-		for (int& node : earlier)
-			node = stage.node[node];
-	};
-	const auto startHere = [&] {
-		stage.node.resize(stage.mesh.vertexSlots());
-		std::iota(stage.node.begin(), stage.node.end(), 0);
-	};
+	// A dense surface has many more vertices than its stages: where nobody looks at these, only what
+	// becomes of the first one's vertices is followed, and the surface's are told at the end.
+	std::vector<int> first;
 	if (!onStage) {
 		// The stage keeps its frames; they are found by the surface's own correspondence.
 		const StageFrames frames(stage);
-		ofSurface = std::move(stage.node);
-		startHere();
-		ofFirst = stage.node;
+		first = std::move(stage.node);
+		stage.node.resize(stage.mesh.vertexSlots());
+		std::iota(stage.node.begin(), stage.node.end(), 0);
 	}
 	double done = 0;
 	while (!stage.converged && stage.iteration < parameters.maxIterations) {
@@ -155,16 +127,11 @@ inline Stage contractToSkeleton(Stage stage, const Parameters& parameters,
 		done = next;
 		if (onStage)
 			onStage(stage);
-		else if (2 * size_t(stage.mesh.vertexSlots()) < stage.node.size()) {
-			follow(ofFirst);
-			startHere();
-		}
 	}
 	if (!onStage) {
-		follow(ofFirst);
-		stage.node = std::move(ofFirst);
-		follow(ofSurface);
-		stage.node = std::move(ofSurface);
+		for (int& node : first)
+			node = stage.node[node];
+		stage.node = std::move(first);
 	}
 	progress.report(1, "Contracting");
 	return stage;
