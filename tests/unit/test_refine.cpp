@@ -380,22 +380,6 @@ TEST(Refine, TakesLowLimbsIfTheyAreLongAndFlatOnesIfTheyComeToAPoint)
 	EXPECT_FALSE(isLobe(6, 0.3, 0.002)) << "no large part of the shape";
 }
 
-TEST(Refine, InTheEndTakesOnlyWhatIsALimbBeyondDoubt)
-{
-	refining::FeatureRule rule = {0.55, 0.75, 0.56, 0.35, 0.05, 0.005, 0.05, 0.005};
-	rule.onlySure = true;
-	const auto isLimb = [&](double flat, double spikiness, double excessWidth) {
-		const refining::FeatureBranch branch = {
-			{{0, 0, 0}, {6, 0, 0}}, {1, 3}, /*joint*/ 0, flat, excessWidth};
-		const refining::Peak peak = {0, 1, spikiness, /*diagonals*/ 6, /*radii*/ 6};
-		return refining::leadsIntoLimb(branch, peak, rule);
-	};
-	EXPECT_TRUE(isLimb(0.1, 0.4, 2));
-	EXPECT_FALSE(isLimb(0.5, 0.4, 2)) << "flat";
-	EXPECT_FALSE(isLimb(0.1, 0.2, 2)) << "round";
-	EXPECT_FALSE(isLimb(0.1, 0.4, 5)) << "nearly as broad as high, the corner of a plate";
-}
-
 TEST(Refine, GrowsABranchIntoAHighLobeOfAPlate)
 {
 	// A flat clover leaf with three lobes, the curve in two of them.

@@ -103,10 +103,10 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 	const double kappa = parameters.smoothing * std::pow(referenceSpacing / parameters.spacing, 4);
 	constexpr double leastWay = 0.75, leastProtrusion = 0.56;
 	constexpr double leastProminence = 0.05, leastRise = 0.005, leastLobe = 0.05;
-	FeatureRule features = {parameters.featureGain, leastWay, leastProtrusion,
+	const FeatureRule features = {parameters.featureGain, leastWay, leastProtrusion,
 		parameters.featureHeight, leastProminence, leastRise, leastLobe, parameters.spacing};
 	const TipRule tips = {parameters.spacing, parameters.tipGain, parameters.tipRadius};
-	const int total = parameters.stiffRounds + parameters.rounds + parameters.lastRounds + 3;
+	const int total = parameters.stiffRounds + parameters.rounds + parameters.lastRounds + 2;
 	int done = 0;
 	const auto centreRounds = [&](int rounds, double weight, bool ascend) {
 		std::vector<Contact> contacts;
@@ -137,8 +137,7 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 		extendTips(skeleton, surface, tips);
 		progress.report(double(done) / total, what);
 	};
-	const auto grow = [&](bool onlySure) {
-		features.onlySure = onlySure;
+	const auto grow = [&] {
 		growFeatures(skeleton, component, surface, clearances, features,
 			progress.part(double(done) / total, double(done + 1) / total));
 		++done;
@@ -153,11 +152,10 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 	tidy(hopeless, 0);
 	centreRounds(parameters.stiffRounds, stiffer * kappa, false);
 	extend();
-	grow(false);
+	grow();
 	tidy(parameters.spurProminence, parameters.tipDistinctness);
 	centreRounds(parameters.rounds, kappa, true);
 	extend();
-	grow(true); // what a neighbour hid that has its branch by now
 	tidy(parameters.spurProminence, parameters.tipDistinctness);
 	centreRounds(parameters.lastRounds, kappa, true);
 	tidy(parameters.spurProminence, parameters.tipDistinctness);

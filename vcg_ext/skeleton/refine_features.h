@@ -92,8 +92,6 @@ struct FeatureBranch
 	int joint = -1;
 	/// The part of the points about which the shape is wide and flat.
 	double flat = 0;
-	/// How much wider than thick the shape is about the points, half of both, in the mean.
-	double excessWidth = 0;
 
 	double way() const
 	{
@@ -103,19 +101,6 @@ struct FeatureBranch
 		return sum;
 	}
 };
-
-/// How far one can go from the middle of a ball, in steps of half its radius and four radii at most, until
-/// the surface is nearer than half a radius.
-inline double roomAside(
-	const ClosestSurface& surface, const Point3d& middle, const Point3d& aside, double radius)
-{
-	constexpr double pace = 0.5, farthest = 4, flatness = 0.5;
-	double room = 0;
-	while (room < farthest * radius
-		&& surface.clearance(middle + aside * (room + pace * radius)) > flatness * radius)
-		room += pace * radius;
-	return room;
-}
 
 /**
  * From within a feature's tip to the skeleton: up the slope of the distance from the surface, which in
@@ -128,10 +113,10 @@ inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const ClosestSur
 	constexpr int mostSteps = 400;
 	// Of the next direction; the slope is 1 where the way leads straight away from the surface.
 	constexpr double pull = 0.3, keeping = 0.5;
-	constexpr double wide = 1.5; // in radii
+	// Flat: this many radii to both sides the surface is still this many away.
+	constexpr double wide = 1.5, flatness = 0.5;
 	FeatureBranch branch;
 	int flat = 0;
-	double excessWidth = 0;
 	Point3d x = start, direction(0, 0, 0);
 	for (int i = 0; i < mostSteps; ++i) {
 		ClosestSurface::Hit hit = surface.closest(x);
@@ -149,12 +134,9 @@ inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const ClosestSur
 				return branch;
 			const Point3d side = (hit.point - ball.contact) ^ direction;
 			if (const double norm = side.Norm(); norm > 0) {
-				const Point3d aside = side / norm;
-				const double left = roomAside(surface, x, aside, hit.distance),
-							 right = roomAside(surface, x, -aside, hit.distance);
-				flat += std::min(left, right) >= wide * hit.distance;
-				// The room ends about three quarters of a radius before the surface.
-				excessWidth += std::max(0.0, (left + right) / 2 - hit.distance / 4);
+				const Point3d far = side * (wide * hit.distance / norm);
+				flat += surface.clearance(x + far) > flatness * hit.distance
+					&& surface.clearance(x - far) > flatness * hit.distance;
 			}
 		}
 		if (i > 0
@@ -166,7 +148,6 @@ inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const ClosestSur
 		branch.joint = holdingNode(skeleton, x);
 		if (branch.joint >= 0) {
 			branch.flat = double(flat) / double(branch.points.size());
-			branch.excessWidth = excessWidth / double(branch.points.size());
 			return branch;
 		}
 		const Point3d there = skeleton.position[towards] - x;
@@ -181,14 +162,12 @@ inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const ClosestSur
  * Whether a branch leads into a limb: not into the corner of a box, on the way to which the balls
  * shrink nearly as fast as they advance, and not through a plate, in which it could lead anywhere,
  * unless that comes to a point, as an ear does, or is itself a lobe, high above the balls and a large
- * part of the shape. A limb beyond doubt is no plate at all, comes to a point, and is higher than it is
- * wider than thick.
+ * part of the shape.
  */
 inline bool leadsIntoLimb(const FeatureBranch& branch, const Peak& peak, const FeatureRule& rule)
 {
 	constexpr double mostFlatIfSpiky = 1.7, evenGain = 0.8, mostFlatIfEven = 0.1;
 	constexpr double lobeHeight = 5, lobeSpikiness = 0.25; // the height in radii
-	constexpr double mostFlatIfSure = 0.25, sureSpikiness = 0.3, sureSlenderness = 1.5;
 	const double way = branch.way();
 	if (branch.joint < 0
 		|| way < branch.radii.back()
@@ -197,9 +176,6 @@ inline bool leadsIntoLimb(const FeatureBranch& branch, const Peak& peak, const F
 	const double gain = 1 + (branch.radii.front() - branch.radii.back()) / way;
 	if (gain < rule.leastGain)
 		return false;
-	if (rule.onlySure)
-		return branch.flat <= mostFlatIfSure && peak.spikiness >= sureSpikiness
-			&& peak.height >= sureSlenderness * branch.excessWidth;
 	const bool isLobe = peak.height >= std::max(lobeHeight * branch.radii.back(), rule.leastLobe)
 		&& peak.spikiness >= lobeSpikiness;
 	return isLobe

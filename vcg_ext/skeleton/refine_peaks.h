@@ -38,8 +38,6 @@ struct FeatureRule
 	double leastLobe;
 	/// Longest step of a branch, in diagonals.
 	double spacing;
-	/// Whether only those are wanted that are limbs beyond doubt.
-	bool onlySure = false;
 };
 
 /// A component of a surface; its vertices are numbered by their place in it.
