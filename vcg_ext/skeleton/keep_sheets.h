@@ -10,6 +10,7 @@
 #include "marked_parts.h"
 #include "meso_skeleton.h"
 #include "one_wall.h"
+#include "sheet_fins.h"
 #include "tidy_sheets.h"
 #include "vertex_kind.h"
 
@@ -214,6 +215,8 @@ inline SheetCollapse collapseKeepingSheets(const Stage& stage, const std::vector
 		neighbours[b].push_back(a);
 	}
 	fillUnknownRadii(skeleton.radius, neighbours);
+	removeFins(skeleton);
+	openFolds(skeleton);
 	removeWhiskers(skeleton);
 	constexpr int smoothingRounds = 3;
 	smoothSheets(skeleton, smoothingRounds);

@@ -18,6 +18,13 @@
 
 namespace vcg::tri::mcf {
 
+/// Area of a face, in squared units of its nodes' positions.
+inline double faceArea(const std::vector<Point3d>& position, const FaceOfComplex& f)
+{
+	const Point3d& a = position[size_t(f[0])];
+	return ((position[size_t(f[1])] - a) ^ (position[size_t(f[2])] - a)).Norm() / 2;
+}
+
 /// A skeleton of curves (edges) and sheets (faces), which share nodes.
 struct MesoSkeleton
 {
@@ -38,11 +45,34 @@ struct MesoSkeleton
 	double sheetArea() const
 	{
 		double sum = 0;
-		for (const auto& [a, b, c] : faces)
-			sum += ((position[b] - position[a]) ^ (position[c] - position[a])).Norm() / 2;
+		for (const FaceOfComplex& f : faces)
+			sum += faceArea(position, f);
 		return sum;
 	}
 };
+
+/// Leaves out the nodes that have gone to another, their target; others are their own.
+inline void removeMergedNodes(MesoSkeleton& skeleton, const std::vector<int>& target)
+{
+	MesoSkeleton left;
+	std::vector<int> number(target.size(), -1);
+	for (size_t v = 0; v < target.size(); ++v)
+		if (target[v] == int(v)) {
+			number[v] = int(left.position.size());
+			left.position.push_back(skeleton.position[v]);
+			left.radius.push_back(skeleton.radius[v]);
+		}
+	const auto stays = [&](int v) { return target[size_t(v)] == v; };
+	for (const auto& [a, b] : skeleton.edges)
+		if (stays(a) && stays(b))
+			left.edges.push_back({number[size_t(a)], number[size_t(b)]});
+	for (const auto& [a, b, c] : skeleton.faces)
+		if (stays(a) && stays(b) && stays(c))
+			left.faces.push_back({number[size_t(a)], number[size_t(b)], number[size_t(c)]});
+	for (int v : skeleton.node)
+		left.node.push_back(number[size_t(target[size_t(v)])]);
+	skeleton = std::move(left);
+}
 
 /**
  * The faces of a skeleton, neighbours turned alike as far as that is possible: across edges of two

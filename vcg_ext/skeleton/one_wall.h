@@ -6,7 +6,7 @@
 #ifndef VCG_MCF_ONE_WALL_H
 #define VCG_MCF_ONE_WALL_H
 
-#include "betti_numbers.h"
+#include "meso_skeleton.h"
 #include "point_tree.h"
 
 #include <vcg/space/point3.h>
@@ -193,10 +193,7 @@ inline void thinPocket(SiteComplex& complex, std::set<FaceOfComplex>& pocket,
  */
 inline void openPockets(SiteComplex& complex, const std::vector<Point3d>& position, double longEdge)
 {
-	const auto squaredArea = [&](const FaceOfComplex& f) {
-		return ((position[f[1]] - position[f[0]]) ^ (position[f[2]] - position[f[0]]))
-			.SquaredNorm();
-	};
+	const auto area = [&](const FaceOfComplex& f) { return faceArea(position, f); };
 	for (;;) {
 		const std::vector<FaceOfComplex> all(complex.faces.begin(), complex.faces.end());
 		std::vector<FaceOfComplex> core;
@@ -205,10 +202,8 @@ inline void openPockets(SiteComplex& complex, const std::vector<Point3d>& positi
 		if (core.empty())
 			return;
 		// Small faces first, so that a pocket is found before a larger one around it.
-		std::stable_sort(
-			core.begin(), core.end(), [&](const FaceOfComplex& f, const FaceOfComplex& g) {
-				return squaredArea(f) < squaredArea(g);
-			});
+		std::stable_sort(core.begin(), core.end(),
+			[&](const FaceOfComplex& f, const FaceOfComplex& g) { return area(f) < area(g); });
 		std::vector<std::vector<int>> pockets = detail::closedSurfaces(core);
 		if (pockets.empty())
 			return;
@@ -252,8 +247,7 @@ inline void openPockets(SiteComplex& complex, const std::vector<Point3d>& positi
 			};
 			FaceOfComplex opened = *pocket.begin();
 			for (const FaceOfComplex& f : pocket)
-				if (hasLongest(f) != hasLongest(opened) ? hasLongest(f)
-														: squaredArea(f) > squaredArea(opened))
+				if (hasLongest(f) != hasLongest(opened) ? hasLongest(f) : area(f) > area(opened))
 					opened = f;
 			const bool isCoarse = length > longEdge * longEdge;
 			detail::thinPocket(complex, pocket, FaceOfComplex(opened), inside, count, position,

@@ -59,23 +59,7 @@ inline void removeWhiskers(MesoSkeleton& skeleton)
 		std::vector<int>& ofRoot = neighbours[size_t(v)];
 		ofRoot.erase(std::find(ofRoot.begin(), ofRoot.end(), chain[chain.size() - 2]));
 	}
-	// The nodes left, in their order.
-	MesoSkeleton tidy;
-	std::vector<int> number(n, -1);
-	for (size_t v = 0; v < n; ++v)
-		if (target[v] == int(v)) {
-			number[v] = int(tidy.position.size());
-			tidy.position.push_back(skeleton.position[v]);
-			tidy.radius.push_back(skeleton.radius[v]);
-		}
-	for (const auto& [a, b] : skeleton.edges)
-		if (target[size_t(a)] == a && target[size_t(b)] == b)
-			tidy.edges.push_back({number[size_t(a)], number[size_t(b)]});
-	for (const auto& [a, b, c] : skeleton.faces)
-		tidy.faces.push_back({number[size_t(a)], number[size_t(b)], number[size_t(c)]});
-	for (int v : skeleton.node)
-		tidy.node.push_back(number[size_t(target[size_t(v)])]);
-	skeleton = std::move(tidy);
+	removeMergedNodes(skeleton, target);
 }
 
 /**
