@@ -27,16 +27,20 @@ inline Sparse sparse(const SymmetricRows& A)
 {
 	std::vector<Eigen::Triplet<double>> entries;
 	for (int i = 0; i < A.size(); ++i) {
-		entries.emplace_back(i, i, A.diagonal[i]);
-		for (int k = A.start[i]; k < A.start[i + 1]; ++k)
-			entries.emplace_back(i, A.column[k], A.value[k]);
+		entries.emplace_back(i, i, A.excess[i]);
+		for (int k = A.start[i]; k < A.start[i + 1]; ++k) {
+			const double value = A.entries[k].value;
+			entries.emplace_back(i, A.entries[k].index, value);
+			entries.emplace_back(i, i, -value);
+		}
 	}
 	Sparse S(A.size(), A.size());
 	S.setFromTriplets(entries.begin(), entries.end());
 	return S;
 }
 
-inline Sparse diagonal(const std::vector<double>& values)
+template <class Scalar>
+Sparse diagonal(const std::vector<Scalar>& values)
 {
 	Sparse S(int(values.size()), int(values.size()));
 	for (int i = 0; i < int(values.size()); ++i)
@@ -59,11 +63,11 @@ inline SymmetricRows orderedLaplacian(const SurfaceMesh& mesh)
 		double sum = 0;
 		mesh.forEachOutgoing(v, [&](int h) {
 			sum += weight[h];
-			L.column.push_back(number[mesh.target(h)]);
-			L.value.push_back(-weight[h]);
+			L.entries.push_back({number[mesh.target(h)], float(-weight[h])});
 		});
-		L.diagonal.push_back(sum);
-		L.start.push_back(int(L.column.size()));
+		L.excess.push_back(0);
+		L.diagonal.push_back(float(sum));
+		L.start.push_back(int(L.entries.size()));
 	}
 	return L;
 }

@@ -284,8 +284,11 @@ TEST(Contraction, DoesNotDependOnScaleAndPlace)
 			p = (p - shift) / scale;
 		return largestMove(other.mesh.position, stage.mesh.position);
 	};
-	EXPECT_LT(mapped(1e-6, {0, 0, 0}), 1e-9);
-	EXPECT_LT(mapped(1e6, {0, 0, 0}), 1e-9);
+	EXPECT_LT(mapped(std::ldexp(1.0, -20), {0, 0, 0}), 1e-9);
+	EXPECT_LT(mapped(std::ldexp(1.0, 20), {0, 0, 0}), 1e-9);
+	EXPECT_LT(
+		mapped(1e-6, {0, 0, 0}), 1e-6); // rounded otherwise, and moves are in single precision
+	EXPECT_LT(mapped(1e6, {0, 0, 0}), 1e-6);
 	EXPECT_LT(mapped(1, {1000, -2000, 500}), 1e-6);
 	EXPECT_LT(mapped(1e-6, {1e-3, 1e-3, 1e-3}), 1e-6);
 }

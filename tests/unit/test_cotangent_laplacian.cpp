@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+#include "linear_systems.h"
 #include "shapes.h"
 
 #include "skeleton/cotangent_laplacian.h"
@@ -20,19 +21,29 @@ namespace {
 
 Eigen::MatrixXd dense(const SymmetricRows& A)
 {
-	Eigen::MatrixXd D = Eigen::MatrixXd::Zero(A.size(), A.size());
-	for (int i = 0; i < A.size(); ++i) {
-		D(i, i) = A.diagonal[i];
-		for (int k = A.start[i]; k < A.start[i + 1]; ++k)
-			D(i, A.column[k]) += A.value[k];
-	}
-	return D;
+	return systems::sparse(A);
+}
+
+/// L applied to the positions of a mesh, in double precision.
+std::vector<Point3d> curvature(const SurfaceMesh& mesh)
+{
+	const std::vector<double> weight = cotangentWeights(mesh);
+	std::vector<Point3d> sum(size_t(mesh.vertexSlots()), Point3d(0, 0, 0));
+	for (int v = 0; v < mesh.vertexSlots(); ++v)
+		mesh.forEachOutgoing(v, [&](int h) {
+			sum[v] += (mesh.position[v] - mesh.position[mesh.target(h)]) * weight[h];
+		});
+	return sum;
 }
 
 std::vector<Point3d> times(const SymmetricRows& A, const std::vector<Point3d>& x)
 {
+	FloatQuads quads;
+	for (const Point3d& p : x)
+		quads.emplace_back(float(p[0]), float(p[1]), float(p[2]), 0.f);
 	std::vector<Point3d> y(x.size());
-	A.multiply(x, y);
+	A.forEachProduct(
+		quads, [&](int i, const FloatQuad& sum) { y[i] = Point3d(sum[0], sum[1], sum[2]); });
 	return y;
 }
 
@@ -105,7 +116,7 @@ TEST(CotangentLaplacian, VanishesOnLinearFunctionsInsideAFlatPatch)
 		}
 	ASSERT_GT(count, 50);
 	const SurfaceMesh mesh = soup.mesh();
-	const std::vector<Point3d> Lx = times(cotangentLaplacian(mesh), mesh.position);
+	const std::vector<Point3d> Lx = curvature(mesh);
 	for (int v = 0; v < mesh.vertexSlots(); ++v)
 		if (inside[v]) {
 			EXPECT_LT(Lx[v].Norm(), 1e-12);
@@ -116,7 +127,7 @@ TEST(CotangentLaplacian, OfThePositionsPointsOutwardsOnASphere)
 {
 	// (L x)_i = sum w_ij (x_i - x_j) is the mean curvature normal: outwards for a convex body seen from outside.
 	const SurfaceMesh mesh = shapes::sphere(3).mesh();
-	const std::vector<Point3d> Lx = times(cotangentLaplacian(mesh), mesh.position);
+	const std::vector<Point3d> Lx = curvature(mesh);
 	double sum = 0;
 	for (int v = 0; v < mesh.vertexSlots(); ++v) {
 		EXPECT_GT(Lx[v] * mesh.position[v], 0);
@@ -180,5 +191,5 @@ TEST(SymmetricRows, MultipliesThreeColumnsAtOnce)
 	const Eigen::MatrixXd Y = D * X;
 	for (int i = 0; i < L.size(); ++i)
 		for (int k = 0; k < 3; ++k)
-			EXPECT_NEAR(y[i][k], Y(i, k), 1e-12);
+			EXPECT_NEAR(y[i][k], Y(i, k), 1e-5);
 }

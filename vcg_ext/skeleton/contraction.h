@@ -12,8 +12,12 @@
 #include "parameters.h"
 #include "progress.h"
 #include "stage.h"
+#include "symmetric_rows.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 namespace vcg::tri::mcf {
@@ -58,70 +62,81 @@ inline void contract(
 	for (int i = 0; i < n; ++i)
 		unknown[vertexOfUnknown[i]] = i;
 	progress.report(0, "Contracting");
-	// Of triangles that can still move: the cotangents, and the area-weighted normals of the vertices.
-	std::vector<double> cotangent(mesh.halfEdgeSlots());
+	// Of triangles that can still move: the cotangents, the area-weighted normals of the vertices, and
+	// how many entries the rows of M will have.
+	SymmetricRows M;
+	M.excess.resize(n);
+	M.diagonal.resize(n);
+	M.start.assign(n + 1, 0);
+	std::vector<float> cotangent(mesh.halfEdgeSlots());
 	std::vector<Point3d> normal(mesh.vertexSlots(), Point3d(0, 0, 0));
-	for (int f = 0; f < mesh.faceSlots(); ++f) {
-		const Triangle t = mesh.triangle(f);
-		if (stage.fixed[t[0]] && stage.fixed[t[1]] && stage.fixed[t[2]])
-			continue;
+	const auto forEachMoving = [&](auto&& visit) {
+		for (int f = 0; f < mesh.faceSlots(); ++f) {
+			const Triangle t = mesh.triangle(f);
+			const std::array<int, 3> row = {unknown[t[0]], unknown[t[1]], unknown[t[2]]};
+			if (std::max({row[0], row[1], row[2]}) >= 0)
+				visit(f, t, row);
+		}
+	};
+	forEachMoving([&](int f, const Triangle& t, const std::array<int, 3>& row) {
 		const TriangleMeasures measures = measureTriangle(mesh, f);
 		for (int k = 0; k < 3; ++k) {
-			cotangent[3 * f + k] = measures.cotangent[k];
+			cotangent[3 * f + k] = float(measures.cotangent[k]);
 			normal[t[k]] += measures.areaVector;
+			if (row[k] >= 0 && row[(k + 1) % 3] >= 0)
+				++M.start[row[k] + 1];
 		}
-	}
+	});
+	std::partial_sum(M.start.begin(), M.start.end(), M.start.begin());
 	progress.report(0.1, "Contracting");
 
-	// w_L L restricted to the unknowns is M; what the fixed neighbours add is the known part g.
-	// Positions are taken relative to the middle: far from the origin, no digits are lost.
-	const Point3d middle = mesh.bounds().Center();
-	SymmetricRows M;
-	M.diagonal.resize(n);
-	M.start.resize(n + 1);
-	M.column.resize(mesh.halfEdgeSlots());
-	M.value.resize(mesh.halfEdgeSlots());
-	int entries = 0;
-	std::vector<double> D(n);
-	std::vector<Point3d> known(n), x(n), b(n);
+	// M is w_L L restricted to the unknowns. With x = v + y, y the unknown move, Eq. 6 becomes
+	//     (M^2 + D) y = w_M^2 (mu - v) - M (w_L L v),
+	// where fixed neighbours count in L v: differences only, so that far from the origin no digits are
+	// lost. Triangle by triangle, since a walk round each vertex waits for every step.
+	M.entries.resize(M.start[n]);
+	std::vector<int> end(M.start.begin(), M.start.end() - 1);
+	std::vector<double> toFree(n, 0), toFixed(n, 0); // sums of the weights of a row
+	std::vector<Point3d> curvature(mesh.vertexSlots(), Point3d(0, 0, 0)); // w_L L v
+	forEachMoving([&](int f, const Triangle& t, const std::array<int, 3>& row) {
+		for (int k = 0; k < 3; ++k) {
+			const int i = row[k], j = row[(k + 1) % 3], h = 3 * f + k;
+			if (i < 0)
+				continue;
+			const int v = t[k], to = t[(k + 1) % 3];
+			const double w = wL * cotangentWeight(cotangent[h], cotangent[mesh.twin(h)]);
+			(j >= 0 ? toFree : toFixed)[i] += w;
+			curvature[v] += (mesh.position[v] - mesh.position[to]) * w;
+			if (j >= 0)
+				M.entries[end[i]++] = {j, float(-w)};
+		}
+	});
+	std::vector<float> D(n);
+	FloatQuads Lv(n);
+	std::vector<Point3d> b(n);
 	for (int i = 0; i < n; ++i) {
 		const int v = vertexOfUnknown[i];
-		double sum = 0;
-		known[i] = Point3d(0, 0, 0);
-		mesh.forEachOutgoing(v, [&](int h) {
-			const double w = wL * cotangentWeight(cotangent[h], cotangent[mesh.twin(h)]);
-			const int j = mesh.target(h);
-			sum += w;
-			if (unknown[j] >= 0) {
-				M.column[entries] = unknown[j];
-				M.value[entries++] = -w;
-			}
-			else
-				known[i] -= (mesh.position[j] - middle) * w;
-		});
-		M.diagonal[i] = sum;
-		M.start[i + 1] = entries;
-		const Point3d& p = mesh.position[v];
-		x[i] = p - middle;
-		D[i] = wH2;
-		b[i] = x[i] * wH2;
+		M.excess[i] = float(toFixed[i]);
+		M.diagonal[i] = float(toFixed[i] + toFree[i]);
+		Lv[i] =
+			FloatQuad(float(curvature[v][0]), float(curvature[v][1]), float(curvature[v][2]), 0.f);
+		D[i] = float(wH2);
+		b[i] = Point3d(0, 0, 0);
 		const bool sheet = stage.sheet[v];
-		if (stage.poleRadius[v] >= 0 && (sheet || (stage.pole[v] - p) * normal[v] <= 0)) {
+		const Point3d toPole = stage.pole[v] - mesh.position[v];
+		if (stage.poleRadius[v] >= 0 && (sheet || toPole * normal[v] <= 0)) {
 			const double weight2 = sheet ? sheetWeight2 : wM2;
-			D[i] += weight2;
-			b[i] += (stage.pole[v] - middle) * weight2;
+			D[i] = float(wH2 + weight2);
+			b[i] = toPole * weight2;
 		}
 	}
-	// (M^2 + D) x = w_H^2 v + w_M^2 mu - M g
-	std::vector<Point3d> Mg(n);
-	M.multiply(known, Mg);
-	for (int i = 0; i < n; ++i)
-		b[i] -= Mg[i];
+	M.forEachProduct(
+		Lv, [&](int i, const FloatQuad& sum) { b[i] -= Point3d(sum[0], sum[1], sum[2]); });
 	constexpr double tolerance = 1e-2;
 	progress.report(0.2, "Contracting");
-	solveBiharmonic(M, D, b, x, tolerance, progress.part(0.2, 1));
+	const std::vector<Point3d> move = solveBiharmonic(M, D, b, tolerance, progress.part(0.2, 1));
 	for (int i = 0; i < n; ++i) {
-		const Point3d p = x[i] + middle;
+		const Point3d p = mesh.position[vertexOfUnknown[i]] + move[i];
 		if (!(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])))
 			throw SolverError("The contraction left the range of numbers: the mesh has degenerate "
 							  "triangles. Resample it first.");

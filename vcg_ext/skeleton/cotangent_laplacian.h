@@ -7,6 +7,7 @@
 #define VCG_MCF_COTANGENT_LAPLACIAN_H
 
 #include "surface_mesh.h"
+#include "symmetric_rows.h"
 
 #include <algorithm>
 #include <array>
@@ -14,37 +15,6 @@
 #include <vector>
 
 namespace vcg::tri::mcf {
-
-/**
- * A symmetric sparse matrix by rows, the diagonal apart, as the flow's solver wants it:
- * (A x)_i = diagonal[i] x_i + sum_k value[k] x_column[k], k in [start[i], start[i + 1]).
- */
-struct SymmetricRows
-{
-	std::vector<double> diagonal;
-	std::vector<int> start, column;
-	std::vector<double> value;
-
-	int size() const { return int(diagonal.size()); }
-
-	/// y = A x, for three columns at once.
-	void multiply(const std::vector<Point3d>& x, std::vector<Point3d>& y) const
-	{
-		forEachProduct(x, [&](int i, const Point3d& product) { y[i] = product; });
-	}
-
-	/// Calls visit(i, (A x)_i) for each row.
-	template <class Visitor>
-	void forEachProduct(const std::vector<Point3d>& x, Visitor&& visit) const
-	{
-		for (int i = 0; i < size(); ++i) {
-			Point3d sum = x[i] * diagonal[i];
-			for (int k = start[i]; k < start[i + 1]; ++k)
-				sum += x[column[k]] * value[k];
-			visit(i, sum);
-		}
-	}
-};
 
 /// What the flow needs to know about a triangle.
 struct TriangleMeasures
@@ -114,11 +84,11 @@ inline SymmetricRows cotangentLaplacian(const SurfaceMesh& mesh)
 		double sum = 0;
 		mesh.forEachOutgoing(v, [&](int h) {
 			sum += weight[h];
-			L.column.push_back(mesh.target(h));
-			L.value.push_back(-weight[h]);
+			L.entries.push_back({mesh.target(h), float(-weight[h])});
 		});
-		L.diagonal.push_back(sum);
-		L.start.push_back(int(L.column.size()));
+		L.excess.push_back(0);
+		L.diagonal.push_back(float(sum));
+		L.start.push_back(int(L.entries.size()));
 	}
 	return L;
 }

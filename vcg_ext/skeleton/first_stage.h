@@ -206,8 +206,9 @@ inline Stage firstStage(const SurfaceMesh& surface, const Parameters& parameters
 	stage.surface = std::make_shared<const std::vector<Point3d>>(surface.position);
 	stage.mesh = std::move(start.mesh);
 	stage.node = std::move(start.node);
-	stage.area = componentAreas(stage.mesh, stage.component, stage.diagonal.size());
-	stage.volume = stage.mesh.volume();
+	const Extent extent = measuredExtent(stage.mesh, stage.component, stage.diagonal.size());
+	stage.area = extent.area;
+	stage.volume = extent.volume;
 	return stage;
 }
 

@@ -134,7 +134,13 @@ private:
 	{
 		constexpr double goldenPart = 0.6180339887498949; // (sqrt 5 - 1) / 2
 		const double steps = double(std::int64_t(1) << binaryDigits);
-		return std::floor(x * steps + goldenPart) / steps;
+		const double y = x * steps + goldenPart;
+		// std::floor() is a call where the processor need not know it as an instruction.
+		constexpr double noFraction = double(std::int64_t(1) << 52);
+		if (!(std::abs(y) < noFraction))
+			return y / steps;
+		const double towardsZero = double(std::int64_t(y));
+		return (towardsZero - double(towardsZero > y)) / steps;
 	}
 
 	/// Integrals about the origin of a frame, in its unit, weights in units of their own.

@@ -85,14 +85,14 @@ inline Stage step(Stage stage, const Parameters& parameters, const Progress& pro
 	stage.rank.resize(left);
 	frames.leave(stage);
 
-	const std::vector<double> area =
-		componentAreas(mesh, stage.component, stage.initialArea.size());
+	const Extent extent = measuredExtent(mesh, stage.component, stage.initialArea.size());
 	constexpr double settled = 1e-4;
 	stage.converged = true;
-	for (size_t c = 0; c < area.size(); ++c)
-		stage.converged &= std::abs(area[c] - stage.area[c]) < settled * stage.initialArea[c];
-	stage.area = area;
-	stage.volume = mesh.volume();
+	for (size_t c = 0; c < extent.area.size(); ++c)
+		stage.converged &=
+			std::abs(extent.area[c] - stage.area[c]) < settled * stage.initialArea[c];
+	stage.area = extent.area;
+	stage.volume = extent.volume;
 	stage.converged &=
 		stage.volumeFraction() < 0.05 || stage.fixedFraction() > 0.5 || stage.heldCount() > 0;
 	++stage.iteration;
@@ -109,15 +109,24 @@ inline Stage contractToSkeleton(Stage stage, const Parameters& parameters,
 	const Progress& progress = Progress(),
 	const std::function<void(const Stage&)>& onStage = nullptr)
 {
-	// A dense surface has many more vertices than its stages: where nobody looks at these, only what
-	// becomes of the first one's vertices is followed, and the surface's are told at the end.
-	std::vector<int> first;
+	// The surface, and the first stages, have many more vertices than the others. Where nobody looks at
+	// these, only what becomes of the vertices of one of them is followed, until half of these are gone;
+	// the surface's are told at the end.
+	std::vector<int> ofSurface, ofFirst;
+	const auto follow = [&](std::vector<int>& earlier) {
+		for (int& node : earlier)
+			node = stage.node[node];
+	};
+	const auto startHere = [&] {
+		stage.node.resize(stage.mesh.vertexSlots());
+		std::iota(stage.node.begin(), stage.node.end(), 0);
+	};
 	if (!onStage) {
 		// The stage keeps its frames; they are found by the surface's own correspondence.
 		const StageFrames frames(stage);
-		first = std::move(stage.node);
-		stage.node.resize(stage.mesh.vertexSlots());
-		std::iota(stage.node.begin(), stage.node.end(), 0);
+		ofSurface = std::move(stage.node);
+		startHere();
+		ofFirst = stage.node;
 	}
 	double done = 0;
 	while (!stage.converged && stage.iteration < parameters.maxIterations) {
@@ -127,11 +136,16 @@ inline Stage contractToSkeleton(Stage stage, const Parameters& parameters,
 		done = next;
 		if (onStage)
 			onStage(stage);
+		else if (2 * size_t(stage.mesh.vertexSlots()) < stage.node.size()) {
+			follow(ofFirst);
+			startHere();
+		}
 	}
 	if (!onStage) {
-		for (int& node : first)
-			node = stage.node[node];
-		stage.node = std::move(first);
+		follow(ofFirst);
+		stage.node = std::move(ofFirst);
+		follow(ofSurface);
+		stage.node = std::move(ofSurface);
 	}
 	progress.report(1, "Contracting");
 	return stage;

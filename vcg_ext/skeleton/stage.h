@@ -88,15 +88,29 @@ private:
 	}
 };
 
-/// Area of each component of a mesh.
-inline std::vector<double> componentAreas(
+/// Area of each component of a mesh, and the sum of their volumes, see SurfaceMesh::volume().
+struct Extent
+{
+	std::vector<double> area;
+	double volume = 0;
+};
+
+inline Extent measuredExtent(
 	const SurfaceMesh& mesh, const std::vector<int>& component, size_t components)
 {
-	std::vector<double> area(components, 0);
-	for (int f = 0; f < mesh.faceSlots(); ++f)
-		if (mesh.isFace(f))
-			area[component[mesh.triangle(f)[0]]] += mesh.areaVector(f).Norm() / 2;
-	return area;
+	Extent extent;
+	extent.area.assign(components, 0);
+	const Point3d middle = mesh.bounds().Center();
+	for (int f = 0; f < mesh.faceSlots(); ++f) {
+		if (!mesh.isFace(f))
+			continue;
+		const int v = mesh.triangle(f)[0];
+		const Point3d areaVector = mesh.areaVector(f);
+		extent.area[component[v]] += areaVector.Norm() / 2;
+		extent.volume += (mesh.position[v] - middle) * areaVector;
+	}
+	extent.volume /= 6;
+	return extent;
 }
 
 /// The component of each vertex of the surface that a stage came from.

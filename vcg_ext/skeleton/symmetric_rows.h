@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file A symmetric sparse matrix in single precision and its product with three columns at once.
+
+#ifndef VCG_MCF_SYMMETRIC_ROWS_H
+#define VCG_MCF_SYMMETRIC_ROWS_H
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/// A row of three columns and a spare, side by side in one SIMD register.
+using FloatQuad = Eigen::Array4f;
+using FloatQuads = std::vector<FloatQuad, Eigen::aligned_allocator<FloatQuad>>;
+
+/// An entry of a sparse row or column: where, and what.
+struct SparseEntry
+{
+	int index;
+	float value;
+};
+
+/**
+ * A symmetric sparse matrix by rows, as the flow's solver wants it: a Laplacian, and something on its diagonal,
+ *
+ *   (A x)_i = excess_i x_i + sum_k value_k (x_index_k - x_i),   k in [start[i], start[i + 1]).
+ *
+ * In this form constants go to excess exactly, however large the values are: the rounding of a stored
+ * diagonal would hold what is to move.
+ */
+struct SymmetricRows
+{
+	std::vector<float> excess;
+	/// excess_i - sum_k value_k.
+	std::vector<float> diagonal;
+	std::vector<int> start;
+	std::vector<SparseEntry> entries;
+
+	int size() const { return int(diagonal.size()); }
+
+	/// Calls visit(i, (A x)_i) for each row. Complexity: O(entries).
+	template <class Visitor>
+	void forEachProduct(const FloatQuads& x, Visitor&& visit) const
+	{
+		for (int i = 0; i < size(); ++i) {
+			const FloatQuad own = x[i];
+			FloatQuad sum = own * excess[i];
+			for (int k = start[i]; k < start[i + 1]; ++k)
+				sum += (x[entries[k].index] - own) * entries[k].value;
+			visit(i, sum);
+		}
+	}
+};
+
+} // namespace vcg::tri::mcf
+
+#endif
