@@ -307,7 +307,8 @@ TEST(Skeletonize, ALargerWeightRatioTakesFewerIterations)
 		parameters.wL = wL;
 		parameters.wM = 0;
 		iterations.push_back(0);
-		for (const char* name : {"hand", "animal", "tree", "bent_tube"}) {
+		for (const char* name : {"hand", "animal", "tree", "bent_tube", "y_tube", "knot", "horn",
+				 "twin_ears", "taper", "letter_s"}) {
 			const Stage stage = contractToSkeleton(stageOf(shapes::fromFile(name)), parameters);
 			EXPECT_TRUE(stage.converged) << name;
 			iterations.back() += stage.iteration;

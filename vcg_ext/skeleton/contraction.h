@@ -32,6 +32,18 @@ constexpr double publishedWeightUnit = 1.0 / 200;
 /// together before the smoothing has pulled the rim in.
 constexpr double sheetWeight2 = 4;
 
+namespace detail {
+
+/// How exactly the system is solved: a hundredth does for the default weights. The stronger w_L is against
+/// the others, the smaller is the part of the energy that smooth moves have, so that they come last.
+inline double solverTolerance(const Parameters& parameters)
+{
+	const auto stiffness = [](const Parameters& p) { return p.wL / std::hypot(p.wH, p.wM); };
+	return 1e-2 * std::min(1.0, stiffness(Parameters()) / stiffness(parameters));
+}
+
+} // namespace detail
+
 /**
  * Moves the free vertices of a stage to the minimum of
  *
@@ -132,9 +144,9 @@ inline void contract(
 	}
 	M.forEachProduct(
 		Lv, [&](int i, const FloatQuad& sum) { b[i] -= Point3d(sum[0], sum[1], sum[2]); });
-	constexpr double tolerance = 1e-2;
 	progress.report(0.2, "Contracting");
-	const std::vector<Point3d> move = solveBiharmonic(M, D, b, tolerance, progress.part(0.2, 1));
+	const std::vector<Point3d> move =
+		solveBiharmonic(M, D, b, detail::solverTolerance(parameters), progress.part(0.2, 1));
 	for (int i = 0; i < n; ++i) {
 		const Point3d p = mesh.position[vertexOfUnknown[i]] + move[i];
 		if (!(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])))
