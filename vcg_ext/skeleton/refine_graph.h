@@ -205,9 +205,7 @@ inline CurveSkeleton withWholeJunctions(CurveSkeleton skeleton, double least)
 {
 	return withMergedJunctions(std::move(skeleton), least,
 		[](const CurveSkeleton& s, int larger, int smaller, double detour) {
-			const double out = Distance(s.position[larger], s.position[smaller]) + detour
-				+ s.radius[smaller] - s.radius[larger];
-			return out / std::max(s.radius[smaller], 1e-300);
+			return (protrusion(s, smaller, larger) + detour) / std::max(s.radius[smaller], 1e-300);
 		});
 }
 

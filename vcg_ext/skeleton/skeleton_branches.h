@@ -76,20 +76,25 @@ inline double branchLength(const CurveSkeleton& skeleton, const Branch& branch)
 }
 
 /**
- * How far the ball at `end` sticks out of the ball at `root`, in radii of the latter:
- *     (|end - root| + r_end - r_root) / r_root.
+ * How far the ball at `end` sticks out of the ball at `root`, mesh units: |end - root| + r_end - r_root.
  * At most 0: the ball at the end lies inside the other and adds nothing to the shape.
+ * @param skeleton its `radius` must be the distance from the nodes to the surface.
+ */
+inline double protrusion(const CurveSkeleton& skeleton, int end, int root)
+{
+	return Distance(skeleton.position[end], skeleton.position[root]) + skeleton.radius[end]
+		- skeleton.radius[root];
+}
+
+/**
+ * The protrusion() of the ball at `end` in radii of the ball at `root`.
  *
  * A terminal branch with less than a tenth (from its tip, seen from the junction that it hangs
- * from) is a spur: it describes no feature. An inner branch with little between its two junctions,
- * seen from the larger ball, is a junction in two pieces.
- * @param skeleton its `radius` must be the distance from the nodes to the surface.
+ * from) is a spur: it describes no feature.
  */
 inline double prominence(const CurveSkeleton& skeleton, int end, int root)
 {
-	const double out = Distance(skeleton.position[end], skeleton.position[root])
-		+ skeleton.radius[end] - skeleton.radius[root];
-	return out / std::max(skeleton.radius[root], 1e-300);
+	return protrusion(skeleton, end, root) / std::max(skeleton.radius[root], 1e-300);
 }
 
 /**
