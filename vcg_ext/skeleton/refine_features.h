@@ -42,20 +42,6 @@ inline Point3d middleOfTip(
 	return box.Center();
 }
 
-/// The node whose ball a point is deepest in, in radii; -1 outside of all.
-inline int holdingNode(const CurveSkeleton& skeleton, const Point3d& point)
-{
-	int holding = -1;
-	double least = 1;
-	for (size_t v = 0; v < skeleton.position.size(); ++v)
-		if (const double r = skeleton.radius[v]; r > 0)
-			if (const double depth = Distance(skeleton.position[v], point) / r; depth < least) {
-				least = depth;
-				holding = int(v);
-			}
-	return holding;
-}
-
 /// The node of the ball that the way over the surface from a peak meets first.
 /// Complexity: O(V + n log n) for V vertices and the n that are nearer.
 inline int nodeBelow(const CurveSkeleton& skeleton, const SurfaceComponent& surface,

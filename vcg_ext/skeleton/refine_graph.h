@@ -209,6 +209,20 @@ inline CurveSkeleton withWholeJunctions(CurveSkeleton skeleton, double least)
 		});
 }
 
+/// The node whose ball a point is deepest in, in radii; -1 outside of all. O(V).
+inline int holdingNode(const CurveSkeleton& skeleton, const Point3d& point)
+{
+	int holding = -1;
+	double least = 1;
+	for (size_t v = 0; v < skeleton.position.size(); ++v)
+		if (const double r = skeleton.radius[v]; r > 0)
+			if (const double depth = Distance(skeleton.position[v], point) / r; depth < least) {
+				least = depth;
+				holding = int(v);
+			}
+	return holding;
+}
+
 /// Length of a polyline up to each of its points.
 inline std::vector<double> lengthsAlong(const std::vector<Point3d>& line)
 {

@@ -47,15 +47,6 @@ inline Point3d tipDirection(
 	return length > 0 ? direction / length : Point3d(0, 0, 0);
 }
 
-/// Whether a point lies in one of the skeleton's balls.
-inline bool isCovered(const CurveSkeleton& skeleton, const Point3d& point)
-{
-	for (size_t v = 0; v < skeleton.position.size(); ++v)
-		if (SquaredDistance(skeleton.position[v], point) < skeleton.radius[v] * skeleton.radius[v])
-			return true;
-	return false;
-}
-
 /**
  * Extends each tip along its direction, in steps of at most a quarter of its ball, each recentred
  * sideways, as long as the balls reach further by it: (step + r' - r) / step >= leastGain.
@@ -94,7 +85,7 @@ inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, c
 			const double reached = std::max(surface.clearance(y), 0.0);
 			const Point3d front = y + (y - x) * (reached / s);
 			if (reached < rule.leastRadius || s + reached - r < rule.leastGain * s
-				|| isCovered(skeleton, front) || !isSegmentInside(surface, x, r, y, reached))
+				|| holdingNode(skeleton, front) >= 0 || !isSegmentInside(surface, x, r, y, reached))
 				break;
 			left -= s;
 			const int next = int(skeleton.position.size());
