@@ -507,6 +507,30 @@ TEST(Refine, ALimbThatForksWhereItLeavesABodyKeepsItsFork)
 	EXPECT_EQ(junctionsLeft(1.1, 0.9), 2) << "two bodies";
 }
 
+TEST(Refine, OfTwoBranchesThatEndInTheSamePlaceTheShorterStays)
+{
+	const auto tipsLeft = [](double apart, double radius) {
+		SurfaceMesh none;
+		CurveSkeleton s = CurveMaker()
+							  .chain({{-2, 0, 0}, {0, 0, 0}})
+							  .chain({{0, 0, 0}, {1, 1, 0}, {3, apart, 0}})
+							  .chain({{0, 0, 0}, {3, 0, 0}})
+							  .in(none);
+		std::vector<Point3d> left;
+		for (size_t v = 0; v < s.position.size(); ++v)
+			s.radius[v] = s.position[v] == Point3d(3, apart, 0) ? radius : 0.3;
+		s = refining::withoutTwinTips(s);
+		const std::vector<std::vector<int>> neighbours = s.neighbours();
+		for (size_t v = 0; v < s.position.size(); ++v)
+			if (neighbours[v].size() == 1)
+				left.push_back(s.position[v]);
+		return left;
+	};
+	EXPECT_EQ(tipsLeft(0.5, 0.4), (std::vector<Point3d> {{-2, 0, 0}, {3, 0, 0}}));
+	EXPECT_EQ(tipsLeft(0.7, 0.4).size(), 3u) << "farther apart than two small balls are wide";
+	EXPECT_EQ(tipsLeft(0.5, 0.2).size(), 3u) << "a smaller limb beside a larger one";
+}
+
 TEST(Refine, KeepsEveryCycle)
 {
 	const SurfaceMesh mesh = shapes::plate(3, 4).mesh(); // bars of width 1

@@ -123,6 +123,8 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 	const auto tidy = [&](double spurProminence, double tipDistinctness) {
 		measureBranchEnds(skeleton, clearances);
 		skeleton = withoutSpurs(std::move(skeleton), spurProminence);
+		if (spurProminence > 0)
+			skeleton = withoutTwinTips(std::move(skeleton));
 		if (tipDistinctness > 0) {
 			skeleton = withoutCornerBranches(std::move(skeleton), clearances, tipDistinctness);
 			skeleton = withoutCornerEnds(skeleton, clearances, tipDistinctness);

@@ -93,6 +93,27 @@ inline CurveSkeleton withoutSpurs(CurveSkeleton skeleton, double least)
 	return withoutTerminalBranches(std::move(skeleton), least, terminalProminence);
 }
 
+/**
+ * Leaves one of two terminal branches that end in the same place, with tips closer to each other than twice
+ * their smaller ball's radius: the shorter branch. What had merged into the other goes to its junction. The
+ * tips of different limbs, or of a limb that forks, are farther apart than that.
+ * @pre the radius of tips is their distance from the surface.
+ */
+inline CurveSkeleton withoutTwinTips(CurveSkeleton skeleton)
+{
+	return withoutTerminalBranches(
+		std::move(skeleton), 0, [](const CurveSkeleton& s, const Branch& fromJunction) {
+			const int tip = fromJunction.last();
+			const std::vector<std::vector<int>> neighbours = s.neighbours();
+			for (int other = 0; other < int(neighbours.size()); ++other)
+				if (other != tip && neighbours[other].size() == 1
+					&& Distance(s.position[tip], s.position[other])
+						< 2 * std::min(s.radius[tip], s.radius[other]))
+					return -branchLength(s, fromJunction);
+			return 0.0;
+		});
+}
+
 /// A terminal branch as the balls on it see it: for each node the way from the first one, and the
 /// distance from the surface.
 struct BranchProfile
