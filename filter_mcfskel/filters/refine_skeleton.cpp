@@ -50,7 +50,8 @@ FilterSpec refineSkeletonFilter()
 			ParameterSpec {ParameterKind::Real, "spur_prominence", defaults.spurProminence,
 				"Spur prominence",
 				"A terminal branch whose end ball sticks out of the ball at its junction by less than "
-				"this part of the latter's radius is a spur, 0 to 1. More removes small features."}
+				"this part of the latter's radius is a spur, 0 to 1, and so is one that ends where a "
+				"shorter one does. More removes small features, 0 none."}
 				.asAdvanced()},
 		run};
 }

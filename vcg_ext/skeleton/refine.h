@@ -39,7 +39,8 @@ struct RefineParameters
 	/// Distance of neighbouring nodes; fraction of the diagonal, in (0, 0.1].
 	double spacing = 0.005;
 	/// A terminal branch whose end ball sticks out of the ball at its junction by less than this
-	/// part of the latter's radius is a spur and is removed; in [0, 1].
+	/// part of the latter's radius is a spur and is removed, and so is one that ends where a shorter
+	/// one does; in [0, 1], 0: all stay.
 	double spurProminence = 0.1;
 	/// Two junctions are one where the smaller ball sticks out of the larger one by less than this
 	/// part of its own radius; in [0, 1].
