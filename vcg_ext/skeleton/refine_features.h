@@ -12,6 +12,7 @@
 #include "refine_centre.h"
 #include "refine_graph.h"
 #include "refine_peaks.h"
+#include "ticker.h"
 
 #include <algorithm>
 #include <functional>
@@ -23,14 +24,17 @@
 namespace vcg::tri::mcf::refining {
 
 /// The middle of the surface around a peak down to a height: a point within the tip of its feature.
-inline Point3d middleOfTip(
-	const SurfaceComponent& surface, const Heights& heights, int peak, double lowest)
+/// @throws Cancelled
+inline Point3d middleOfTip(const SurfaceComponent& surface, const Heights& heights, int peak,
+	double lowest, const Progress& progress)
 {
 	std::vector<int> tip(1, peak);
 	std::vector<char> seen(surface.size(), 0);
 	seen[peak] = 1;
 	Box3d box;
+	detail::Ticker ticker(progress, "Refining the skeleton", surface.size());
 	for (size_t i = 0; i < tip.size(); ++i) {
+		ticker.tick();
 		box.Add(surface.position(tip[i]));
 		surface.forEachNeighbour(tip[i], [&](int w) {
 			if (!seen[w] && heights.height[w] >= lowest) {
@@ -43,16 +47,18 @@ inline Point3d middleOfTip(
 }
 
 /// The node of the ball that the way over the surface from a peak meets first.
-/// Complexity: O(V + n log n) for V vertices and the n that are nearer.
+/// @throws Cancelled. Complexity: O(V + n log n) for V vertices and the n that are nearer.
 inline int nodeBelow(const CurveSkeleton& skeleton, const SurfaceComponent& surface,
-	const Heights& heights, int peak)
+	const Heights& heights, int peak, const Progress& progress)
 {
 	constexpr double covered = 0.1;       // in radii
 	using Entry = std::pair<double, int>; // way, vertex
 	std::vector<char> reached(surface.size(), 0);
 	std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
 	front.emplace(0, peak);
+	detail::Ticker ticker(progress, "Refining the skeleton", surface.size());
 	while (!front.empty()) {
+		ticker.tick();
 		const auto [way, v] = front.top();
 		front.pop();
 		if (reached[v])
@@ -187,17 +193,18 @@ inline int nearestInView(const CurveSkeleton& skeleton, const ClosestSurface& su
  * The branch from a peak's feature to the curve: towards the ball that is nearest or, where that lies
  * across a gap, towards the one below the peak; and if the curve is in view nearer than that way is
  * long, straight there. Its joint is -1 if it would run beside the curve even so, or if there is no way.
+ * @throws Cancelled
  */
 inline FeatureBranch branchInto(const Peak& peak, const CurveSkeleton& skeleton,
 	const SurfaceComponent& component, const Heights& heights, const ClosestSurface& surface,
-	const FeatureRule& rule)
+	const FeatureRule& rule, const Progress& progress)
 {
 	// Down from the peak until what is above encloses a point with a way to the curve.
 	const auto branchTowards = [&](int node) {
 		FeatureBranch branch;
 		for (double down = rule.leastRise; branch.joint < 0 && down < peak.height; down *= 2)
 			branch = traceBranch(skeleton, surface,
-				middleOfTip(component, heights, peak.vertex, peak.height - down), node,
+				middleOfTip(component, heights, peak.vertex, peak.height - down, progress), node,
 				rule.spacing);
 		return branch;
 	};
@@ -208,7 +215,7 @@ inline FeatureBranch branchInto(const Peak& peak, const CurveSkeleton& skeleton,
 	const int nearest = heights.node[peak.vertex];
 	FeatureBranch branch = branchTowards(nearest);
 	if (branch.joint < 0)
-		if (const int below = nodeBelow(skeleton, component, heights, peak.vertex);
+		if (const int below = nodeBelow(skeleton, component, heights, peak.vertex, progress);
 			below != nearest)
 			branch = branchTowards(below);
 	if (branch.joint < 0)
@@ -240,8 +247,8 @@ inline void growFeatures(CurveSkeleton& skeleton, const SurfaceComponent& compon
 	const Heights heights =
 		heightsAbove(skeleton, covering, component, surface.vertexOrder(), progress.part(0, 0.4));
 	for (const Peak& peak : peaks(skeleton, component, heights, rule, progress.part(0.4, 0.8))) {
-		progress.report(0.8, "Refining the skeleton");
-		const FeatureBranch branch = branchInto(peak, skeleton, component, heights, surface, rule);
+		const FeatureBranch branch =
+			branchInto(peak, skeleton, component, heights, surface, rule, progress.part(0.8, 0.8));
 		if (!leadsIntoLimb(branch, peak, rule))
 			continue;
 		int last = branch.joint;

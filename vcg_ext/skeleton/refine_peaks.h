@@ -163,10 +163,12 @@ struct Peak
 class VerticesByHeight
 {
 public:
-	/// Complexity: O(V).
-	VerticesByHeight(const SurfaceComponent& surface, const std::vector<double>& height) :
+	/// @throws Cancelled. Complexity: O(V).
+	VerticesByHeight(const SurfaceComponent& surface, const std::vector<double>& height,
+		const Progress& progress) :
 			surface(surface)
 	{
+		const char* const what = "Refining the skeleton";
 		const double top = *std::max_element(height.begin(), height.end());
 		// In slices of equal thickness, each of them sorted when its turn comes.
 		const int slices = std::max(1, surface.size());
@@ -174,14 +176,16 @@ public:
 			return std::min(slices - 1, int((1 - height[v] / top) * slices));
 		};
 		ends.assign(slices + 1, 0);
-		for (int v = 0; v < surface.size(); ++v)
+		detail::reportedLoop(surface.size(), progress.part(0, 0.5), what, [&](int v) {
 			if (height[v] > 0)
 				++ends[slice(v) + 1];
+		});
 		std::partial_sum(ends.begin(), ends.end(), ends.begin());
 		entries.resize(ends.back());
-		for (int v = 0; v < surface.size(); ++v)
+		detail::reportedLoop(surface.size(), progress.part(0.5, 1), what, [&](int v) {
 			if (height[v] > 0)
 				entries[ends[slice(v)]++] = {height[v], v};
+		});
 	}
 
 	int size() const { return int(entries.size()); }
@@ -228,10 +232,11 @@ inline std::vector<Peak> peaks(const CurveSkeleton& skeleton, const SurfaceCompo
 		return height[v] >= rule.leastHeight * skeleton.radius[heights.node[v]]
 			&& height[v] >= leastRise(v);
 	};
-	VerticesByHeight falling(surface, height);
+	const char* const what = "Refining the skeleton";
+	VerticesByHeight falling(surface, height, progress.part(0, 0.4));
 	int highLeft = 0;
-	for (int v = 0; v < surface.size(); ++v)
-		highLeft += height[v] > 0 && isHigh(v);
+	detail::reportedLoop(surface.size(), progress.part(0.4, 0.5), what,
+		[&](int v) { highLeft += height[v] > 0 && isHigh(v); });
 	// The parts above a level that falls, as a forest; they are numbered from the highest peak down.
 	std::vector<int> parent(surface.size(), -1), partOfRoot(surface.size(), -1);
 	std::vector<Peak> parts;
@@ -258,7 +263,7 @@ inline std::vector<Peak> peaks(const CurveSkeleton& skeleton, const SurfaceCompo
 		open += isOpen(higher);
 		parent[b] = a;
 	};
-	detail::Ticker ticker(progress, "Refining the skeleton", falling.size());
+	detail::Ticker ticker(progress.part(0.5, 1), what, falling.size());
 	while (highLeft > 0 || open > 0) {
 		ticker.tick();
 		const int v = falling.next();
