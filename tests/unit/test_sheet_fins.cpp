@@ -156,6 +156,50 @@ TEST(OpenFolds, OneFaceGoesWhereTheRimLiesOnTheSheet)
 	EXPECT_EQ(skeleton.betti(), betti);
 }
 
+TEST(RemoveFins, TwoThatMeetInANodeKeepTheLoopBetweenThem)
+{
+	// Faces on the sheet with a tip in common.
+	MesoSkeleton skeleton = sheet(4);
+	const int tip = addNode(skeleton, Point3d(2, 2.5, 0.3));
+	addFace(skeleton, {11, 12, tip});
+	addFace(skeleton, {17, 18, tip});
+	const BettiNumbers betti = skeleton.betti();
+	removeFins(skeleton);
+	EXPECT_EQ(skeleton.betti(), betti);
+
+	// Walls of two faces, with a node of the rim in common that nothing else has.
+	MesoSkeleton walls = sheet(4);
+	const int shared = addNode(walls, Point3d(2, 2.5, 0.4));
+	const int left = addNode(walls, Point3d(1.5, 2, 0.4)),
+			  right = addNode(walls, Point3d(1.5, 3, 0.4));
+	addFace(walls, {11, 12, left});
+	addFace(walls, {12, left, shared});
+	addFace(walls, {16, 17, right});
+	addFace(walls, {17, right, shared});
+	const BettiNumbers before = walls.betti();
+	removeFins(walls);
+	EXPECT_EQ(walls.betti(), before);
+}
+
+TEST(OpenFolds, OfTwoThatShareAnEdgeOneIsLeft)
+{
+	// Faces a b c and b c d, with seams of three faces a b and c d, and rims a c and b d.
+	MesoSkeleton skeleton;
+	const int a = addNode(skeleton, Point3d(0, 0, 0)), b = addNode(skeleton, Point3d(1, 0, 0));
+	const int c = addNode(skeleton, Point3d(0, 1, 0)), d = addNode(skeleton, Point3d(1, 1, 0));
+	addFace(skeleton, {a, b, c});
+	addFace(skeleton, {b, c, d});
+	for (double z : {-1.0, 1.0}) {
+		addFace(skeleton, {a, b, addNode(skeleton, Point3d(0.5, -1, z))});
+		addFace(skeleton, {c, d, addNode(skeleton, Point3d(0.5, 2, z))});
+	}
+	const BettiNumbers betti = skeleton.betti();
+	ASSERT_EQ(seams(skeleton), 2u);
+	openFolds(skeleton);
+	EXPECT_EQ(skeleton.betti(), betti);
+	EXPECT_EQ(seams(skeleton), 1u);
+}
+
 TEST(OpenFolds, SheetsThatMeetAlongALineStay)
 {
 	MesoSkeleton skeleton = sheetWithWall(3);

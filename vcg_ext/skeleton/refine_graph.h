@@ -104,9 +104,13 @@ inline CurveSkeleton withoutTwinTips(CurveSkeleton skeleton)
 	return withoutTerminalBranches(
 		std::move(skeleton), 0, [](const CurveSkeleton& s, const Branch& fromJunction) {
 			const int tip = fromJunction.last();
-			const std::vector<std::vector<int>> neighbours = s.neighbours();
-			for (int other = 0; other < int(neighbours.size()); ++other)
-				if (other != tip && neighbours[other].size() == 1
+			std::vector<int> degree(s.position.size(), 0);
+			for (const auto& [a, b] : s.edges) {
+				++degree[a];
+				++degree[b];
+			}
+			for (int other = 0; other < int(degree.size()); ++other)
+				if (other != tip && degree[other] == 1
 					&& Distance(s.position[tip], s.position[other])
 						< 2 * std::min(s.radius[tip], s.radius[other]))
 					return -branchLength(s, fromJunction);

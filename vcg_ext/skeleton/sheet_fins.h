@@ -171,7 +171,8 @@ inline void removeFins(MesoSkeleton& skeleton)
 /**
  * Opens folds of rims: where two walls did not meet on the same sites, the rim may lie on the sheet along an
  * edge. Of such a seam of one edge, the smallest face that has the rim on one other side goes. A sheet that
- * really meets others does so along many edges. The topology stays, and all nodes do.
+ * really meets others does so along many edges. The topology stays, and all nodes do: of two such faces that
+ * share an edge one is left.
  * Complexity: O(F log F).
  */
 inline void openFolds(MesoSkeleton& skeleton)
@@ -182,6 +183,13 @@ inline void openFolds(MesoSkeleton& skeleton)
 		for (int v : e)
 			seamsAt[size_t(v)] += faces.size() > 2;
 	std::vector<char> removed(skeleton.faces.size(), 0);
+	const auto besideRemoved = [&](const FaceOfComplex& face) {
+		for (const EdgeOfComplex& side : edgesOf(face))
+			for (int f : sheets.around.at(side))
+				if (removed[size_t(f)])
+					return true;
+		return false;
+	};
 	for (const auto& [e, faces] : sheets.around) {
 		if (faces.size() != 3 || seamsAt[size_t(e[0])] > 1 || seamsAt[size_t(e[1])] > 1)
 			continue;
@@ -193,7 +201,7 @@ inline void openFolds(MesoSkeleton& skeleton)
 			for (const EdgeOfComplex& side : edgesOf(face))
 				counts.insert(sheets.count(side));
 			const double area = faceArea(skeleton.position, face);
-			if (counts == std::multiset<size_t> {1, 2, 3} && area < least) {
+			if (counts == std::multiset<size_t> {1, 2, 3} && area < least && !besideRemoved(face)) {
 				least = area;
 				smallest = f;
 			}
