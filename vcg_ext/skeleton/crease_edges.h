@@ -154,6 +154,18 @@ public:
 		marks = std::move(renumbered);
 	}
 
+	/// To be called before mesh.compact().
+	void beforeCompact(const SurfaceMesh& mesh)
+	{
+		if (empty())
+			return;
+		size_t alive = 0;
+		for (int h = 0; h < mesh.halfEdgeSlots(); ++h)
+			if (mesh.isHalfEdge(h))
+				marks[alive++] = marks[h];
+		marks.resize(alive);
+	}
+
 private:
 	/// One for each half-edge slot, alike for twins; empty if there are no creases.
 	std::vector<char> marks;

@@ -15,11 +15,15 @@
 #include "ticker.h"
 #include "tracked_mesh.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace vcg::tri::mcf::detail {
 
-/// A surface on its way to an even mesh of a given edge length, pass by pass.
+/**
+ * A surface on its way to an even mesh of a given edge length, pass by pass. From refine() on, each pass
+ * leaves a mesh without holes in its numbering, as the next one needs it.
+ */
 class IsotropicRemesher
 {
 public:
@@ -83,11 +87,11 @@ public:
 		Ticker ticker(progress, "Collapsing short edges", count);
 		for (int h = 0; h < count; ++h) {
 			ticker.tick();
-			if (!mesh.isEdge(h))
+			if (!mesh.isHalfEdge(h))
 				continue;
 			const double target = tracked.lengthAt(mesh.origin(h));
 			const double shortest = shortestEdge * target, longest = longestEdge * target;
-			if (mesh.squaredLength(h) >= shortest * shortest)
+			if (mesh.squaredLength(h) >= shortest * shortest || !mesh.isEdge(h))
 				continue;
 			int merged = h;
 			Merge merge = tracked.mergeOf(h);
@@ -108,6 +112,7 @@ public:
 			tracked.collapse(merged);
 			mesh.position[b] = point;
 		}
+		tracked.compact();
 	}
 
 	/// Flips edges where that brings the valences closer to six.
@@ -115,19 +120,16 @@ public:
 	{
 		std::vector<int> valence(mesh.vertexSlots(), 0);
 		for (int h = 0; h < mesh.halfEdgeSlots(); ++h)
-			if (mesh.isHalfEdge(h))
-				++valence[mesh.origin(h)];
+			++valence[mesh.origin(h)];
 		Ticker ticker(progress, "Flipping edges", mesh.halfEdgeSlots());
 		const auto excess = [&](int v) { return valence[v] - 6; };
 		for (int h = 0; h < mesh.halfEdgeSlots(); ++h) {
 			ticker.tick();
-			if (!mesh.isEdge(h) || tracked.isCrease(h))
-				continue;
 			const int a = mesh.origin(h), b = mesh.target(h);
 			const int c = mesh.apex(h), d = mesh.apex(mesh.twin(h));
 			// By how much the sum of (valence - 6)^2 would fall, halved.
 			const int gain = excess(a) + excess(b) - excess(c) - excess(d) - 2;
-			if (gain <= 0 || !flipKeepsShape(mesh, h))
+			if (gain <= 0 || !mesh.isEdge(h) || tracked.isCrease(h) || !flipKeepsShape(mesh, h))
 				continue;
 			tracked.flip(h);
 			--valence[a];
@@ -165,17 +167,11 @@ public:
 	void smoothAndProject(const Progress& progress)
 	{
 		Ticker ticker(progress.part(0, 0.3), "Smoothing", mesh.faceSlots());
-		struct Sum
-		{
-			Point3d normal = Point3d(0, 0, 0), moment = Point3d(0, 0, 0);
-			double area = 0;
-		};
-		std::vector<Sum> sums(mesh.vertexSlots());
-		std::vector<Point3d> areaVectors(mesh.faceSlots());
+		sums.resize(mesh.vertexSlots());
+		std::fill(sums.begin(), sums.end(), Sum());
+		areaVectors.resize(mesh.faceSlots());
 		for (int f = 0; f < mesh.faceSlots(); ++f) {
 			ticker.tick();
-			if (!mesh.isFace(f))
-				continue;
 			const Triangle t = mesh.triangle(f);
 			const Point3d &a = mesh.position[t[0]], &b = mesh.position[t[1]],
 						  &c = mesh.position[t[2]];
@@ -189,10 +185,11 @@ public:
 				sums[v].area += area;
 			}
 		}
-		const std::vector<Point3d> old = mesh.position;
+		old.resize(mesh.vertexSlots());
+		std::copy(mesh.position.begin(), mesh.position.end(), old.begin());
 		const auto moved = [&](int v) {
 			if (tracked.roleOf(v) == CreaseRole::Crease)
-				return middleOnCrease(v, old);
+				return middleOnCrease(v);
 			Point3d move = sums[v].moment / sums[v].area - old[v];
 			const double squared = sums[v].normal.SquaredNorm();
 			if (squared > 0)
@@ -202,11 +199,10 @@ public:
 		forEachBlock(
 			mesh.vertexSlots(), progress.part(0.3, 0.8), "Smoothing", [&](int begin, int end) {
 				for (int v = begin; v < end; ++v)
-					if (mesh.isVertex(v) && sums[v].area > 0
-						&& tracked.roleOf(v) != CreaseRole::Corner)
+					if (sums[v].area > 0 && tracked.roleOf(v) != CreaseRole::Corner)
 						tracked.moveOntoSurface(v, moved(v));
 			});
-		restoreTurnedFaces(areaVectors, old, progress.part(0.8, 1));
+		restoreTurnedFaces(progress.part(0.8, 1));
 	}
 
 	/// @see TrackedMesh::take()
@@ -223,7 +219,18 @@ private:
 	TrackedMesh tracked;
 	SurfaceMesh& mesh; ///< tracked.mesh
 
+	/// What smoothAndProject() adds up over the triangles of a vertex.
+	struct Sum
+	{
+		Point3d normal = Point3d(0, 0, 0), moment = Point3d(0, 0, 0);
+		double area = 0;
+	};
+
 	std::vector<int> suspects; ///< scratch of flipInsidePatches()
+	// Scratch of smoothAndProject(), kept: memory that is new in each round costs more than the sums.
+	std::vector<Sum> sums;
+	std::vector<Point3d> areaVectors; ///< of the faces before the vertices moved
+	std::vector<Point3d> old;         ///< positions before
 
 	/// Restores the Delaunay property around the new vertex m among the faces of each patch.
 	template <class Queue>
@@ -247,37 +254,37 @@ private:
 	}
 
 	/// The middle between the neighbours of v along its crease; v itself if it has not just two.
-	Point3d middleOnCrease(int v, const std::vector<Point3d>& position) const
+	Point3d middleOnCrease(int v) const
 	{
 		Point3d sum(0, 0, 0);
 		int neighbours = 0;
 		mesh.forEachOutgoing(v, [&](int h) {
 			if (tracked.isCrease(h)) {
-				sum += position[mesh.target(h)];
+				sum += old[mesh.target(h)];
 				++neighbours;
 			}
 		});
-		return neighbours == 2 ? Point3d(sum / 2.0) : position[v];
+		return neighbours == 2 ? Point3d(sum / 2.0) : old[v];
 	}
 
 	/// Puts vertices of faces that turned over back to where they were until no face is turned.
-	void restoreTurnedFaces(const std::vector<Point3d>& areaVectors,
-		const std::vector<Point3d>& old, const Progress& progress)
+	void restoreTurnedFaces(const Progress& progress)
 	{
-		Ticker ticker(progress, "Smoothing", mesh.faceSlots());
-		bool restored = true;
-		while (restored) {
-			restored = false;
-			for (int f = 0; f < mesh.faceSlots(); ++f) {
-				ticker.tick();
-				if (!mesh.isFace(f) || !turnsOver(areaVectors[f], mesh.areaVector(f)))
-					continue;
-				for (int v : mesh.triangle(f))
-					if (mesh.position[v] != old[v]) {
-						mesh.position[v] = old[v];
-						restored = true;
-					}
-			}
+		std::vector<int> restored; // vertices whose faces have not been looked at since
+		const auto restore = [&](int f) {
+			if (!turnsOver(areaVectors[f], mesh.areaVector(f)))
+				return;
+			for (int v : mesh.triangle(f))
+				if (mesh.position[v] != old[v]) {
+					mesh.position[v] = old[v];
+					restored.push_back(v);
+				}
+		};
+		reportedLoop(mesh.faceSlots(), progress, "Smoothing", restore);
+		while (!restored.empty()) {
+			const int v = restored.back();
+			restored.pop_back();
+			mesh.forEachOutgoing(v, [&](int h) { restore(h / 3); });
 		}
 	}
 };

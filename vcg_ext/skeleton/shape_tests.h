@@ -8,8 +8,6 @@
 
 #include "surface_mesh.h"
 
-#include <utility>
-
 namespace vcg::tri::mcf::detail {
 
 /// Whether a triangle that had the area vector `before` turns by more than 70 degrees or loses its
@@ -71,12 +69,12 @@ inline bool flipKeepsShape(const SurfaceMesh& mesh, int h)
 inline bool opposesWideAngles(const SurfaceMesh& mesh, int h, double margin)
 {
 	const Point3d &a = mesh.position[mesh.origin(h)], &b = mesh.position[mesh.target(h)];
-	const auto cosineAndSine = [&](int apex) {
-		const Point3d u = a - mesh.position[apex], v = b - mesh.position[apex];
-		return std::make_pair(u * v, (u ^ v).Norm());
-	};
-	const auto [cosineC, sineC] = cosineAndSine(mesh.apex(h));
-	const auto [cosineD, sineD] = cosineAndSine(mesh.apex(mesh.twin(h)));
+	const Point3d &c = mesh.position[mesh.apex(h)], &d = mesh.position[mesh.apex(mesh.twin(h))];
+	const Point3d ac = a - c, bc = b - c, ad = a - d, bd = b - d;
+	const double cosineC = ac * bc, cosineD = ad * bd;
+	if (cosineC >= 0 && cosineD >= 0) // nearly always, without a square root
+		return false;
+	const double sineC = (ac ^ bc).Norm(), sineD = (ad ^ bd).Norm();
 	const double sine = cosineC * sineD + sineC * cosineD;
 	if (sine >= 0)
 		return false;

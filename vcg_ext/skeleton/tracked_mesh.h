@@ -178,6 +178,16 @@ public:
 		mesh = mesh.renumbered(number.vertex, number.face);
 	}
 
+	/// Closes the holes in the numbering, order kept, within the memory there is.
+	void compact()
+	{
+		creases.beforeCompact(mesh);
+		const std::vector<int> newVertex = mesh.compact();
+		keepAlive(component, newVertex);
+		keepAlive(track, newVertex);
+		keepAlive(role, newVertex);
+	}
+
 	/// The mesh as it is now, without thin triangles, one component after the other. Leaves this
 	/// object empty.
 	SurfaceMesh take()
@@ -205,6 +215,17 @@ private:
 	std::vector<int> track;         ///< of each vertex a half-edge of `surface`
 	std::vector<int> patch;         ///< of each face its patch; empty if there are none
 	std::vector<char> isInputPatch; ///< of each patch whether it is a triangle of `surface`
+
+	/// What `ofVertex` says about each vertex that remains, in the order that there was.
+	template <class T>
+	static void keepAlive(std::vector<T>& ofVertex, const std::vector<int>& newVertex)
+	{
+		size_t alive = 0;
+		for (size_t v = 0; v < ofVertex.size(); ++v)
+			if (newVertex[v] >= 0)
+				ofVertex[alive++] = ofVertex[v];
+		ofVertex.resize(alive);
+	}
 
 	/// The crease edge of the surface that the middle m of the crease edge (a b) is next to.
 	int creaseOfMiddle(int a, int b, int m) const
