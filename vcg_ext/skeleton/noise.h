@@ -120,13 +120,13 @@ private:
  * sigma = 1.4826 median_i |((I - M)^2 v)_i . n_i| / |row i of (I - M)^2|, the median being blind to
  * features, n the normal averaged three times. A clean but coarse surface shows its curvature
  * instead: compare with the edge length. @pre mesh is compact.
- * Of a large component some 50000 vertices are looked at, spread evenly over its numbering.
+ * Of a large component some 12000 vertices are looked at, spread evenly over its numbering.
  * @throws Cancelled. Complexity: O(V).
  */
 inline std::vector<double> noiseLevel(
 	const MeasuredSurface& surface, const Progress& progress = Progress())
 {
-	constexpr int enough = 50000, normalRounds = 3;
+	constexpr int enough = 12000, normalRounds = 3;
 	const SurfaceMesh& mesh = surface.mesh();
 	const detail::RingMeans rings(mesh, progress.part(0, 0.1), detail::measuringNoise);
 	std::vector<Point3d> normal = mesh.vertexNormals(progress.part(0.1, 0.2));
