@@ -65,7 +65,7 @@ public:
 	{
 		LongEdgeQueue queue(mesh, [&](int v) { return longestEdge * tracked.lengthAt(v); });
 		for (int h = 0; h < mesh.halfEdgeSlots(); ++h)
-			if (mesh.isEdge(h))
+			if (mesh.isHalfEdge(h) && queue.isTooLong(h) && mesh.isEdge(h))
 				queue.push(h);
 		Ticker ticker(progress, "Splitting long edges", queue.size());
 		for (int h = queue.pop(); h >= 0; h = queue.pop()) {
@@ -169,14 +169,12 @@ public:
 		Ticker ticker(progress.part(0, 0.3), "Smoothing", mesh.faceSlots());
 		sums.resize(mesh.vertexSlots());
 		std::fill(sums.begin(), sums.end(), Sum());
-		areaVectors.resize(mesh.faceSlots());
 		for (int f = 0; f < mesh.faceSlots(); ++f) {
 			ticker.tick();
 			const Triangle t = mesh.triangle(f);
 			const Point3d &a = mesh.position[t[0]], &b = mesh.position[t[1]],
 						  &c = mesh.position[t[2]];
 			const Point3d n = (b - a) ^ (c - a);
-			areaVectors[f] = n;
 			const double area = n.Norm();
 			const Point3d moment = (a + b + c) * (area / 3);
 			for (int v : t) {
@@ -207,6 +205,8 @@ public:
 
 	/// @see TrackedMesh::take()
 	SurfaceMesh take() { return tracked.take(); }
+	/// @see TrackedMesh::componentOfVertex()
+	const std::vector<int>& componentOfVertex() const { return tracked.componentOfVertex(); }
 
 private:
 	/// Edges outside of these parts of the target length are collapsed or split.
@@ -229,8 +229,7 @@ private:
 	std::vector<int> suspects; ///< scratch of flipInsidePatches()
 	// Scratch of smoothAndProject(), kept: memory that is new in each round costs more than the sums.
 	std::vector<Sum> sums;
-	std::vector<Point3d> areaVectors; ///< of the faces before the vertices moved
-	std::vector<Point3d> old;         ///< positions before
+	std::vector<Point3d> old; ///< positions before the vertices moved
 
 	/// Restores the Delaunay property around the new vertex m among the faces of each patch.
 	template <class Queue>
@@ -272,9 +271,11 @@ private:
 	{
 		std::vector<int> restored; // vertices whose faces have not been looked at since
 		const auto restore = [&](int f) {
-			if (!turnsOver(areaVectors[f], mesh.areaVector(f)))
+			const Triangle t = mesh.triangle(f);
+			const Point3d& a = old[t[0]];
+			if (!turnsOver((old[t[1]] - a) ^ (old[t[2]] - a), mesh.areaVector(f)))
 				return;
-			for (int v : mesh.triangle(f))
+			for (int v : t)
 				if (mesh.position[v] != old[v]) {
 					mesh.position[v] = old[v];
 					restored.push_back(v);

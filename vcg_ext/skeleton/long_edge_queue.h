@@ -27,12 +27,18 @@ public:
 	/// @param limitAt double(vertex): the greatest length that is not too long, mesh units.
 	LongEdgeQueue(const SurfaceMesh& mesh, LimitAt limitAt) : mesh(mesh), limitAt(limitAt) {}
 
+	bool isTooLong(int h) const
+	{
+		const double limit = limitAt(mesh.origin(h));
+		return mesh.squaredLength(h) > limit * limit;
+	}
+
 	/// Adds the edge of h if it is too long.
 	void push(int h)
 	{
-		const int bucket = bucketOf(h);
-		if (bucket < 0)
+		if (!isTooLong(h))
 			return;
+		const int bucket = bucketOf(h);
 		if (bucket >= int(buckets.size()))
 			buckets.resize(size_t(bucket) + 1);
 		buckets[size_t(bucket)].push_back(h);
@@ -58,7 +64,7 @@ public:
 			const int h = longest.back();
 			longest.pop_back();
 			// An id may have come to mean another edge, which was pushed by its own length.
-			if (bucketOf(h) + 1 == int(buckets.size()))
+			if (isTooLong(h) && bucketOf(h) + 1 == int(buckets.size()))
 				return h;
 		}
 		return -1;
@@ -69,11 +75,11 @@ private:
 	LimitAt limitAt;
 	std::vector<std::vector<int>> buckets; ///< the first one starts at the limit
 
+	/// @pre isTooLong(h)
 	int bucketOf(int h) const
 	{
 		const double limit = limitAt(mesh.origin(h));
-		const double relative = mesh.squaredLength(h) / (limit * limit);
-		return relative > 1 ? int(std::log(relative) / (2 * std::log(1.1))) : -1;
+		return int(std::log(mesh.squaredLength(h) / (limit * limit)) / (2 * std::log(1.1)));
 	}
 };
 

@@ -7,7 +7,6 @@
 #define VCG_MCF_RESAMPLE_H
 
 #include "breadth_first_order.h"
-#include "check_input.h"
 #include "errors.h"
 #include "isotropic_remesher.h"
 #include "measured_surface.h"
@@ -112,7 +111,7 @@ inline SurfaceMesh resample(const MeasuredSurface& surface,
 	remesher.smoothAndProject(progress.part(0.96, 0.99));
 	remesher.flipForAngles(progress.part(0.99, 1));
 	SurfaceMesh result = remesher.take();
-	const std::vector<int> componentOfResult = connectedComponents(result);
+	const std::vector<int>& componentOfResult = remesher.componentOfVertex();
 	// On a grid of its own: far from the origin the digits beyond are lost on the way out.
 	const std::vector<PrincipalFrame> frameOfResult =
 		PrincipalFrame::ofPoints(result.position, componentOfResult, size_t(components));

@@ -62,6 +62,7 @@ public:
 
 	SurfaceMesh mesh;
 
+	const std::vector<int>& componentOfVertex() const { return component; }
 	double lengthAt(int v) const { return length[component[v]]; }
 	CreaseRole roleOf(int v) const { return role.empty() ? CreaseRole::Smooth : role[v]; }
 	bool isCrease(int h) const { return creases.isCrease(h); }
@@ -188,8 +189,8 @@ public:
 		keepAlive(role, newVertex);
 	}
 
-	/// The mesh as it is now, without thin triangles, one component after the other. Leaves this
-	/// object empty.
+	/// The mesh as it is now, without thin triangles, one component after the other. Only
+	/// componentOfVertex() can be asked afterwards.
 	SurfaceMesh take()
 	{
 		creases = CreaseEdges();
