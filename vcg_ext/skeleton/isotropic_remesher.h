@@ -143,19 +143,25 @@ public:
 	void flipForAngles(const Progress& progress)
 	{
 		constexpr int rounds = 3;
+		std::vector<char> due(mesh.halfEdgeSlots(), 1); // edges whose triangles are new
 		bool flipped = true;
 		for (int round = 0; flipped && round < rounds; ++round) {
 			flipped = false;
-			Ticker ticker(progress.part(double(round) / rounds, double(round + 1) / rounds),
-				"Flipping edges", mesh.halfEdgeSlots());
-			for (int h = 0; h < mesh.halfEdgeSlots(); ++h) {
-				ticker.tick();
-				if (!mesh.isEdge(h) || tracked.isCrease(h) || !opposesWideAngles(mesh, h, 1e-9)
-					|| !flipKeepsShape(mesh, h))
-					continue;
-				tracked.flip(h);
-				flipped = true;
-			}
+			reportedLoop(mesh.halfEdgeSlots(),
+				progress.part(double(round) / rounds, double(round + 1) / rounds), "Flipping edges",
+				[&](int h) {
+					if (!due[h])
+						return;
+					due[h] = 0;
+					if (!mesh.isEdge(h) || tracked.isCrease(h) || !opposesWideAngles(mesh, h, 1e-9)
+						|| !flipKeepsShape(mesh, h))
+						return;
+					tracked.flip(h);
+					flipped = true;
+					for (const int side : {h, mesh.twin(h)})
+						for (const int outer : {mesh.next(side), mesh.previous(side)})
+							due[outer] = due[mesh.twin(outer)] = 1;
+				});
 		}
 	}
 
