@@ -141,6 +141,8 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 		progress.report(double(done) / total, what);
 	};
 	const auto grow = [&] {
+		measureBranchEnds(skeleton, clearances);
+		skeleton = withoutStubsInPlates(std::move(skeleton), surface);
 		growFeatures(skeleton, component, surface, clearances, features,
 			progress.part(double(done) / total, double(done + 1) / total));
 		++done;

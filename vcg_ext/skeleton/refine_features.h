@@ -75,6 +75,54 @@ inline int nodeBelow(const CurveSkeleton& skeleton, const SurfaceComponent& surf
 	return heights.node[peak];
 }
 
+/**
+ * To how many sides of a branch the shape is wide at a point of it, 0 to 2: one and a half of the ball's
+ * radii aside the surface is still half a radius away. In a limb none, in a plate both, along its rim one.
+ * @param contact    the second contact of the ball, see medialBall().
+ * @param direction  of the branch.
+ */
+inline int wideSides(const ClosestSurface& surface, const Point3d& x,
+	const ClosestSurface::Hit& hit, const Point3d& contact, const Point3d& direction)
+{
+	constexpr double aside = 1.5, away = 0.5;
+	const Point3d side = (hit.point - contact) ^ direction;
+	const double norm = side.Norm();
+	if (!(norm > 0))
+		return 0;
+	const Point3d offset = side * (aside * hit.distance / norm);
+	return int(surface.clearance(x + offset) > away * hit.distance)
+		+ int(surface.clearance(x - offset) > away * hit.distance);
+}
+
+/// Lobes of plates are at least so many radii high.
+constexpr double lobeHeight = 5;
+
+/**
+ * Removes terminal branches that run through a plate and are shorter than its lobes are high: where the
+ * flow left such a stub is chance, and next to it growFeatures() would take the rim for several lobes.
+ * @pre the radius of junctions and tips is their distance from the surface.
+ */
+inline CurveSkeleton withoutStubsInPlates(CurveSkeleton skeleton, const ClosestSurface& surface)
+{
+	constexpr double mostlyFlat = 0.8;
+	return withoutTerminalBranches(
+		std::move(skeleton), 0, [&](const CurveSkeleton& s, const Branch& fromJunction) {
+			if (branchLength(s, fromJunction) >= lobeHeight * s.radius[fromJunction.first()])
+				return 0.0;
+			int flat = 0;
+			for (size_t i = 1; i < fromJunction.nodes.size(); ++i) {
+				const Point3d& x = s.position[fromJunction.nodes[i]];
+				const ClosestSurface::Hit hit = surface.closest(x);
+				if (hit.distance <= 0)
+					continue;
+				const ClosestSurface::Ball ball = medialBall(surface, x, hit);
+				const Point3d direction = x - s.position[fromJunction.nodes[i - 1]];
+				flat += isMedial(ball) && wideSides(surface, x, hit, ball.contact, direction) == 2;
+			}
+			return flat >= mostlyFlat * double(fromJunction.nodes.size() - 1) ? -1.0 : 0.0;
+		});
+}
+
 /// A branch that is to be: points from the tip of a feature into one of the skeleton's balls.
 struct FeatureBranch
 {
@@ -82,8 +130,8 @@ struct FeatureBranch
 	std::vector<double> radii;
 	/// The node of that ball; -1 where the way leaves the surface or ends in none.
 	int joint = -1;
-	/// The part of the points about which the shape is wide and flat.
-	double flat = 0;
+	/// The parts of the points about which the shape is wide to both sides, and to one, see wideSides().
+	double flat = 0, rim = 0;
 
 	double way() const
 	{
@@ -105,10 +153,8 @@ inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const ClosestSur
 	constexpr int mostSteps = 400;
 	// Of the next direction; the slope is 1 where the way leads straight away from the surface.
 	constexpr double pull = 0.3, keeping = 0.5;
-	// Flat: this many radii to both sides the surface is still this many away.
-	constexpr double wide = 1.5, flatness = 0.5;
 	FeatureBranch branch;
-	int flat = 0;
+	int flat = 0, rim = 0;
 	Point3d x = start, direction(0, 0, 0);
 	for (int i = 0; i < mostSteps; ++i) {
 		ClosestSurface::Hit hit = surface.closest(x);
@@ -124,12 +170,9 @@ inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const ClosestSur
 			hit = surface.closest(x, hit.face);
 			if (hit.distance <= 0 || !surface.isInside(x, hit))
 				return branch;
-			const Point3d side = (hit.point - ball.contact) ^ direction;
-			if (const double norm = side.Norm(); norm > 0) {
-				const Point3d far = side * (wide * hit.distance / norm);
-				flat += surface.clearance(x + far) > flatness * hit.distance
-					&& surface.clearance(x - far) > flatness * hit.distance;
-			}
+			const int wide = wideSides(surface, x, hit, ball.contact, direction);
+			flat += wide == 2;
+			rim += wide == 1;
 		}
 		if (i > 0
 			&& !isSegmentInside(
@@ -140,6 +183,7 @@ inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const ClosestSur
 		branch.joint = holdingNode(skeleton, x);
 		if (branch.joint >= 0) {
 			branch.flat = double(flat) / double(branch.points.size());
+			branch.rim = double(rim) / double(branch.points.size());
 			return branch;
 		}
 		const Point3d there = skeleton.position[towards] - x;
@@ -152,14 +196,14 @@ inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const ClosestSur
 
 /**
  * Whether a branch leads into a limb: not into the corner of a box, on the way to which the balls
- * shrink nearly as fast as they advance, and not through a plate, in which it could lead anywhere,
- * unless that comes to a point, as an ear does, or is itself a lobe, high above the balls and a large
- * part of the shape.
+ * shrink nearly as fast as they advance, not along the rim of a plate, that is into its corner, and not
+ * through a plate, in which it could lead anywhere, unless that comes to a point, as an ear does, or is
+ * itself a lobe, high above the balls and a large part of the shape.
  */
 inline bool leadsIntoLimb(const FeatureBranch& branch, const Peak& peak, const FeatureRule& rule)
 {
-	constexpr double mostFlatIfSpiky = 1.7, evenGain = 0.8, mostFlatIfEven = 0.1;
-	constexpr double lobeHeight = 5, lobeSpikiness = 0.25; // the height in radii
+	constexpr double mostFlatIfSpiky = 1.7, evenGain = 0.8, mostFlatIfEven = 0.1, mostRim = 0.5;
+	constexpr double lobeSpikiness = 0.25;
 	const double way = branch.way();
 	if (branch.joint < 0
 		|| way < branch.radii.back()
@@ -171,7 +215,9 @@ inline bool leadsIntoLimb(const FeatureBranch& branch, const Peak& peak, const F
 	const bool isLobe = peak.height >= std::max(lobeHeight * branch.radii.back(), rule.leastLobe)
 		&& peak.spikiness >= lobeSpikiness;
 	return isLobe
-		|| branch.flat <= (gain > evenGain ? mostFlatIfEven : mostFlatIfSpiky * peak.spikiness);
+		|| (branch.rim <= mostRim
+			&& branch.flat
+				<= (gain > evenGain ? mostFlatIfEven : mostFlatIfSpiky * peak.spikiness));
 }
 
 /// The nearest node in view from a point that is nearer than `farthest`; -1 if there is none.
