@@ -4,9 +4,15 @@
 // Refinement of hand-made curves in shapes whose axes are known.
 
 #include "mesh_checks.h"
+#include "read_off.h"
 #include "shapes.h"
 
+#include "skeleton/collapse_to_curve.h"
+#include "skeleton/first_stage.h"
 #include "skeleton/refine.h"
+#include "skeleton/resample.h"
+#include "skeleton/skeletonize.h"
+#include "skeleton/target_length.h"
 
 #include <gtest/gtest.h>
 
@@ -14,6 +20,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 using namespace vcg::tri::mcf;
@@ -365,6 +372,14 @@ TEST(Refine, TakesLowLimbsIfTheyAreLongAndFlatOnesIfTheyComeToAPoint)
 	EXPECT_TRUE(isLimb(3, 0.5, 1, 0.4)) << "an ear";
 	EXPECT_FALSE(isLimb(3, 0.5, 1, 0.2)) << "a rim";
 	EXPECT_FALSE(isLimb(3, 0.9, 1, 0.4)) << "a plate";
+	const auto isCorner = [&](double rim) {
+		refining::FeatureBranch way = branch(3, 0);
+		way.rim = rim;
+		const refining::Peak peak = {0, 1, /*spikiness*/ 0.6, /*diagonals*/ 0, /*height*/ 1};
+		return !refining::leadsIntoLimb(way, peak, rule);
+	};
+	EXPECT_FALSE(isCorner(0.3)) << "a limb next to a body";
+	EXPECT_TRUE(isCorner(0.7)) << "along the rim of a plate";
 	const auto isLobe = [&](double height, double spikiness, double size) {
 		refining::FeatureBranch way = branch(6, 0.9);
 		const refining::Peak peak = {0, 1, spikiness, height * way.radii.back() * size, height};
@@ -404,6 +419,60 @@ TEST(Refine, GrowsABranchIntoAHighLobeOfAPlate)
 	for (const Point3d& tip : tips(s))
 		nearest = std::min(nearest, Distance(tip, centres[2]));
 	EXPECT_LE(nearest, lobe);
+}
+
+TEST(Refine, GivesAHandItsFingersAndItsWristOnly)
+{
+	// The corners of the palm are no limbs, however the surface is triangulated.
+	const SurfaceMesh hand = shapes::fromFile("hand").mesh();
+	for (double length : {0.0048, 0.005, 0.0058}) {
+		Parameters parameters;
+		parameters.targetLength = length;
+		const MeasuredSurface measured(hand);
+		const SurfaceMesh surface = resample(
+			measured, defaultTargetLength(measured, parameters), parameters.resampleIterations);
+		const Stage end = contractToSkeleton(firstStage(surface, parameters), parameters);
+		const CurveSkeleton s = refine(collapseToCurve(end), surface);
+		EXPECT_EQ(tips(s).size(), 6u) << "edges of " << length;
+		EXPECT_TRUE(isInside(s, hand));
+	}
+}
+
+TEST(Refine, StubsInPlatesAreTakenBack)
+{
+	const SurfaceMesh mesh =
+		shapes::cells(60, 40, 2, [](int, int j, int) { return j < 40; }).mesh();
+	const auto left = [&](double length) {
+		const Point3d joint(30, 20, 1);
+		CurveSkeleton s = CurveMaker()
+							  .line({5, 20, 1}, joint)
+							  .line(joint, {55, 20, 1})
+							  .line(joint, {30, 20 + length, 1}, 8)
+							  .in(mesh);
+		std::vector<int> all(mesh.vertexSlots());
+		std::iota(all.begin(), all.end(), 0);
+		const ClosestSurface surface(mesh, all, 1, Progress());
+		refining::KnownClearances clearances(surface);
+		refining::measureBranchEnds(s, clearances);
+		return tips(refining::withoutStubsInPlates(s, surface)).size();
+	};
+	EXPECT_EQ(left(3), 2u) << "three radii";
+	EXPECT_EQ(left(12), 3u) << "a lobe has a branch like that";
+
+	const SurfaceMesh tubes = shapes::cells(60, 30, 2, [](int i, int j, int) {
+		return j < 2 || (i >= 29 && i < 31);
+	}).mesh();
+	CurveSkeleton s = CurveMaker()
+						  .line({1, 1, 1}, {30, 1, 1}, 30)
+						  .line({30, 1, 1}, {59, 1, 1}, 30)
+						  .line({30, 1, 1}, {30, 5, 1}, 8)
+						  .in(tubes);
+	std::vector<int> all(tubes.vertexSlots());
+	std::iota(all.begin(), all.end(), 0);
+	const ClosestSurface surface(tubes, all, 1, Progress());
+	refining::KnownClearances clearances(surface);
+	refining::measureBranchEnds(s, clearances);
+	EXPECT_EQ(tips(refining::withoutStubsInPlates(s, surface)).size(), 3u) << "in a limb";
 }
 
 TEST(Refine, ABranchGrowsAroundAGap)

@@ -63,8 +63,8 @@ struct RefineParameters
 	/// the ball next to it, and limb-like, it gets a branch: see growFeatures(); >= 0.
 	double featureHeight = 0.27;
 	/// On the way into such a feature the balls reach further by at least this part of the way; in
-	/// (0, 1]. The corners of a box have 0.42, limbs of even thickness 1.
-	double featureGain = 0.55;
+	/// (0, 1]. The corners of boxes have 0.42 to 0.56, limbs of even thickness 1.
+	double featureGain = 0.56;
 
 	/// @throws InvalidParameter naming the first parameter that is out of its range.
 	void check() const
