@@ -166,27 +166,38 @@ private:
 			from[axis] = float(std::min(a, b) - slack);
 			to[axis] = float(std::max(a, b) + slack);
 		}
-		struct Place
-		{
-			int level, index;
-		};
-		std::array<Place, 64> stack; // three a level and one to spare
-		int top = 0;
-		stack[top++] = {int(levels.size()) - 1, 0};
-		while (top > 0) {
-			const Place place = stack[--top];
+		const int root = 0;
+		return anyCrossed(int(levels.size()) - 1, &root, 1, {v, segment, from, to});
+	}
+
+	struct Query
+	{
+		int v;
+		const Point3d& segment;
+		const float (&from)[3], (&to)[3]; ///< its box
+	};
+
+	/// Whether the segment crosses a triangle in some nodes of a level. They are few, but go down level by
+	/// level together: one by one, each would wait for the boxes of the one before.
+	bool anyCrossed(int level, const int* nodes, int count, const Query& query) const
+	{
+		constexpr int together = 8;
+		std::array<int, 4 * together> inside;
+		int found = 0;
+		for (int i = 0; i < count; ++i) {
 			float gaps[4];
-			levels[place.level][place.index].gaps(from, to, gaps);
-			if (place.level > 0)
-				for (int k = 0; k < 4; ++k) { // without a branch, which could not be foretold
-					stack[top] = {place.level - 1, 4 * place.index + k};
-					top += gaps[k] <= 0;
-				}
-			else
-				for (int k = 0; k < 4; ++k)
-					if (gaps[k] <= 0 && crossesFace(faces[4 * place.index + k], v, segment))
-						return true;
+			levels[level][nodes[i]].gaps(query.from, query.to, gaps);
+			for (int k = 0; k < 4; ++k) { // without a branch, which could not be foretold
+				inside[found] = 4 * nodes[i] + k;
+				found += gaps[k] <= 0;
+			}
 		}
+		if (level == 0)
+			return std::any_of(inside.begin(), inside.begin() + found,
+				[&](int f) { return crossesFace(faces[f], query.v, query.segment); });
+		for (int first = 0; first < found; first += together)
+			if (anyCrossed(level - 1, &inside[first], std::min(found - first, together), query))
+				return true;
 		return false;
 	}
 
@@ -194,7 +205,7 @@ private:
 	bool crossesFace(const Triangle& t, int v, const Point3d& segment) const
 	{
 		constexpr double rounding = 1e-9; // a segment through an edge must hit one of its triangles
-		if (t[0] == v || t[1] == v || t[2] == v)
+		if ((t[0] == v) | (t[1] == v) | (t[2] == v)) // nearly always
 			return false;
 		const Point3d& a = mesh.position[t[0]];
 		const Point3d e1 = mesh.position[t[1]] - a, e2 = mesh.position[t[2]] - a;

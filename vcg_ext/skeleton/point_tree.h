@@ -56,7 +56,9 @@ public:
 			width *= 4;
 		}
 		nodes.resize(inner);
+		leafStart.reserve(width + 1);
 		build(samples, box, 0, 0, int(points.size()), progress.part(0, 0.9));
+		leafStart.push_back(int(points.size()));
 		for (std::vector<float>& values : coordinate)
 			values.assign(ids.size() + Lanes, std::numeric_limits<float>::infinity());
 		detail::reportedLoop(int(ids.size()), progress.part(0.9, 1), sorting, [&](int i) {
@@ -87,34 +89,12 @@ public:
 	template <bool nearestFirst = false, class Ball>
 	void search(Ball& ball) const
 	{
-		std::array<Range, 64> stack; // three a level and one to spare; 4^16 leaves fill it
-		int top = 0;
-		if (!ids.empty())
-			stack[top++] = {0, 0, int(ids.size()), 0};
 		SingleBall single = toSingle(ball.centre(), ball.reach());
-		while (top > 0) {
-			const Range range = stack[--top];
-			if (nearestFirst && range.squaredDistance > single.squaredReach)
-				continue; // the ball has shrunk
-			if (range.node >= int(nodes.size())) {
-				if (visitLeaf(range, single, ball))
-					single = toSingle(ball.centre(), ball.reach());
-				continue;
-			}
-			float squaredDistance[4];
-			nodes[range.node].squaredDistances(single.centre, squaredDistance);
-			const std::array<int, 5> cuts = quarters(range.begin, range.end);
-			const int first = top;
-			for (int k = 0; k < 4; ++k) { // without a branch, which could not be foretold
-				stack[top] = {4 * range.node + 1 + k, cuts[k], cuts[k + 1], squaredDistance[k]};
-				top += squaredDistance[k] <= single.squaredReach;
-			}
-			if (nearestFirst)
-				std::sort(
-					stack.begin() + first, stack.begin() + top, [](const Range& a, const Range& b) {
-						return a.squaredDistance > b.squaredDistance;
-					});
-		}
+		const int root = 0;
+		if constexpr (nearestFirst)
+			searchNearestFirst(single, ball);
+		else if (!ids.empty())
+			searchTogether(&root, 1, single, ball);
 	}
 
 	/// The id of the point nearest to x, the lowest of several; -1 if there are no points.
@@ -129,12 +109,6 @@ private:
 	static constexpr const char* sorting = "Sorting the surface";
 	static constexpr size_t LeafSize = 32;
 	static constexpr int Lanes = 4;
-
-	struct Range
-	{
-		int node, begin, end;
-		float squaredDistance; ///< of its box from the centre, when it was found
-	};
 
 	/// A ball about the tree's origin in single precision, enlarged by what rounding may lose.
 	struct SingleBall
@@ -167,8 +141,9 @@ private:
 	std::vector<Point3d> sorted;
 	/// Of the sorted points, from the origin; padded by infinities.
 	std::array<std::vector<float>, 3> coordinate;
-	/// The inner nodes of a complete tree, the children of i from 4 i + 1 on.
+	/// The inner nodes of a complete tree, the children of i from 4 i + 1 on. The leaves follow.
 	std::vector<FourBoxes> nodes;
+	std::vector<int> leafStart; ///< in `sorted`, and where the last one ends
 	Point3d origin = Point3d(0, 0, 0);
 	double slack;
 
@@ -181,17 +156,81 @@ private:
 			{float(c[0]), float(c[1]), float(c[2])}, float(std::min(enlarged * enlarged, largest))};
 	}
 
+	bool isLeaf(int node) const { return node >= int(nodes.size()); }
+
+	/// Searches some nodes of a level. They are few, but go down level by level together: one by one, each
+	/// would wait for the boxes of the one before.
+	template <class Ball>
+	void searchTogether(const int* some, int count, SingleBall& single, Ball& ball) const
+	{
+		if (isLeaf(some[0])) {
+			for (int i = 0; i < count; ++i)
+				if (visitLeaf(some[i], single, ball))
+					single = toSingle(ball.centre(), ball.reach());
+			return;
+		}
+		constexpr int together = 8;
+		std::array<int, 4 * together> inside;
+		int found = 0;
+		for (int i = 0; i < count; ++i) {
+			float squaredDistance[4];
+			nodes[some[i]].squaredDistances(single.centre, squaredDistance);
+			for (int k = 3; k >= 0; --k) { // without a branch, which could not be foretold
+				inside[found] = 4 * some[i] + 1 + k;
+				found += squaredDistance[k] <= single.squaredReach;
+			}
+		}
+		for (int first = 0; first < found; first += together)
+			searchTogether(&inside[first], std::min(found - first, together), single, ball);
+	}
+
+	template <class Ball>
+	void searchNearestFirst(SingleBall& single, Ball& ball) const
+	{
+		struct Place
+		{
+			int node;
+			float squaredDistance; ///< of its box from the centre, when it was found
+		};
+		std::array<Place, 64> stack; // three a level and one to spare; 4^16 leaves fill it
+		int top = 0;
+		if (!ids.empty())
+			stack[top++] = {0, 0};
+		while (top > 0) {
+			const Place place = stack[--top];
+			if (place.squaredDistance > single.squaredReach)
+				continue; // the ball has shrunk
+			if (isLeaf(place.node)) {
+				if (visitLeaf(place.node, single, ball))
+					single = toSingle(ball.centre(), ball.reach());
+				continue;
+			}
+			float squaredDistance[4];
+			nodes[place.node].squaredDistances(single.centre, squaredDistance);
+			const int first = top;
+			for (int k = 0; k < 4; ++k) {
+				stack[top] = {4 * place.node + 1 + k, squaredDistance[k]};
+				top += squaredDistance[k] <= single.squaredReach;
+			}
+			std::sort(
+				stack.begin() + first, stack.begin() + top, [](const Place& a, const Place& b) {
+					return a.squaredDistance > b.squaredDistance;
+				});
+		}
+	}
+
 	/// @return whether any point was visited.
 	template <class Ball>
-	bool visitLeaf(const Range& range, const SingleBall& single, Ball& ball) const
+	bool visitLeaf(int leaf, const SingleBall& single, Ball& ball) const
 	{
+		const int begin = leafStart[leaf - nodes.size()], end = leafStart[leaf - nodes.size() + 1];
 		using Four = Eigen::Array4f;
 		constexpr size_t groups = LeafSize / Lanes;
 		// The last group may hold points of the next leaf: they are points as good as any.
 		Four squaredDistance[groups];
 		Four least = Four::Constant(std::numeric_limits<float>::infinity());
 		int count = 0;
-		for (int first = range.begin; first < range.end; first += Lanes, ++count) {
+		for (int first = begin; first < end; first += Lanes, ++count) {
 			Four sum = Four::Zero();
 			for (int axis = 0; axis < 3; ++axis)
 				sum += (Eigen::Map<const Four>(&coordinate[axis][first]) - single.centre[axis])
@@ -204,7 +243,7 @@ private:
 		for (int group = 0; group < count; ++group)
 			for (int k = 0; k < Lanes; ++k)
 				if (squaredDistance[group][k] <= single.squaredReach) {
-					const int slot = range.begin + Lanes * group + k;
+					const int slot = begin + Lanes * group + k;
 					ball.visit(slot, sorted[slot]);
 				}
 		return true;
@@ -251,8 +290,10 @@ private:
 		const Progress& progress)
 	{
 		constexpr int reportFrom = 1 << 13;
-		if (node >= int(nodes.size()))
+		if (isLeaf(node)) {
+			leafStart.push_back(begin);
 			return;
+		}
 		const std::array<int, 5> cuts = quarters(begin, end);
 		const auto report = [&](int done) {
 			if (end - begin >= reportFrom)

@@ -55,7 +55,8 @@ public:
 		const Point3d e = p - q;
 		const double depth = e * n - delta;
 		const double span = e.SquaredNorm() - delta * delta;
-		if (!(depth > 0) || span > 2 * r * depth * (1 + rounding))
+		// One branch: the sign of the depth could not be foretold.
+		if (!((depth > 0) & (span <= 2 * r * depth * (1 + rounding))))
 			return;
 		const double rq = span / (2 * depth);
 		if (rq < r) {
