@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <queue>
 #include <utility>
@@ -47,22 +48,21 @@ inline void mergeVertexState(Stage& stage, int removed, int survivor)
 		stage.rank[survivor] = std::max(stage.rank[survivor], stage.rank[removed]);
 }
 
-/// Whether the angles at the corners of a triangle may have a cosine below `widest`: that opposite of
-/// its half-edge k is result[k]. Some that have it nearly are among them.
+/// Of the half-edges of a triangle those opposite to an angle whose cosine may be below `widest`, at most
+/// 0: one at most, but for triangles that are a line. An angle that has it nearly may be told as well.
 inline std::array<bool, 3> maybeWideAngles(const SurfaceMesh& mesh, int face, double widest)
 {
-	if (widest > 0)
-		return {true, true, true};
 	constexpr double rounding = 1e-9;
-	const double least = widest * widest * (1 - rounding);
 	const auto [i, j, k] = mesh.triangle(face);
 	const Point3d &a = mesh.position[i], &b = mesh.position[j], &c = mesh.position[k];
-	const Point3d ab = b - a, bc = c - b, ca = a - c;
-	const double ab2 = ab.SquaredNorm(), bc2 = bc.SquaredNorm(), ca2 = ca.SquaredNorm();
-	const auto isWide = [&](double minusDot, double squaredLengths) -> bool {
-		return (minusDot > 0) & (minusDot * minusDot >= least * squaredLengths);
+	const double ab = SquaredDistance(a, b), bc = SquaredDistance(b, c), ca = SquaredDistance(c, a);
+	const double sum = (ab + bc + ca) * (1 - rounding), least = 4 * widest * widest;
+	// The law of cosines: edge = one + other - 2 cosine sqrt(one other), squared lengths all of them.
+	const auto isWide = [&](double edge, double one, double other) -> bool {
+		const double excess = 2 * edge - sum;
+		return (excess > 0) & (excess * excess >= least * (one * other));
 	};
-	return {isWide(bc * ca, bc2 * ca2), isWide(ca * ab, ca2 * ab2), isWide(ab * bc, ab2 * bc2)};
+	return {isWide(ab, bc, ca), isWide(bc, ca, ab), isWide(ca, ab, bc)};
 }
 
 /// The edges that splitWideAngles() starts with: those that there are, by the half-edge that stands for
@@ -72,23 +72,36 @@ class EdgesToSplit
 public:
 	EdgesToSplit(const SurfaceMesh& mesh, double widest) : mesh(mesh), state(mesh.halfEdgeSlots())
 	{
-		std::vector<char> wide(state.size());
+		for (int h = 0; h < mesh.halfEdgeSlots(); ++h)
+			state[h] = h < mesh.twin(h) ? edge : 0;
+		std::vector<int> wide(state.size() + 1); // room for one that does not count
+		size_t count = 0;
 		for (int f = 0; f < mesh.faceSlots(); ++f) {
 			if (!mesh.isFace(f))
 				continue;
-			const std::array<bool, 3> atFace = maybeWideAngles(mesh, f, widest);
-			for (int h = 3 * f, k = 0; k < 3; ++k, ++h) {
-				wide[h] = atFace[k];
-				state[h] = h < mesh.twin(h) ? edge : 0;
+			const std::array<bool, 3> atFace = widest > 0 ? std::array<bool, 3> {true, true, true}
+														  : maybeWideAngles(mesh, f, widest);
+			for (int k = 0; k < 3; ++k) { // without a branch, which could not be foretold
+				wide[count] = 3 * f + k;
+				count += atFace[k];
 			}
 		}
-		for (size_t h = 0; h < state.size(); ++h)
-			if (wide[h] && wide[mesh.twin(int(h))])
-				state[h] |= due;
+		std::vector<char> isWide(state.size(), 0);
+		for (size_t i = 0; i < count; ++i)
+			isWide[wide[i]] = due;
+		for (size_t i = 0; i < count; ++i)
+			state[wide[i]] |= isWide[mesh.twin(wide[i])];
 	}
 
 	size_t size() const { return state.size(); }
-	bool isDue(size_t h) const { return state[h] == (edge | due); }
+	/// The first one from h on that is due: size() if there is none, h if it is no less than that.
+	size_t nextDue(size_t h) const
+	{
+		if (h >= size())
+			return h;
+		const void* const found = std::memchr(&state[h], edge | due, size() - h);
+		return found ? size_t(static_cast<const char*>(found) - state.data()) : size();
+	}
 	/// Looks at the edges of a changed triangle, if it is their turn yet, again.
 	void touch(int face)
 	{
@@ -249,15 +262,13 @@ inline void splitWideAngles(Stage& stage, const Parameters& parameters, MergeFor
 	std::vector<int> queue;
 	// Each split shortens the longest edge of its triangles; the cap only guards against the worst.
 	const size_t mostVertices = 4 * size_t(mesh.vertexCount()) + 1000;
-	for (size_t next = 0;
+	size_t looked = 0;
+	for (size_t next = initial.nextDue(0);
 		 next < initial.size() + queue.size() && size_t(mesh.vertexCount()) < mostVertices;
-		 ++next) {
-		if (next % 65536 == 65535)
+		 next = initial.nextDue(next + 1)) {
+		if (++looked % 65536 == 0)
 			progress.report(0, "Splitting wide angles");
-		const bool isInitial = next < initial.size();
-		if (isInitial && !initial.isDue(next))
-			continue;
-		const int h = isInitial ? int(next) : queue[next - initial.size()];
+		const int h = next < initial.size() ? int(next) : queue[next - initial.size()];
 		const double cosine = wideCosine(h);
 		if (cosine > 1)
 			continue;
