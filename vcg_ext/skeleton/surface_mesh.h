@@ -267,9 +267,7 @@ public:
 	bool isTetrahedron(int h) const
 	{
 		const int c = apex(h), d = apex(twins[h]);
-		if (c == d)
-			return true;
-		return valence(origin(h)) == 3 && valence(target(h)) == 3;
+		return c == d || (hasValenceThree(h) && hasValenceThree(twins[h]));
 	}
 
 	bool isCollapsible(int h) const { return !isTetrahedron(h) && pinchVertex(h) < 0; }
@@ -283,10 +281,7 @@ public:
 		const int t = twins[h];
 		const int a = origin(h), b = target(h);
 		const int c = apex(h), d = apex(t);
-		forEachOutgoing(a, [&](int e) { ringScratch.push_back(e); });
-		for (int e : ringScratch)
-			origins[e] = b;
-		ringScratch.clear();
+		forEachOutgoing(a, [&](int e) { origins[e] = b; });
 		const int cb = twins[next(h)], bc = twins[previous(h)];
 		const int da = twins[next(t)], bd = twins[previous(t)];
 		join(cb, bc);
@@ -545,6 +540,9 @@ private:
 	mutable std::vector<int> stamps;
 	mutable int stampClock = 0;
 	std::vector<int> ringScratch;
+
+	/// Whether its origin has three neighbours. @pre it has two at least.
+	bool hasValenceThree(int h) const { return rotated(rotated(rotated(h))) == h; }
 
 	void join(int h, int t)
 	{
