@@ -206,7 +206,8 @@ inline Stage firstStage(const SurfaceMesh& surface, const Parameters& parameters
 	stage.surface = std::make_shared<const std::vector<Point3d>>(surface.position);
 	stage.mesh = std::move(start.mesh);
 	stage.node = std::move(start.node);
-	const Extent extent = measuredExtent(stage.mesh, stage.component, stage.diagonal.size());
+	const Extent extent =
+		measuredExtent(stage.mesh, stage.component, std::vector<double>(stage.diagonal.size(), 1));
 	stage.area = extent.area;
 	stage.volume = extent.volume;
 	return stage;

@@ -24,28 +24,14 @@
 
 namespace vcg::tri::mcf {
 
-/**
- * One iteration of the loop of Fig. 4: weights and contraction, then connectivity, then degeneracy.
- *
- * Convergence: in every component the area changed by less than 1e-4 of the surface's area, and there
- * is nothing left to contract: less than 5 % of the volume (in the end it is some 1e-5), or most
- * vertices are fixed (a body thinner than epsilon keeps its volume). The area alone would take a flow
- * for finished that a large w_H makes slow; it must do where vertices are held, since they may hold
- * any volume open. A converged stage stays as it is.
- *
- * All of it happens in the shape's own coordinates, see StageFrames.
- * @return the next stage; the given one is not changed.
- * @throws SolverError, InvalidParameter, Cancelled.
- */
-inline Stage step(Stage stage, const Parameters& parameters, const Progress& progress = Progress())
+namespace detail {
+
+/// step() of a stage that has entered its frames.
+inline void stepInFrames(
+	Stage& stage, const StageFrames& frames, const Parameters& parameters, const Progress& progress)
 {
-	parameters.check();
-	if (stage.converged)
-		return stage;
 	SurfaceMesh& mesh = stage.mesh;
 	const int before = mesh.vertexSlots();
-	StageFrames frames(stage);
-	frames.enter(stage);
 	contract(stage, parameters, progress.part(0, 0.8));
 	for (int v = 0; v < mesh.vertexSlots(); ++v)
 		if (!stage.fixed[v])
@@ -83,9 +69,9 @@ inline Stage step(Stage stage, const Parameters& parameters, const Progress& pro
 	stage.sheet.resize(left);
 	stage.component.resize(left);
 	stage.rank.resize(left);
-	frames.leave(stage);
+	StageFrames::round(stage);
 
-	const Extent extent = measuredExtent(mesh, stage.component, stage.initialArea.size());
+	const Extent extent = frames.extent(stage);
 	constexpr double settled = 1e-4;
 	stage.converged = true;
 	for (size_t c = 0; c < extent.area.size(); ++c)
@@ -97,6 +83,32 @@ inline Stage step(Stage stage, const Parameters& parameters, const Progress& pro
 		stage.volumeFraction() < 0.05 || stage.fixedFraction() > 0.5 || stage.heldCount() > 0;
 	++stage.iteration;
 	stage.epsilon = parameters.epsilon;
+}
+
+} // namespace detail
+
+/**
+ * One iteration of the loop of Fig. 4: weights and contraction, then connectivity, then degeneracy.
+ *
+ * Convergence: in every component the area changed by less than 1e-4 of the surface's area, and there
+ * is nothing left to contract: less than 5 % of the volume (in the end it is some 1e-5), or most
+ * vertices are fixed (a body thinner than epsilon keeps its volume). The area alone would take a flow
+ * for finished that a large w_H makes slow; it must do where vertices are held, since they may hold
+ * any volume open. A converged stage stays as it is.
+ *
+ * All of it happens in the shape's own coordinates, see StageFrames.
+ * @return the next stage; the given one is not changed.
+ * @throws SolverError, InvalidParameter, Cancelled.
+ */
+inline Stage step(Stage stage, const Parameters& parameters, const Progress& progress = Progress())
+{
+	parameters.check();
+	if (stage.converged)
+		return stage;
+	StageFrames frames(stage);
+	frames.enter(stage);
+	detail::stepInFrames(stage, frames, parameters, progress);
+	frames.leave(stage);
 	return stage;
 }
 
@@ -121,18 +133,29 @@ inline Stage contractToSkeleton(Stage stage, const Parameters& parameters,
 		stage.node.resize(stage.mesh.vertexSlots());
 		std::iota(stage.node.begin(), stage.node.end(), 0);
 	};
+	parameters.check();
+	StageFrames frames(stage); // found by the surface's own correspondence
+	// Held vertices have places outside that those inside do not tell: each step finds them again.
+	const auto goesOn = [&] {
+		return !stage.converged && stage.iteration < parameters.maxIterations;
+	};
+	const bool staysInside = !onStage && stage.heldCount() == 0 && goesOn();
+	if (staysInside)
+		frames.enter(stage);
 	if (!onStage) {
-		// The stage keeps its frames; they are found by the surface's own correspondence.
-		const StageFrames frames(stage);
 		ofSurface = std::move(stage.node);
 		startHere();
 		ofFirst = stage.node;
 	}
 	double done = 0;
-	while (!stage.converged && stage.iteration < parameters.maxIterations) {
+	while (goesOn()) {
 		// The area falls by a like factor each iteration: its logarithm tells how far it is.
 		const double next = done + 0.1 * (1 - done);
-		stage = step(std::move(stage), parameters, progress.part(done, next));
+		const Progress part = progress.part(done, next);
+		if (staysInside)
+			detail::stepInFrames(stage, frames, parameters, part);
+		else
+			stage = step(std::move(stage), parameters, part);
 		done = next;
 		if (onStage)
 			onStage(stage);
@@ -141,6 +164,8 @@ inline Stage contractToSkeleton(Stage stage, const Parameters& parameters,
 			startHere();
 		}
 	}
+	if (staysInside)
+		frames.leave(stage);
 	if (!onStage) {
 		follow(ofFirst);
 		stage.node = std::move(ofFirst);

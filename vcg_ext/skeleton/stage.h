@@ -95,21 +95,26 @@ struct Extent
 	double volume = 0;
 };
 
+/// @param unit of the coordinates of each component: what the result is in is 1.
 inline Extent measuredExtent(
-	const SurfaceMesh& mesh, const std::vector<int>& component, size_t components)
+	const SurfaceMesh& mesh, const std::vector<int>& component, const std::vector<double>& unit)
 {
-	Extent extent;
-	extent.area.assign(components, 0);
+	std::vector<double> doubleArea(unit.size(), 0), sixVolumes(unit.size(), 0);
 	const Point3d middle = mesh.bounds().Center();
 	for (int f = 0; f < mesh.faceSlots(); ++f) {
 		if (!mesh.isFace(f))
 			continue;
 		const int v = mesh.triangle(f)[0];
 		const Point3d areaVector = mesh.areaVector(f);
-		extent.area[component[v]] += areaVector.Norm() / 2;
-		extent.volume += (mesh.position[v] - middle) * areaVector;
+		doubleArea[component[v]] += areaVector.Norm();
+		sixVolumes[component[v]] += (mesh.position[v] - middle) * areaVector;
 	}
-	extent.volume /= 6;
+	Extent extent;
+	for (size_t c = 0; c < unit.size(); ++c) {
+		const double squared = unit[c] * unit[c];
+		extent.area.push_back(doubleArea[c] / 2 * squared);
+		extent.volume += sixVolumes[c] / 6 * squared * unit[c];
+	}
 	return extent;
 }
 
