@@ -13,6 +13,7 @@
 #include "pole_set.h"
 #include "progress.h"
 #include "surface_mesh.h"
+#include "ticker.h"
 #include "unit_frame.h"
 
 #include <algorithm>
@@ -171,48 +172,56 @@ PoleSet maximalBalls(const std::vector<Touch>& touches, size_t count, const Unit
 	return poles;
 }
 
-/// See osculatingNormal().
-struct OsculatingNormal
+/// See osculatingNormals().
+struct OsculatingNormals
 {
-	Point3d normal; ///< unit length, or zero
-	/// Whether the opposite of the normal leaves the vertex behind all of its triangles, by far.
-	bool leadsInside;
+	std::vector<Point3d> normal; ///< unit length, or zero
+	/// 1 where the opposite of the normal leaves the vertex behind all of its triangles, by far.
+	std::vector<char> leadsInside;
 };
 
 /**
- * The unit normal of a vertex that is exact where its neighbours lie on a sphere with it: cross
+ * The unit normals of the vertices that are exact where their neighbours lie on a sphere with them: cross
  * products over the squared lengths of both edges (Max, "Weights for computing vertex normals from
  * facet normals", Journal of Graphics Tools 4(2), 1999); zero where it is not defined.
  * A tilt by t makes the ball against a neighbour at distance h on a surface of curvature k smaller
  * by a factor of 1 + 2 t / (h k): on a fine mesh the tilt of area-weighted normals costs a fifth.
+ * Triangle by triangle, since a walk round each vertex waits for every step.
+ * @pre mesh is compact. @throws Cancelled
  */
-inline OsculatingNormal osculatingNormal(const SurfaceMesh& mesh, int v)
+inline OsculatingNormals osculatingNormals(const SurfaceMesh& mesh, const Progress& progress)
 {
 	constexpr double byFar = 1e-3; // cosine; rounding and the ball's own error are far below
-	Point3d normal(0, 0, 0);
-	std::array<Point3d, 12> areaVectors; // of more triangles nothing is said
-	size_t faces = 0;
-	mesh.forEachOutgoing(v, [&](int h) {
-		const Point3d a = mesh.position[mesh.target(h)] - mesh.position[v];
-		const Point3d b = mesh.position[mesh.apex(h)] - mesh.position[v];
-		const double aa = a.SquaredNorm(), bb = b.SquaredNorm();
-		const Point3d areaVector = a ^ b;
-		if (aa > 0 && bb > 0)
-			normal += areaVector / aa / bb;
-		if (faces < areaVectors.size())
-			areaVectors[faces] = areaVector;
-		++faces;
+	const char* const what = "Measuring the surface";
+	OsculatingNormals found;
+	found.normal.assign(mesh.vertexSlots(), Point3d(0, 0, 0));
+	found.leadsInside.assign(mesh.vertexSlots(), 1);
+	reportedLoop(mesh.faceSlots(), progress.part(0, 0.5), what, [&](int f) {
+		const Triangle t = mesh.triangle(f);
+		const Point3d areaVector = mesh.areaVector(f);
+		std::array<double, 3> squared; // length of the edge that starts at a corner
+		for (int k = 0; k < 3; ++k)
+			squared[k] = SquaredDistance(mesh.position[t[k]], mesh.position[t[(k + 1) % 3]]);
+		for (int k = 0; k < 3; ++k) {
+			const double one = squared[k], other = squared[(k + 2) % 3];
+			if (one > 0 && other > 0)
+				found.normal[t[k]] += areaVector / one / other;
+		}
 	});
-	const double length = normal.Norm();
-	if (!(length > 0 && std::isfinite(length)))
-		return {Point3d(0, 0, 0), false};
-	normal /= length;
-	bool leadsInside = faces <= areaVectors.size();
-	for (size_t i = 0; i < std::min(faces, areaVectors.size()); ++i) {
-		const double along = areaVectors[i] * normal;
-		leadsInside &= along > 0 && along * along > byFar * byFar * areaVectors[i].SquaredNorm();
+	for (size_t v = 0; v < found.normal.size(); ++v) {
+		const double length = found.normal[v].Norm();
+		const bool isDefined = length > 0 && std::isfinite(length);
+		found.normal[v] = isDefined ? Point3d(found.normal[v] / length) : Point3d(0, 0, 0);
 	}
-	return {normal, leadsInside};
+	reportedLoop(mesh.faceSlots(), progress.part(0.5, 1), what, [&](int f) {
+		const Point3d areaVector = mesh.areaVector(f);
+		const double least = byFar * byFar * areaVector.SquaredNorm();
+		for (int v : mesh.triangle(f)) {
+			const double along = areaVector * found.normal[v];
+			found.leadsInside[v] &= (along > 0) & (along * along > least);
+		}
+	});
+	return found;
 }
 
 inline double ballTolerance(const UnitFrame& frame, double delta)
@@ -276,21 +285,20 @@ inline PoleSet shrinkingBallPoles(const SurfaceMesh& mesh, const std::vector<int
 		place[vertices[i]] = int(i);
 	std::vector<detail::Touch> touches;
 	touches.reserve(vertices.size());
-	std::vector<char> leadsInside(vertices.size()); // found out while the triangles are at hand
+	const detail::OsculatingNormals normals =
+		detail::osculatingNormals(mesh, progress.part(0.2, 0.25));
 	for (int slot = 0; slot < tree.size(); ++slot) {
 		const int v = tree.order()[slot];
-		if (place[v] < 0)
-			continue;
-		const detail::OsculatingNormal found = detail::osculatingNormal(mesh, v);
-		touches.push_back({tree.point(slot), found.normal, place[v], slot});
-		leadsInside[place[v]] = found.leadsInside;
+		if (place[v] >= 0)
+			touches.push_back({tree.point(slot), normals.normal[v], place[v], slot});
 	}
-	const InnerSegments segments(mesh, tree, progress.part(0.2, 0.4));
+	const InnerSegments segments(mesh, tree, progress.part(0.25, 0.4));
 	return detail::maximalBalls(touches, vertices.size(), frame, tree, tolerance,
 		progress.part(0.4, 1), [&](int i, const Point3d& centre, double radius) {
 			const double depth =
 				frame.lengthOut(tolerance) + detail::KnownBalls::negligible * radius;
-			return segments.staysInside(vertices[i], centre, depth, leadsInside[i]);
+			const int v = vertices[i];
+			return segments.staysInside(v, centre, depth, normals.leadsInside[v]);
 		});
 }
 
