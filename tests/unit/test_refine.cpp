@@ -440,15 +440,7 @@ TEST(Refine, GivesAHandItsFingersAndItsWristOnly)
 
 TEST(Refine, StubsInPlatesAreTakenBack)
 {
-	const SurfaceMesh mesh =
-		shapes::cells(60, 40, 2, [](int, int j, int) { return j < 40; }).mesh();
-	const auto left = [&](double length) {
-		const Point3d joint(30, 20, 1);
-		CurveSkeleton s = CurveMaker()
-							  .line({5, 20, 1}, joint)
-							  .line(joint, {55, 20, 1})
-							  .line(joint, {30, 20 + length, 1}, 8)
-							  .in(mesh);
+	const auto tipsLeft = [](const SurfaceMesh& mesh, CurveSkeleton s) {
 		std::vector<int> all(mesh.vertexSlots());
 		std::iota(all.begin(), all.end(), 0);
 		const ClosestSurface surface(mesh, all, 1, Progress());
@@ -456,23 +448,27 @@ TEST(Refine, StubsInPlatesAreTakenBack)
 		refining::measureBranchEnds(s, clearances);
 		return tips(refining::withoutStubsInPlates(s, surface)).size();
 	};
-	EXPECT_EQ(left(3), 2u) << "three radii";
-	EXPECT_EQ(left(12), 3u) << "a lobe has a branch like that";
+	const SurfaceMesh plate = shapes::cells(60, 40, 2, [](int, int, int) { return true; }).mesh();
+	const auto inPlate = [&](double length) {
+		const Point3d joint(30, 20, 1);
+		return CurveMaker()
+			.line({5, 20, 1}, joint)
+			.line(joint, {55, 20, 1})
+			.line(joint, {30, 20 + length, 1}, 8)
+			.in(plate);
+	};
+	EXPECT_EQ(tipsLeft(plate, inPlate(3)), 2u) << "three radii";
+	EXPECT_EQ(tipsLeft(plate, inPlate(12)), 3u) << "a lobe has a branch like that";
 
-	const SurfaceMesh tubes = shapes::cells(60, 30, 2, [](int i, int j, int) {
+	const SurfaceMesh bars = shapes::cells(60, 30, 2, [](int i, int j, int) {
 		return j < 2 || (i >= 29 && i < 31);
 	}).mesh();
-	CurveSkeleton s = CurveMaker()
-						  .line({1, 1, 1}, {30, 1, 1}, 30)
-						  .line({30, 1, 1}, {59, 1, 1}, 30)
-						  .line({30, 1, 1}, {30, 5, 1}, 8)
-						  .in(tubes);
-	std::vector<int> all(tubes.vertexSlots());
-	std::iota(all.begin(), all.end(), 0);
-	const ClosestSurface surface(tubes, all, 1, Progress());
-	refining::KnownClearances clearances(surface);
-	refining::measureBranchEnds(s, clearances);
-	EXPECT_EQ(tips(refining::withoutStubsInPlates(s, surface)).size(), 3u) << "in a limb";
+	const CurveSkeleton inLimb = CurveMaker()
+									 .line({1, 1, 1}, {30, 1, 1}, 30)
+									 .line({30, 1, 1}, {59, 1, 1}, 30)
+									 .line({30, 1, 1}, {30, 5, 1}, 8)
+									 .in(bars);
+	EXPECT_EQ(tipsLeft(bars, inLimb), 3u) << "in a limb";
 }
 
 TEST(Refine, ABranchGrowsAroundAGap)

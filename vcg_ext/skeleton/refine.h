@@ -39,8 +39,8 @@ struct RefineParameters
 	/// Distance of neighbouring nodes; fraction of the diagonal, in (0, 0.1].
 	double spacing = 0.005;
 	/// A terminal branch whose end ball sticks out of the ball at its junction by less than this
-	/// part of the latter's radius is a spur and is removed, and so is one that ends where a shorter
-	/// one does; in [0, 1], 0: all stay.
+	/// part of the latter's radius is a spur and is removed, and so are one that ends where a shorter
+	/// one does and a stub in a plate, see withoutStubsInPlates(); in [0, 1], 0: all stay.
 	double spurProminence = 0.1;
 	/// Two junctions are one where the smaller ball sticks out of the larger one by less than this
 	/// part of its own radius; in [0, 1].
@@ -141,8 +141,10 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 		progress.report(double(done) / total, what);
 	};
 	const auto grow = [&] {
-		measureBranchEnds(skeleton, clearances);
-		skeleton = withoutStubsInPlates(std::move(skeleton), surface);
+		if (parameters.spurProminence > 0) {
+			measureBranchEnds(skeleton, clearances);
+			skeleton = withoutStubsInPlates(std::move(skeleton), surface);
+		}
 		growFeatures(skeleton, component, surface, clearances, features,
 			progress.part(double(done) / total, double(done + 1) / total));
 		++done;
