@@ -23,8 +23,9 @@ using vcg::Point3d;
 using Inside = std::function<bool(const Point3d&)>;
 
 /// What any pole promises: the centre of a ball through its vertex, inside, that holds no other vertex
-/// by more than a small part of its radius.
-void expectEmptyInnerBalls(const SurfaceMesh& mesh, const PoleSet& poles, const Inside& inside)
+/// deeper than delta and a small part of its radius.
+void expectEmptyInnerBalls(
+	const SurfaceMesh& mesh, const PoleSet& poles, double delta, const Inside& inside)
 {
 	const double rounding = 1e-6 * mesh.bounds().Diag();
 	const PointTree tree(mesh.position);
@@ -36,7 +37,7 @@ void expectEmptyInnerBalls(const SurfaceMesh& mesh, const PoleSet& poles, const 
 		ASSERT_TRUE(inside(c)) << v;
 		ASSERT_NEAR(Distance(c, mesh.position[v]), poles.radius[v], rounding) << v;
 		const double clearance = Distance(c, mesh.position[tree.nearest(c)]);
-		ASSERT_GE(clearance, 0.997 * poles.radius[v] - rounding) << v;
+		ASSERT_GE(clearance, 0.997 * poles.radius[v] - delta - rounding) << v;
 	}
 }
 
@@ -72,6 +73,14 @@ class Poles : public testing::TestWithParam<PoleMethod>
 {
 protected:
 	PoleSet polesOf(const SurfaceMesh& mesh) const { return medialPoles(mesh, GetParam()); }
+	/// @pre the mesh is one component that stands straight.
+	void expectEmptyInnerBalls(
+		const SurfaceMesh& mesh, const PoleSet& poles, const Inside& inside) const
+	{
+		const bool tolerant = GetParam() == PoleMethod::Balls;
+		::expectEmptyInnerBalls(
+			mesh, poles, tolerant ? poleTolerance * mesh.bounds().Diag() : 0, inside);
+	}
 };
 
 INSTANTIATE_TEST_SUITE_P(Methods, Poles, testing::Values(PoleMethod::Voronoi, PoleMethod::Balls),
@@ -165,6 +174,39 @@ TEST_P(Poles, OfACapsuleLieOnItsSegment)
 		const Point3d& c = poles.centre[v];
 		const Point3d onSegment(std::clamp(c[0], -1.5, 1.5), 0, 0);
 		EXPECT_LT(Distance(c, onSegment), 0.02) << v;
+	}
+}
+
+TEST(ShrinkingBalls, AreNotHeldByTheFacetsOfATube)
+{
+	const double radius = 0.5;
+	const SurfaceMesh mesh = finer(shapes::capsule(3, radius, 96), 1).mesh();
+	const auto meanFromAxis = [&](const PoleSet& poles) {
+		double sum = 0;
+		int count = 0;
+		for (int v = 0; v < mesh.vertexSlots(); ++v)
+			if (std::abs(mesh.position[v][0]) < 1.4) {
+				sum += std::hypot(poles.centre[v][1], poles.centre[v][2]);
+				++count;
+			}
+		return sum / count;
+	};
+	ASSERT_GT(meanFromAxis(shrinkingBallPoles(mesh)), 0.2 * radius)
+		<< "exact balls of vertices within facets end at the neighbouring facets";
+	EXPECT_LT(meanFromAxis(medialPoles(mesh, PoleMethod::Balls)), 0.03 * radius);
+}
+
+TEST(ShrinkingBalls, DoNotPierceWallsThinnerThanTheirTolerance)
+{
+	const Point3d size(1, 1, 0.5 * poleTolerance);
+	const SurfaceMesh mesh = finer(shapes::box(size[0], size[1], size[2]), 5).mesh();
+	const PoleSet poles = medialPoles(mesh, PoleMethod::Balls);
+	for (int v = 0; v < mesh.vertexSlots(); ++v) {
+		const Point3d& p = mesh.position[v];
+		if (p[0] > 0 && p[0] < 1 && p[1] > 0 && p[1] < 1) {
+			ASSERT_TRUE(poles.has(v)) << v;
+			EXPECT_NEAR(poles.centre[v][2] / size[2], 0.5, 0.01) << v;
+		}
 	}
 }
 

@@ -21,13 +21,25 @@
 
 namespace vcg::tri::mcf {
 
+/**
+ * How deep a vertex may lie inside the ball of another one, of the diagonal of its component: a tenth of
+ * the default epsilon.
+ *
+ * The facets of a tube that was modelled coarsely and resampled finely are flat, and so would bound the
+ * balls of the vertices on them near the surface: those poles draw their vertices nowhere, and the curve
+ * drifts off the axis. What the facets of a tube of radius R with n sides lie within the tube is
+ * (1 - cos(pi / n)) R.
+ */
+constexpr double poleTolerance = 2e-4;
+
 namespace detail {
 
 /**
  * Poles found in the shape's own coordinates: where several balls are as good, which one is found
  * depends on the order of the searches, and that on the coordinates. They are rounded, as contract()
  * does it.
- * @param find makes the poles of `vertices` of a mesh, with a progress window of its own.
+ * @param find makes the poles of `vertices` of a mesh, given how deep a vertex may lie in the ball of each,
+ *             with a progress window of its own.
  */
 template <class Find>
 PoleSet polesInShapeFrame(const SurfaceMesh& mesh, const std::vector<int>& vertices,
@@ -48,7 +60,11 @@ PoleSet polesInShapeFrame(const SurfaceMesh& mesh, const std::vector<int>& verti
 		Point3d& p = own.position[v];
 		p = single ? frame.onGrid(p) : frame.in(p);
 	});
-	PoleSet poles = find(own, progress.part(0.05, 1));
+	std::vector<double> delta;
+	delta.reserve(vertices.size());
+	for (int v : vertices)
+		delta.push_back(poleTolerance * frame.lengthOnGrid(frames[component[v]].size()));
+	PoleSet poles = find(own, delta, progress.part(0.05, 1));
 	for (size_t i = 0; i < vertices.size(); ++i) {
 		Point3d& centre = poles.centre[i];
 		centre = single ? frame.out(PrincipalFrame::rounded(centre))
@@ -68,9 +84,10 @@ PoleSet polesInShapeFrame(const SurfaceMesh& mesh, const std::vector<int>& verti
 inline PoleSet polesAt(const SurfaceMesh& mesh, const std::vector<int>& vertices, PoleMethod method,
 	const Progress& progress = Progress())
 {
-	const auto find = [&](const SurfaceMesh& own, const Progress& ofSearch) {
+	const auto find = [&](const SurfaceMesh& own, const std::vector<double>& delta,
+						  const Progress& ofSearch) {
 		if (method == PoleMethod::Balls)
-			return shrinkingBallPoles(own, vertices, 0, ofSearch);
+			return shrinkingBallPoles(own, vertices, delta, ofSearch);
 		const PoleSet all = voronoiPoles(own, ofSearch);
 		PoleSet poles;
 		for (int v : vertices) {

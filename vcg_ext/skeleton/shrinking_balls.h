@@ -76,27 +76,27 @@ private:
 /**
  * The last balls found by a search. A ball that nearly equals one of them needs no search.
  *
- * The distance to the nearest sample changes no faster than the place: in a ball whose centre is d
- * away from an empty ball's and whose radius is larger by x no sample is deeper than d + x. Without
+ * The distance to the nearest sample changes no faster than the place: d away from the centre of a ball
+ * that no sample comes nearer to than its reach, none comes nearer than that reach less d. Without
  * this, samples of a sphere would all be visited for each of them, and those of a tube's ring again
  * and again, since all of them touch the same ball.
  */
 class KnownBalls
 {
 public:
-	/// How deep a sample may be in a ball that was not searched, as a part of its radius.
+	/// How much deeper a sample may be in a ball that was not searched, as a part of its radius.
 	static constexpr double negligible = 0.003;
 
 	void add(const MaximalBall& ball)
 	{
-		balls[added % balls.size()] = {ball.centre(), ball.radius()};
+		balls[added % balls.size()] = {ball.centre(), ball.reach()};
 		++added;
 	}
 
 	bool hold(const MaximalBall& ball) const
 	{
 		for (size_t i = 0; i < std::min(added, balls.size()); ++i) {
-			const double room = negligible * ball.radius() - ball.radius() + balls[i].radius;
+			const double room = negligible * ball.radius() - ball.reach() + balls[i].reach;
 			if (room >= 0 && SquaredDistance(ball.centre(), balls[i].centre) <= room * room)
 				return true;
 		}
@@ -107,7 +107,7 @@ private:
 	struct Known
 	{
 		Point3d centre;
-		double radius;
+		double reach;
 	};
 
 	std::array<Known, 16> balls;
@@ -119,19 +119,34 @@ struct Touch
 {
 	Point3d point;
 	Point3d normal; ///< outward, unit length; zero: no ball
+	double delta;   ///< how deep a sample may lie inside the ball
 	int place;      ///< in the results
 	int slot;       ///< of the point itself in the tree, -1 if it is none of the samples
 };
 
+/// The tolerance of a ball that has none, in a unit frame: coincident samples, and the steps of rounding
+/// in flat regions, are no contacts.
+inline double leastTolerance(const UnitFrame& frame)
+{
+	constexpr double least = 1e-9; // of the diagonal
+	return least * frame.diagonal();
+}
+
+inline double ballTolerance(const UnitFrame& frame, double delta)
+{
+	return std::max(frame.lengthIn(delta), leastTolerance(frame));
+}
+
 /**
  * Maximal balls at `touches`, the best in an order in which neighbours are near each other.
  * @param count      of the results.
- * @param isPole     (place, centre and radius in mesh units): whether the ball counts.
+ * @param isPole     (place, centre, radius and how deep a sample may lie inside, in mesh units): whether
+ *                   the ball counts. One that does not is searched again without tolerance.
  * @return poles in mesh units, each at the place of its touch.
  */
 template <class IsPole>
 PoleSet maximalBalls(const std::vector<Touch>& touches, size_t count, const UnitFrame& frame,
-	const PointTree& tree, double delta, const Progress& progress, const IsPole& isPole)
+	const PointTree& tree, const Progress& progress, const IsPole& isPole)
 {
 	constexpr int neighbours = 8;
 	PoleSet poles;
@@ -147,26 +162,34 @@ PoleSet maximalBalls(const std::vector<Touch>& touches, size_t count, const Unit
 			const Touch& touch = touches[i];
 			if (!(touch.normal.SquaredNorm() > 0))
 				continue;
-			MaximalBall ball(touch.point, touch.normal, delta, frame.diagonal());
-			for (int slot : recent)
-				if (slot >= 0)
-					ball.visit(slot, tree.point(slot));
-			if (touch.slot >= 0) // neighbours on the surface nearly hold the ball, too
-				for (int j = std::max(i - neighbours, 0); j <= std::min(i + neighbours, size - 1);
-					 ++j)
-					ball.visit(touches[j].slot, touches[j].point);
-			if (ball.contact() < 0 || !known.hold(ball)) {
-				tree.search(ball);
-				if (ball.contact() < 0)
-					continue;
-				known.add(ball);
-			}
-			recent[oldest] = ball.contact();
-			oldest = (oldest + 1) % int(recent.size());
-			poles.centre[touch.place] = frame.out(ball.centre());
-			const double radius = frame.lengthOut(ball.radius());
-			if (isPole(touch.place, poles.centre[touch.place], radius))
+			const auto findPole = [&](double delta) {
+				MaximalBall ball(touch.point, touch.normal, delta, frame.diagonal());
+				for (int slot : recent)
+					if (slot >= 0)
+						ball.visit(slot, tree.point(slot));
+				if (touch.slot >= 0) // neighbours on the surface nearly hold the ball, too
+					for (int j = std::max(i - neighbours, 0);
+						 j <= std::min(i + neighbours, size - 1); ++j)
+						ball.visit(touches[j].slot, touches[j].point);
+				if (ball.contact() < 0 || !known.hold(ball)) {
+					tree.search(ball);
+					if (ball.contact() < 0)
+						return false;
+					known.add(ball);
+				}
+				recent[oldest] = ball.contact();
+				oldest = (oldest + 1) % int(recent.size());
+				poles.centre[touch.place] = frame.out(ball.centre());
+				const double radius = frame.lengthOut(ball.radius());
+				const double depth = frame.lengthOut(delta) + KnownBalls::negligible * radius;
+				if (!isPole(touch.place, poles.centre[touch.place], radius, depth))
+					return false;
 				poles.radius[touch.place] = radius;
+				return true;
+			};
+			const double least = leastTolerance(frame);
+			if (!findPole(touch.delta) && touch.delta > least)
+				findPole(least);
 		}
 	});
 	return poles;
@@ -224,13 +247,6 @@ inline OsculatingNormals osculatingNormals(const SurfaceMesh& mesh, const Progre
 	return found;
 }
 
-inline double ballTolerance(const UnitFrame& frame, double delta)
-{
-	// Coincident samples, and the steps of rounding in flat regions, are no contacts.
-	constexpr double least = 1e-9; // of the diagonal
-	return std::max(frame.lengthIn(delta), least * frame.diagonal());
-}
-
 } // namespace detail
 
 /**
@@ -254,30 +270,30 @@ inline PoleSet shrinkingBalls(const std::vector<Point3d>& points,
 	std::vector<detail::Touch> touches;
 	touches.reserve(points.size());
 	const PointTree order(points); // near each other in it: near each other in space
+	const double tolerance = detail::ballTolerance(frame, delta);
 	for (int i : order.order())
-		touches.push_back({frame.in(points[i]), normals[i], i, -1});
+		touches.push_back({frame.in(points[i]), normals[i], tolerance, i, -1});
 	return detail::maximalBalls(touches, points.size(), frame, PointTree(frame.in(against)),
-		detail::ballTolerance(frame, delta), progress,
-		[](int, const Point3d&, double) { return true; });
+		progress, [](int, const Point3d&, double, double) { return true; });
 }
 
 /**
  * The inner medial poles of some vertices of a mesh by shrinking balls against all its vertices.
  *
  * A ball whose centre cannot be seen from its vertex through the inside reached out through a coarse
- * triangle: it gives no pole.
+ * triangle, or through a wall thinner than its tolerance: then it is searched again without tolerance,
+ * and if that reaches out as well, there is no pole.
  * @param vertices  ids, #P, each at most once.
- * @param delta     as in shrinkingBalls().
+ * @param delta     of each of them, as in shrinkingBalls(), #P; empty: 0 for all.
  * @pre mesh is compact.
  * @return poles, #P, in the order of `vertices`; radius -1 where there is none.
  * @throws Cancelled
  * Complexity: O((P + V) log V). Same bits on any number of threads.
  */
 inline PoleSet shrinkingBallPoles(const SurfaceMesh& mesh, const std::vector<int>& vertices,
-	double delta = 0, const Progress& progress = Progress())
+	const std::vector<double>& delta = {}, const Progress& progress = Progress())
 {
 	const UnitFrame frame(mesh.position);
-	const double tolerance = detail::ballTolerance(frame, delta);
 	progress.report(0, "Sorting the surface");
 	const PointTree tree(frame.in(mesh.position), progress.part(0, 0.2));
 	std::vector<int> place(mesh.vertexSlots(), -1);
@@ -289,14 +305,14 @@ inline PoleSet shrinkingBallPoles(const SurfaceMesh& mesh, const std::vector<int
 		detail::osculatingNormals(mesh, progress.part(0.2, 0.25));
 	for (int slot = 0; slot < tree.size(); ++slot) {
 		const int v = tree.order()[slot];
-		if (place[v] >= 0)
-			touches.push_back({tree.point(slot), normals.normal[v], place[v], slot});
+		if (place[v] < 0)
+			continue;
+		const double tolerance = detail::ballTolerance(frame, delta.empty() ? 0 : delta[place[v]]);
+		touches.push_back({tree.point(slot), normals.normal[v], tolerance, place[v], slot});
 	}
 	const InnerSegments segments(mesh, tree, progress.part(0.25, 0.4));
-	return detail::maximalBalls(touches, vertices.size(), frame, tree, tolerance,
-		progress.part(0.4, 1), [&](int i, const Point3d& centre, double radius) {
-			const double depth =
-				frame.lengthOut(tolerance) + detail::KnownBalls::negligible * radius;
+	return detail::maximalBalls(touches, vertices.size(), frame, tree, progress.part(0.4, 1),
+		[&](int i, const Point3d& centre, double, double depth) {
 			const int v = vertices[i];
 			return segments.staysInside(v, centre, depth, normals.leadsInside[v]);
 		});
@@ -307,7 +323,7 @@ inline PoleSet shrinkingBallPoles(const SurfaceMesh& mesh, const Progress& progr
 {
 	std::vector<int> all(mesh.vertexSlots());
 	std::iota(all.begin(), all.end(), 0);
-	return shrinkingBallPoles(mesh, all, 0, progress);
+	return shrinkingBallPoles(mesh, all, {}, progress);
 }
 
 } // namespace vcg::tri::mcf
