@@ -279,6 +279,14 @@ TEST(Refine, EndsInTheCentreOfARoundEnd)
 		EXPECT_NEAR(std::abs(tip[0]), 1.5, 0.05);
 }
 
+TEST(Refine, TakesAnEndBackThatWentPastTheCentreOfARoundEnd)
+{
+	const SurfaceMesh mesh = shapes::capsule(3, 0.35, 48).mesh();
+	const CurveSkeleton s = refine(CurveMaker().line({-1.65, 0, 0}, {1.65, 0, 0}).in(mesh), mesh);
+	for (const Point3d& tip : tips(s))
+		EXPECT_NEAR(std::abs(tip[0]), 1.5, 0.05);
+}
+
 TEST(Refine, LeavesNoBranchInTheCornersOfABox)
 {
 	// The curve edges of a bar's medial axis: from its axis to all eight corners.

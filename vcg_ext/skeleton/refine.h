@@ -55,7 +55,8 @@ struct RefineParameters
 	/// A terminal branch must be this distinct somewhere, see distinctness(); in [0, 1]. The corners
 	/// of a box have 0.42, pointed ends with an opening angle of 60 degrees 0.5.
 	double tipDistinctness = 0.45;
-	/// A tip is extended while the balls reach further by at least this part of the way; in (0, 1].
+	/// A tip is extended while the balls reach further by at least this part of the way, and taken back
+	/// where they do not; in (0, 1].
 	double tipGain = 0.2;
 	/// A tip's ball is no smaller than this when it has been extended; fraction of the diagonal, > 0.
 	double tipRadius = 0.003;
@@ -166,7 +167,7 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 	tidy(parameters.spurProminence, parameters.tipDistinctness);
 	centreRounds(parameters.lastRounds, kappa, true);
 	tidy(parameters.spurProminence, parameters.tipDistinctness);
-	return skeleton;
+	return withoutBluntEnds(skeleton, clearances, parameters.tipGain);
 }
 
 /**

@@ -150,6 +150,27 @@ struct BranchProfile
 			std::lower_bound(along.begin() + from, along.end(), along[from] + radius[from])
 			- along.begin());
 	}
+
+	/// Where the last stretch as long as the radius at its start begins that gains at least `least`; the
+	/// last node if there is none.
+	size_t lastStretch(double least) const
+	{
+		size_t start = last();
+		for (size_t from = 0; from < last(); ++from)
+			if (const size_t to = oneRadiusOn(from); to <= last() && gain(from, to) >= least)
+				start = from;
+		return start;
+	}
+
+	/// The last node from `from` on up to which going on gains at least `least` all the time.
+	size_t endOfGain(size_t from, double least) const
+	{
+		size_t end = from;
+		for (size_t i = from; i <= last(); ++i)
+			if (along[i] > along[end] && gain(end, i) >= least)
+				end = i;
+		return end;
+	}
 };
 
 /**
@@ -184,14 +205,13 @@ inline CurveSkeleton withoutCornerBranches(
 }
 
 /**
- * Cuts the ends off that lead from a limb into a corner: behind the last stretch of the branch that
- * gains `least`, see distinctness(), the branch ends where going on gains less, unless what is left is
- * shorter than half a radius. What had merged there goes to the new tip.
+ * Cuts terminal branches off behind a node of theirs; what had merged behind it goes to the new tip.
+ * @param end  (profile from the far end to the tip): the place of that node.
  */
-inline CurveSkeleton withoutCornerEnds(
-	const CurveSkeleton& skeleton, KnownClearances& clearances, double least)
+template <class End>
+CurveSkeleton withEndsCut(
+	const CurveSkeleton& skeleton, KnownClearances& clearances, const End& end)
 {
-	constexpr double shortest = 0.5;
 	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
 	std::vector<int> target(skeleton.position.size());
 	std::iota(target.begin(), target.end(), 0);
@@ -201,22 +221,40 @@ inline CurveSkeleton withoutCornerEnds(
 			if (neighbours[branch.last()].size() != 1)
 				continue;
 			const BranchProfile profile(skeleton, clearances, branch);
-			size_t limb = profile.last();
-			for (size_t from = 0; from < profile.last(); ++from)
-				if (const size_t to = profile.oneRadiusOn(from);
-					to <= profile.last() && profile.gain(from, to) >= least)
-					limb = from;
-			size_t end = limb;
-			for (size_t i = limb; i <= profile.last(); ++i)
-				if (profile.along[i] > profile.along[end] && profile.gain(end, i) >= least)
-					end = i;
-			if (profile.along.back() - profile.along[end] < shortest * profile.radius[end])
-				continue;
-			for (size_t i = end + 1; i <= profile.last(); ++i)
-				target[branch.nodes[i]] = branch.nodes[end];
+			const size_t last = end(profile);
+			for (size_t i = last + 1; i <= profile.last(); ++i)
+				target[branch.nodes[i]] = branch.nodes[last];
 		}
 	}
 	return mergeNodes(skeleton, target);
+}
+
+/**
+ * Cuts the ends off that lead from a limb into a corner: behind the last stretch of the branch that
+ * gains `least`, see distinctness(), the branch ends where going on gains less, unless what is left is
+ * shorter than half a radius.
+ */
+inline CurveSkeleton withoutCornerEnds(
+	const CurveSkeleton& skeleton, KnownClearances& clearances, double least)
+{
+	constexpr double shortest = 0.5;
+	return withEndsCut(skeleton, clearances, [&](const BranchProfile& profile) {
+		const size_t end = profile.endOfGain(profile.lastStretch(least), least);
+		const double rest = profile.along.back() - profile.along[end];
+		return rest < shortest * profile.radius[end] ? profile.last() : end;
+	});
+}
+
+/**
+ * Takes tips back to where the balls last reached further by `least` of the way: a curve that went past
+ * the centre of a round or flat end, where the balls shrink as fast as it advances, ends in that centre.
+ */
+inline CurveSkeleton withoutBluntEnds(
+	const CurveSkeleton& skeleton, KnownClearances& clearances, double least)
+{
+	return withEndsCut(skeleton, clearances, [&](const BranchProfile& profile) {
+		return profile.endOfGain(profile.lastStretch(least), least);
+	});
 }
 
 /**
