@@ -16,6 +16,8 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <limits>
+#include <numeric>
 #include <queue>
 #include <utility>
 #include <vector>
@@ -46,6 +48,28 @@ inline void mergeVertexState(Stage& stage, int removed, int survivor)
 	stage.sheet[survivor] |= stage.sheet[removed];
 	if (!stage.rank.empty())
 		stage.rank[survivor] = std::max(stage.rank[survivor], stage.rank[removed]);
+}
+
+/// Sorts edges, each as its squared length and a half-edge: into as many parts of equal widths as there
+/// are edges first, so that hardly any comparison is left. Complexity: O(n) for lengths spread evenly.
+inline void sortByLength(std::vector<std::pair<double, int>>& edges)
+{
+	double largest = std::numeric_limits<double>::min();
+	for (const auto& [squaredLength, h] : edges)
+		largest = std::max(largest, squaredLength);
+	const auto partOf = [&](double squaredLength) {
+		return size_t(squaredLength / largest * double(edges.size() - 1));
+	};
+	std::vector<int> start(edges.size() + 1, 0);
+	for (const auto& [squaredLength, h] : edges)
+		++start[partOf(squaredLength) + 1];
+	std::partial_sum(start.begin(), start.end(), start.begin());
+	std::vector<std::pair<double, int>> inParts(edges.size());
+	for (const auto& edge : edges)
+		inParts[start[partOf(edge.first)]++] = edge;
+	for (size_t part = 0, first = 0; part < edges.size(); first = start[part++])
+		std::sort(inParts.begin() + first, inParts.begin() + start[part]);
+	edges.swap(inParts);
 }
 
 /// Of the half-edges of a triangle those opposite to an angle whose cosine may be below `widest`, at most
@@ -151,7 +175,7 @@ inline std::vector<int> collapseShortEdges(
 	// A blocked edge stays so until the ring of one of its ends changes.
 	std::vector<char> changed(mesh.vertexSlots(), 0);
 	const auto collapseQueued = [&] {
-		std::sort(sorted.begin(), sorted.end());
+		detail::sortByLength(sorted);
 		size_t next = 0;
 		const auto pop = [&] {
 			if (next < sorted.size() && (fresh.empty() || sorted[next] < fresh.top()))
@@ -182,10 +206,14 @@ inline std::vector<int> collapseShortEdges(
 			forest.merge(a, b);
 			detail::mergeVertexState(stage, a, b);
 			changed[b] = 1;
+			const double limit = squaredLimit[stage.component[b]];
+			const bool isFixed = stage.fixed[b];
 			mesh.forEachOutgoing(b, [&](int e) {
-				changed[mesh.target(e)] = 1;
-				if (const Entry again = entry(e); mayCollapse(again))
-					fresh.push(again);
+				const int c = mesh.target(e);
+				changed[c] = 1;
+				const double newSquaredLength = SquaredDistance(merged, mesh.position[c]);
+				if (newSquaredLength < limit && !(isFixed && stage.fixed[c]))
+					fresh.emplace(newSquaredLength, std::min(e, mesh.twin(e)));
 			});
 		}
 		sorted.clear();
