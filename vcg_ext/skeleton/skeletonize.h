@@ -43,12 +43,24 @@ inline void stepInFrames(
 	fixDegenerateVertices(stage, candidates, parameters.epsilon);
 	fixArrivedSheets(stage, parameters.epsilon);
 
-	const std::vector<int> renumbered = mesh.compact();
+	// Vertices that have merged, or are new, are between grid points; so are the poles of new ones.
+	const auto toGrid = [&](int v) {
+		if (!stage.held[v])
+			mesh.position[v] = PrincipalFrame::rounded(mesh.position[v]);
+	};
 	std::vector<int> mergedInto(before);
-	for (int v = 0; v < before; ++v)
-		mergedInto[v] = renumbered[forest.find(v)];
+	for (int v = 0; v < before; ++v) {
+		mergedInto[v] = forest.find(v);
+		if (mergedInto[v] != v)
+			toGrid(mergedInto[v]);
+	}
+	for (int v = before; v < mesh.vertexSlots(); ++v) {
+		toGrid(v);
+		stage.pole[v] = PrincipalFrame::rounded(stage.pole[v]);
+	}
+	const std::vector<int> renumbered = mesh.compact();
 	for (int& node : stage.node)
-		node = mergedInto[node];
+		node = renumbered[mergedInto[node]];
 	for (size_t v = 0; v < renumbered.size(); ++v) {
 		const int to = renumbered[v];
 		if (to < 0)
@@ -69,7 +81,6 @@ inline void stepInFrames(
 	stage.sheet.resize(left);
 	stage.component.resize(left);
 	stage.rank.resize(left);
-	StageFrames::round(stage);
 
 	const Extent extent = frames.extent(stage);
 	constexpr double settled = 1e-4;

@@ -61,16 +61,6 @@ public:
 			stage.diagonal[c] /= (*frames)[c].unitLength();
 	}
 
-	/// Rounds what enter() would: to leave and to enter again then changes nothing, but for held vertices.
-	static void round(Stage& stage)
-	{
-		for (size_t v = 0; v < stage.pole.size(); ++v) {
-			Point3d& p = stage.mesh.position[v];
-			p = stage.held[v] ? p : PrincipalFrame::rounded(p);
-			stage.pole[v] = PrincipalFrame::rounded(stage.pole[v]);
-		}
-	}
-
 	/// The area and volume outside of a stage that has entered.
 	Extent extent(const Stage& stage) const
 	{
