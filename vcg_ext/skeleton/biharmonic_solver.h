@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace vcg::tri::mcf {
@@ -74,11 +75,9 @@ inline std::vector<Point3d> solveBiharmonic(const SymmetricRows& M, const std::v
 	};
 	/// z <- preconditioned r, from its copy there; r . z.
 	const auto precondition = [&] {
-		factor.solve(z);
-		factor.solve(z);
 		Sum product = Sum::Zero();
-		for (int i = 0; i < n; ++i)
-			product += (r[i] * z[i]).cast<double>();
+		factor.solve(z);
+		factor.solve(z, [&](int i, const FloatQuad& zi) { product += (r[i] * zi).cast<double>(); });
 		return product;
 	};
 	const auto quotient = [](const Sum& u, const Sum& v) -> FloatQuad {
@@ -86,7 +85,7 @@ inline std::vector<Point3d> solveBiharmonic(const SymmetricRows& M, const std::v
 	};
 
 	Sum rz = precondition();
-	p = z;
+	std::swap(p, z);
 	const double target = tolerance * tolerance * rz.sum();
 	// r . z falls to a tenth in each iteration but the first, where it falls further. An iteration that
 	// reaches the target so is the last one, and what is left is not measured.

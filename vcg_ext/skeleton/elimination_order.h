@@ -31,13 +31,16 @@ inline void rankByMinimumDegree(Stage& stage)
 	std::fill(pattern.valuePtr(), pattern.valuePtr() + pattern.nonZeros(), char(1));
 	int* const start = pattern.outerIndexPtr();
 	int* const row = pattern.innerIndexPtr();
-	start[0] = 0;
+	std::fill(start, start + n + 1, 0);
+	for (int h = 0; h < mesh.halfEdgeSlots(); ++h)
+		++start[mesh.origin(h) + 1];
+	for (int v = 0; v < n; ++v)
+		start[v + 1] += start[v] + 1;
+	// Each vertex enters the columns of its neighbours when it is its turn: they come out sorted.
+	std::vector<int> end(start, start + n);
 	for (int v = 0; v < n; ++v) {
-		int end = start[v];
-		row[end++] = v;
-		mesh.forEachOutgoing(v, [&](int h) { row[end++] = mesh.target(h); });
-		std::sort(row + start[v], row + end);
-		start[v + 1] = end;
+		row[end[v]++] = v;
+		mesh.forEachOutgoing(v, [&](int h) { row[end[mesh.target(h)]++] = v; });
 	}
 	Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
 	Eigen::internal::minimum_degree_ordering(pattern, order);

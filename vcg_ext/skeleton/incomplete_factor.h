@@ -140,6 +140,13 @@ public:
 	/// x <- (L D L^T)^-1 x.
 	void solve(FloatQuads& x) const
 	{
+		solve(x, [](int, const FloatQuad&) {});
+	}
+
+	/// The same; calls visit(i, x_i) for each row that is done, from the last to the first.
+	template <class Visitor>
+	void solve(FloatQuads& x, Visitor&& visit) const
+	{
 		const int n = int(inverseDiagonal.size());
 		for (int i = 0; i < n; ++i) {
 			const FloatQuad xi = x[i];
@@ -155,6 +162,7 @@ public:
 				for (int k = e - 1; k >= e - Group; --k)
 					xi -= entries[k].value * x[entries[k].index];
 			x[i] = xi;
+			visit(i, xi);
 		}
 	}
 
