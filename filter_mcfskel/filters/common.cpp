@@ -140,14 +140,15 @@ mcf::PoleMethod readPoleMethod(const ParameterValues& values)
 
 Results stageResults(const mcf::Stage& stage)
 {
+	const mcf::StageFigures figures = mcf::figuresOf(stage);
 	return {
-		{"iterations", stage.iteration},
-		{"converged", stage.converged ? 1 : 0},
-		{"volume_fraction", stage.volumeFraction()},
-		{"area_fraction", stage.areaFraction()},
-		{"fixed_fraction", stage.fixedFraction()},
-		{"vertices", stage.mesh.vertexCount()},
-		{"faces", stage.mesh.faceCount()},
+		{"iterations", figures.iteration},
+		{"converged", figures.converged ? 1 : 0},
+		{"volume_fraction", figures.volumeFraction},
+		{"area_fraction", figures.areaFraction},
+		{"fixed_fraction", figures.fixedFraction},
+		{"vertices", figures.vertices},
+		{"faces", figures.faces},
 	};
 }
 
@@ -166,17 +167,17 @@ Results curveResults(const mcf::CurveSkeleton& skeleton)
 	};
 }
 
-QString stageLine(const mcf::Stage& stage)
+QString stageLine(const mcf::StageFigures& figures)
 {
 	return QString(
 		"Iteration %1: %2 vertices, %3 % of the area and %4 % of the volume left, %5 % of the "
 		"vertices fixed%6")
-		.arg(stage.iteration)
-		.arg(stage.mesh.vertexCount())
-		.arg(100 * stage.areaFraction(), 0, 'g', 3)
-		.arg(100 * stage.volumeFraction(), 0, 'g', 3)
-		.arg(100 * stage.fixedFraction(), 0, 'g', 3)
-		.arg(stage.converged ? "; converged" : "");
+		.arg(figures.iteration)
+		.arg(figures.vertices)
+		.arg(100 * figures.areaFraction, 0, 'g', 3)
+		.arg(100 * figures.volumeFraction, 0, 'g', 3)
+		.arg(100 * figures.fixedFraction, 0, 'g', 3)
+		.arg(figures.converged ? "; converged" : "");
 }
 
 double meanEdgeLength(const mcf::SurfaceMesh& mesh)

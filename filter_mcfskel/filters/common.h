@@ -48,7 +48,7 @@ vcg::tri::mcf::PoleMethod readPoleMethod(const ParameterValues& values);
 
 Results stageResults(const vcg::tri::mcf::Stage& stage);
 Results curveResults(const vcg::tri::mcf::CurveSkeleton& skeleton);
-QString stageLine(const vcg::tri::mcf::Stage& stage);
+QString stageLine(const vcg::tri::mcf::StageFigures& figures);
 
 /// Mean edge length, mesh units; 0 for a mesh without edges.
 double meanEdgeLength(const vcg::tri::mcf::SurfaceMesh& mesh);

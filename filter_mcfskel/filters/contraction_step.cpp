@@ -74,7 +74,7 @@ Results run(FilterRun& run)
 	for (int i = 0; i < steps && !last->converged; ++i) {
 		last = std::make_shared<const mcf::Stage>(
 			mcf::step(*last, parameters, progress.part(double(i) / steps, double(i + 1) / steps)));
-		run.log(stageLine(*last));
+		run.log(stageLine(mcf::figuresOf(*last)));
 		stages.push_back(last);
 	}
 	if (int(stages.size()) < steps)

@@ -46,22 +46,22 @@ void contractAll(FilterRun& run, const mcf::Parameters& parameters, const mcf::P
 	Pipeline& pipeline)
 {
 	const int keepStages = run.parameters.integer("keep_stages");
-	std::shared_ptr<const mcf::Stage> last;
-	const auto onStage = [&](const mcf::Stage& stage) {
-		run.log(stageLine(stage));
-		if (keepStages > 0 && stage.iteration % keepStages == 0) {
-			last = std::make_shared<const mcf::Stage>(stage);
-			pipeline.kept.push_back(last);
-		}
-	};
+	mcf::StageObserver observer;
+	observer.onFigures = [&](const mcf::StageFigures& figures) { run.log(stageLine(figures)); };
+	if (keepStages > 0) {
+		observer.every = keepStages;
+		observer.onStage = [&](mcf::Stage stage) {
+			pipeline.kept.push_back(std::make_shared<const mcf::Stage>(std::move(stage)));
+		};
+	}
 	mcf::Stage start = startOfFlow(run, parameters, *pipeline.surface.mesh, *pipeline.poles,
 		pipeline.held, progress.part(0, 0.03));
 	mcf::Stage end =
-		mcf::contractToSkeleton(std::move(start), parameters, progress.part(0.03, 1), onStage);
+		mcf::contractToSkeleton(std::move(start), parameters, progress.part(0.03, 1), observer);
 	if (!end.converged)
 		run.log(
 			QString("The contraction has not converged after %1 iterations.").arg(end.iteration));
-	if (!last || last->iteration != end.iteration)
+	if (pipeline.kept.empty() || pipeline.kept.back()->iteration != end.iteration)
 		pipeline.kept.push_back(std::make_shared<const mcf::Stage>(std::move(end)));
 }
 

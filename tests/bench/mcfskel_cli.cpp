@@ -136,11 +136,11 @@ bench::Curve toCurve(const mcf::CurveSkeleton& skeleton)
 	return curve;
 }
 
-void describe(const mcf::Stage& stage)
+void describe(const mcf::StageFigures& stage)
 {
-	std::cerr << "iteration " << stage.iteration << ": " << stage.mesh.vertexCount()
-			  << " vertices, area " << stage.areaFraction() << ", volume " << stage.volumeFraction()
-			  << ", fixed " << stage.fixedFraction() << '\n';
+	std::cerr << "iteration " << stage.iteration << ": " << stage.vertices << " vertices, area "
+			  << stage.areaFraction << ", volume " << stage.volumeFraction << ", fixed "
+			  << stage.fixedFraction << '\n';
 }
 
 /// Listens to progress reports for the longest silence between two of them: what a click on Cancel may
@@ -227,8 +227,11 @@ void run(const Options& options)
 		const auto polesMissing = std::count_if(
 			start.poleRadius.begin(), start.poleRadius.end(), [](double r) { return r < 0; });
 		seconds.add("poles", watch.lap());
-		const mcf::Stage stage = mcf::contractToSkeleton(
-			std::move(start), parameters, progress, options.verbose ? describe : nullptr);
+		mcf::StageObserver observer;
+		if (options.verbose)
+			observer.onFigures = describe;
+		const mcf::Stage stage =
+			mcf::contractToSkeleton(std::move(start), parameters, progress, observer);
 		seconds.add("contraction", watch.lap());
 		mcf::CurveSkeleton skeleton = mcf::collapseToCurve(stage, 1e-4, progress);
 		seconds.add("conversion", watch.lap());

@@ -66,7 +66,7 @@ TEST(HeldVertices, StayExactlyThroughTheWholeFlow)
 		EXPECT_EQ(checks::stageError(s), "");
 	};
 	const double before = stage.volume;
-	stage = contractToSkeleton(std::move(stage), Parameters(), Progress(), onStage);
+	stage = contractToSkeleton(std::move(stage), Parameters(), Progress(), {onStage});
 	EXPECT_TRUE(stage.converged);
 	EXPECT_LT(stage.volume, 0.5 * before) << "the rest contracts";
 	EXPECT_EQ(checks::genus(stage.mesh), 0);

@@ -89,11 +89,11 @@ TEST(Skeletonize, EveryStageOfEveryShapeIsASoundMeshOfItsTopology)
 		ASSERT_EQ(euler, 2 * (components - genus));
 		int calls = 0;
 		const Stage end =
-			contractToSkeleton(start, Parameters(), Progress(), [&](const Stage& stage) {
+			contractToSkeleton(start, Parameters(), Progress(), {[&](const Stage& stage) {
 				EXPECT_EQ(stage.iteration, ++calls);
 				ASSERT_EQ(checks::stageError(stage), "");
 				ASSERT_EQ(stage.mesh.eulerCharacteristic(), euler);
-			});
+			}});
 		EXPECT_TRUE(end.converged);
 		EXPECT_EQ(end.iteration, calls);
 		EXPECT_LT(end.iteration, 250); // most need 30; the torus of 7 vertices is all folds
@@ -195,7 +195,7 @@ TEST(Skeletonize, StepsAreTheRunBitForBit)
 		const Parameters parameters;
 		std::vector<Stage> kept;
 		const Stage run = contractToSkeleton(stageOf(soup), parameters, Progress(),
-			[&](const Stage& stage) { kept.push_back(stage); });
+			{[&](Stage stage) { kept.push_back(std::move(stage)); }});
 		Stage single = stageOf(soup);
 		for (const Stage& stage : kept) {
 			const Stage before = single;
@@ -218,8 +218,38 @@ TEST(Skeletonize, TheCorrespondenceOfADenseSurfaceIsThatOfItsSteps)
 	ASSERT_GT(start.node.size(), 4 * size_t(start.mesh.vertexCount()));
 	const Stage unwatched = contractToSkeleton(start, parameters);
 	const Stage watched = contractToSkeleton(start, parameters, Progress(),
-		[&](const Stage& stage) { EXPECT_EQ(stage.node.size(), start.node.size()); });
+		{[&](const Stage& stage) { EXPECT_EQ(stage.node.size(), start.node.size()); }});
 	EXPECT_TRUE(checks::sameBits(unwatched, watched));
+}
+
+TEST(Skeletonize, ThoseWhoWatchSeeEachStageAsItIs)
+{
+	for (const Stage& start : {stageOf(shapes::fromFile("hand")),
+			 firstStage(shapes::torus(1, 0.3, 240, 80).mesh(), Parameters())}) {
+		std::vector<Stage> every, third;
+		std::vector<StageFigures> figures;
+		contractToSkeleton(start, Parameters(), Progress(),
+			{[&](Stage stage) { every.push_back(std::move(stage)); }});
+		const Stage end = contractToSkeleton(start, Parameters(), Progress(),
+			{[&](Stage stage) { third.push_back(std::move(stage)); }, 3,
+				[&](const StageFigures& f) { figures.push_back(f); }});
+		ASSERT_EQ(int(every.size()), end.iteration);
+		ASSERT_EQ(figures.size(), every.size());
+		ASSERT_EQ(third.size(), every.size() / 3);
+		for (size_t i = 0; i < third.size(); ++i)
+			EXPECT_TRUE(checks::sameBits(third[i], every[3 * i + 2]));
+		for (size_t i = 0; i < every.size(); ++i) {
+			const StageFigures& seen = figures[i];
+			EXPECT_EQ(seen.iteration, int(i) + 1);
+			EXPECT_EQ(seen.converged, every[i].converged);
+			EXPECT_EQ(seen.vertices, every[i].mesh.vertexCount());
+			EXPECT_EQ(seen.faces, every[i].mesh.faceCount());
+			EXPECT_EQ(seen.areaFraction, every[i].areaFraction());
+			EXPECT_EQ(seen.volumeFraction, every[i].volumeFraction());
+			EXPECT_EQ(seen.fixedFraction, every[i].fixedFraction());
+		}
+		EXPECT_TRUE(checks::sameBits(every.back(), end));
+	}
 }
 
 TEST(Skeletonize, TwoRunsAreBitEqual)
@@ -276,11 +306,12 @@ TEST(Skeletonize, ASlowFlowIsNotTakenForAFinishedOne)
 TEST(Skeletonize, VolumeFallsWithEachIteration)
 {
 	double volume = 1;
-	contractToSkeleton(
-		stageOf(shapes::fromFile("hand")), Parameters(), Progress(), [&](const Stage& stage) {
-			EXPECT_LT(stage.volumeFraction(), volume + 1e-4);
-			volume = stage.volumeFraction();
-		});
+	StageObserver observer;
+	observer.onFigures = [&](const StageFigures& figures) {
+		EXPECT_LT(figures.volumeFraction, volume + 1e-4);
+		volume = figures.volumeFraction;
+	};
+	contractToSkeleton(stageOf(shapes::fromFile("hand")), Parameters(), Progress(), observer);
 	EXPECT_LT(volume, 1e-3);
 }
 

@@ -123,41 +123,50 @@ inline Stage step(Stage stage, const Parameters& parameters, const Progress& pro
 	return stage;
 }
 
+/// Who is told of the stages of a run. What nobody asks for costs nothing.
+struct StageObserver
+{
+	/// Called with stages as step() would make them, the observer's own, e.g. to keep them; may be empty.
+	/// Each costs a copy.
+	std::function<void(Stage)> onStage;
+	/// Every which iteration onStage is called, >= 1.
+	int every = 1;
+	/// Called with the figures of each new stage; may be empty.
+	std::function<void(const StageFigures&)> onFigures;
+};
+
 /**
  * Repeats step() until the flow has converged or parameters.maxIterations are made.
- * @param onStage called with each new stage, e.g. to keep it; may be empty.
  * @throws as step().
  */
 inline Stage contractToSkeleton(Stage stage, const Parameters& parameters,
-	const Progress& progress = Progress(),
-	const std::function<void(const Stage&)>& onStage = nullptr)
+	const Progress& progress = Progress(), const StageObserver& observer = StageObserver())
 {
-	// The surface, and the first stages, have many more vertices than the others. Where nobody looks at
-	// these, only what becomes of the vertices of one of them is followed, until half of these are gone;
-	// the surface's are told at the end.
-	std::vector<int> ofSurface, ofFirst;
-	const auto follow = [&](std::vector<int>& earlier) {
-		for (int& node : earlier)
-			node = stage.node[node];
-	};
-	const auto startHere = [&] {
-		stage.node.resize(stage.mesh.vertexSlots());
-		std::iota(stage.node.begin(), stage.node.end(), 0);
-	};
 	parameters.check();
 	StageFrames frames(stage); // found by the surface's own correspondence
-	// Held vertices have places outside that those inside do not tell: each step finds them again.
+	// The surface, and the first stages, have many more vertices than the others. Only what becomes of
+	// the vertices of one of them is followed, until half of these are gone; the surface's are told when
+	// somebody looks, and at the end.
+	const std::vector<int> ofSurface = std::move(stage.node);
+	std::vector<int> ofFirst(stage.mesh.vertexSlots());
+	std::iota(ofFirst.begin(), ofFirst.end(), 0);
+	stage.node = ofFirst;
 	const auto goesOn = [&] {
 		return !stage.converged && stage.iteration < parameters.maxIterations;
 	};
-	const bool staysInside = !onStage && stage.heldCount() == 0 && goesOn();
+	// Held vertices have places outside that those inside do not tell: each step finds them again.
+	const bool staysInside = stage.heldCount() == 0 && goesOn();
 	if (staysInside)
 		frames.enter(stage);
-	if (!onStage) {
-		ofSurface = std::move(stage.node);
-		startHere();
-		ofFirst = stage.node;
-	}
+	const auto outside = [&](Stage inside) {
+		if (staysInside)
+			frames.leave(inside);
+		std::vector<int> node(ofSurface.size());
+		for (size_t s = 0; s < node.size(); ++s)
+			node[s] = inside.node[ofFirst[ofSurface[s]]];
+		inside.node = std::move(node);
+		return inside;
+	};
 	double done = 0;
 	while (goesOn()) {
 		// The area falls by a like factor each iteration: its logarithm tells how far it is.
@@ -168,23 +177,19 @@ inline Stage contractToSkeleton(Stage stage, const Parameters& parameters,
 		else
 			stage = step(std::move(stage), parameters, part);
 		done = next;
-		if (onStage)
-			onStage(stage);
-		else if (2 * size_t(stage.mesh.vertexSlots()) < stage.node.size()) {
-			follow(ofFirst);
-			startHere();
+		if (observer.onFigures)
+			observer.onFigures(figuresOf(stage));
+		if (observer.onStage && stage.iteration % observer.every == 0)
+			observer.onStage(outside(stage));
+		if (2 * size_t(stage.mesh.vertexSlots()) < stage.node.size()) {
+			for (int& node : ofFirst)
+				node = stage.node[node];
+			stage.node.resize(stage.mesh.vertexSlots());
+			std::iota(stage.node.begin(), stage.node.end(), 0);
 		}
 	}
-	if (staysInside)
-		frames.leave(stage);
-	if (!onStage) {
-		follow(ofFirst);
-		stage.node = std::move(ofFirst);
-		follow(ofSurface);
-		stage.node = std::move(ofSurface);
-	}
 	progress.report(1, "Contracting");
-	return stage;
+	return outside(std::move(stage));
 }
 
 } // namespace vcg::tri::mcf

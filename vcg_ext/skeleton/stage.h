@@ -88,6 +88,24 @@ private:
 	}
 };
 
+/// What can be told of a stage wherever its vertices are, inside its frames or outside.
+struct StageFigures
+{
+	int iteration = 0;
+	bool converged = false;
+	int vertices = 0, faces = 0;
+	/// Of the surface's.
+	double areaFraction = 0, volumeFraction = 0;
+	/// Of the vertices.
+	double fixedFraction = 0;
+};
+
+inline StageFigures figuresOf(const Stage& stage)
+{
+	return {stage.iteration, stage.converged, stage.mesh.vertexCount(), stage.mesh.faceCount(),
+		stage.areaFraction(), stage.volumeFraction(), stage.fixedFraction()};
+}
+
 /// Area of each component of a mesh, and the sum of their volumes, see SurfaceMesh::volume().
 struct Extent
 {
