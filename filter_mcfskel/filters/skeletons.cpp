@@ -7,7 +7,7 @@
 
 #include <skeleton/closest_surface.h>
 #include <skeleton/errors.h>
-#include <skeleton/parallel_blocks.h>
+#include <skeleton/nearest_points.h>
 #include <skeleton/point_tree.h>
 #include <skeleton/skeleton_radius.h>
 #include <skeleton/stage.h>
@@ -31,6 +31,21 @@ MeshModel* rememberedLayer(const FilterRun& run, const CurveLayer& curve)
 	const SurfaceLink link =
 		linkTo(run.document, curve.surface.fingerprint, *curve.surface.vertexOfSlot);
 	return link.layerId < 0 ? nullptr : run.document.getMesh(link.layerId);
+}
+
+/// The mean length of a thousand edges spread over a mesh.
+double typicalEdgeLength(const mcf::SurfaceMesh& mesh)
+{
+	const int step = std::max(1, mesh.faceSlots() / 1000);
+	double sum = 0;
+	int count = 0;
+	for (int f = 0; f < mesh.faceSlots(); f += step) {
+		if (!mesh.isFace(f))
+			continue;
+		sum += std::sqrt(mesh.squaredLength(3 * f));
+		++count;
+	}
+	return count ? sum / count : 0;
 }
 
 /// What mcfskel_node tells, if all of it can be about a skeleton of that many nodes; else empty.
@@ -59,13 +74,10 @@ std::vector<int> nodesFromAttribute(const SkeletonSurface& surface, size_t nodes
 std::vector<int> carriedOver(const mcf::SurfaceMesh& from, const std::vector<int>& node,
 	const mcf::SurfaceMesh& to, const mcf::Progress& progress)
 {
-	const mcf::PointTree tree(from.position, progress.part(0, 0.1));
-	std::vector<int> result(to.position.size());
-	mcf::forEachBlock(int(result.size()), progress.part(0.1, 1), "Finding the nodes of a surface",
-		[&](int begin, int end) {
-			for (size_t v = size_t(begin); v < size_t(end); ++v)
-				result[v] = node[size_t(tree.nearest(to.position[v]))];
-		});
+	std::vector<int> result =
+		mcf::nearestPoints(from.position, to.position, typicalEdgeLength(from), progress);
+	for (int& v : result)
+		v = node[size_t(v)];
 	return result;
 }
 
