@@ -174,7 +174,7 @@ public:
 	/// Gives a layer its surface in full precision.
 	void attachSurface(MeshModel& layer, const SurfaceLayer& surface);
 
-	/// Writes poles as attributes of a surface layer. @pre attachSurface() was called on it.
+	/// Writes poles as attributes of a surface layer, and gives it its surface in full precision.
 	void writePoles(MeshModel& layer, const SurfaceLayer& surface,
 		std::shared_ptr<const vcg::tri::mcf::PoleSet> poles);
 

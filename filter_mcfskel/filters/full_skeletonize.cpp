@@ -140,10 +140,8 @@ Results run(FilterRun& run)
 	MeshModel& input = run.layer();
 	const QString name = baseName(input);
 	MeshModel* surface = &input;
-	if (parameters.resample) {
+	if (parameters.resample)
 		surface = &edit.addSurface(input, name + "_resampled", *pipeline.surface.mesh);
-		edit.attachSurface(*surface, pipeline.surface);
-	}
 	const SurfaceLink link = linkTo(*surface, pipeline.surface);
 	for (const auto& stage : pipeline.kept)
 		edit.addStage(input, stageLabel(name, *stage), stage, link);
