@@ -45,12 +45,14 @@ class Outcome:
 
     def seconds(self, phases: tuple[str, ...], clock: str) -> float | None:
         """Median over the runs; clock: "cpu" for processor time, "wall" for wall time."""
-        if not self.reports:
-            return None
-        return statistics.median(
+        return statistics.median(self.each(phases, clock)) if self.reports else None
+
+    def each(self, phases: tuple[str, ...], clock: str) -> list[float]:
+        """Seconds of each run."""
+        return [
             sum(r["seconds"][phase][clock] for phase in phases if phase in r["seconds"])
             for r in self.reports
-        )
+        ]
 
     def median(self, key: str) -> float | None:
         values = [r[key] for r in self.reports if r.get(key) is not None]
@@ -96,13 +98,16 @@ def run_once(program: Program, mesh: Path, outcome: Outcome, timeout: float) -> 
 def run_interleaved(
     programs: list[Program], mesh: Path, folder: Path, runs: int, timeout: float
 ) -> list[Outcome]:
-    """Runs all programs in turn, so that what else the machine does hits all of them alike."""
+    """Runs all programs in turn, so that what else the machine does hits all of them alike.
+
+    Every second turn is in reverse: none of them always comes after the same other one.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     outcomes = [
         Outcome(p, folder / f"{p.label}_{p.threads}.obj".replace(" ", "_")) for p in programs
     ]
     for turn in range(runs):
-        for outcome in outcomes:
+        for outcome in outcomes if turn % 2 == 0 else reversed(outcomes):
             if outcome.error or (turn > 0 and not outcome.program.repeats):
                 continue
             run_once(outcome.program, mesh, outcome, timeout)

@@ -13,6 +13,7 @@
 #include <skeleton/measured_surface.h>
 #include <skeleton/noise.h>
 #include <skeleton/parameters.h>
+#include <skeleton/poles.h>
 #include <skeleton/refine.h>
 #include <skeleton/resample.h>
 #include <skeleton/skeletonize.h>
@@ -42,10 +43,12 @@ const char* const usage =
 	"  --no-denoise              resample without smoothing the noise first\n"
 	"  --resample-only           stop after the resampling\n"
 	"  --pole-method METHOD      voronoi or balls\n"
+	"  --all-poles               find the poles of all vertices, as the plugin does for its layers\n"
 	"  --w-l W  --w-h W  --w-m W weights of Eq. 6, in the paper's units\n"
 	"  --epsilon PCT             edges shorter than this are collapsed, in % of the diagonal\n"
 	"  --split-angle DEGREES     edges opposite wider angles are split\n"
 	"  --max-iterations N        stop the flow after this many\n"
+	"  --shortest-edge PCT       edges of the curve shorter than this are collapsed, likewise\n"
 	"  --no-refine               leave the curve as the flow made it\n"
 	"  --spacing PCT             distance of the refined nodes, in % of the diagonal\n"
 	"  --smoothing K             smoothness of the refined branches\n"
@@ -59,6 +62,8 @@ struct Options
 {
 	std::string mesh, skeleton, surface, stage;
 	bool resampleOnly = false;
+	bool allPoles = false;
+	double shortestEdge = 1e-4;
 	bool verbose = false;
 	bool progressGaps = false;
 	mcf::Parameters parameters;
@@ -83,6 +88,7 @@ Options parse(int argc, char** argv)
 		{"--no-resample", [&] { p.resample = false; }},
 		{"--progress-gaps", [&] { options.progressGaps = true; }},
 		{"--resample-only", [&] { options.resampleOnly = true; }},
+		{"--all-poles", [&] { options.allPoles = true; }},
 		{"--no-denoise", [&] { p.denoise = false; }},
 		{"--no-refine", [&] { p.refine = false; }},
 		{"--verbose", [&] { options.verbose = true; }},
@@ -100,6 +106,7 @@ Options parse(int argc, char** argv)
 		{"--w-m", [&](Text t) { p.wM = std::stod(t); }},
 		{"--epsilon", [&](Text t) { p.epsilon = std::stod(t) / 100; }},
 		{"--split-angle", [&](Text t) { p.splitAngle = std::stod(t); }},
+		{"--shortest-edge", [&](Text t) { options.shortestEdge = std::stod(t) / 100; }},
 		{"--max-iterations", [&](Text t) { p.maxIterations = std::stoi(t); }},
 		{"--spacing", [&](Text t) { r.spacing = std::stod(t) / 100; }},
 		{"--smoothing", [&](Text t) { r.smoothing = std::stod(t); }},
@@ -223,7 +230,11 @@ void run(const Options& options)
 
 	if (!options.resampleOnly) {
 		watch.lap();
-		mcf::Stage start = mcf::firstStage(surface, parameters, nullptr, progress);
+		mcf::PoleSet poles;
+		if (options.allPoles)
+			poles = mcf::medialPoles(surface, parameters.poleMethod, progress);
+		mcf::Stage start =
+			mcf::firstStage(surface, parameters, options.allPoles ? &poles : nullptr, progress);
 		const auto polesMissing = std::count_if(
 			start.poleRadius.begin(), start.poleRadius.end(), [](double r) { return r < 0; });
 		seconds.add("poles", watch.lap());
@@ -233,7 +244,7 @@ void run(const Options& options)
 		const mcf::Stage stage =
 			mcf::contractToSkeleton(std::move(start), parameters, progress, observer);
 		seconds.add("contraction", watch.lap());
-		mcf::CurveSkeleton skeleton = mcf::collapseToCurve(stage, 1e-4, progress);
+		mcf::CurveSkeleton skeleton = mcf::collapseToCurve(stage, options.shortestEdge, progress);
 		seconds.add("conversion", watch.lap());
 		if (parameters.refine)
 			skeleton = mcf::refine(skeleton, surface, options.refinement, progress);
