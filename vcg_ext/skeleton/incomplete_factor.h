@@ -12,6 +12,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace vcg::tri::mcf {
@@ -92,12 +94,13 @@ public:
 				next = column.nextInChain;
 				const int begin = column.position++, end = column.end;
 				const float y = entries[begin].value * column.diagonal;
-				int lowest = begin + 1;
-				for (int e = lowest; e < end; ++e) {
+				// The lowest index and its entry as one number, of which the least is found without a branch.
+				std::int64_t lowest = std::numeric_limits<std::int64_t>::max();
+				for (int e = begin + 1; e < end; ++e) {
 					add(entries[e].index, -entries[e].value * y);
-					lowest = entries[e].index < entries[lowest].index ? e : lowest;
+					lowest = std::min(lowest, std::int64_t(entries[e].index) << 32 | e);
 				}
-				chain(j, lowest);
+				chain(j, int(lowest & 0x7fffffff));
 			}
 			const int first = start[k];
 			int lowest = first;
