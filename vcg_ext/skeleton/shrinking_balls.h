@@ -179,8 +179,10 @@ PoleSet maximalBalls(const std::vector<Touch>& touches, size_t count, const Unit
 				}
 				recent[oldest] = ball.contact();
 				oldest = (oldest + 1) % int(recent.size());
-				poles.centre[touch.place] = frame.out(ball.centre());
-				const double radius = frame.lengthOut(ball.radius());
+				// Between parallel walls a ball is too large by half of its tolerance.
+				const double unitRadius = ball.radius() - delta / 2;
+				poles.centre[touch.place] = frame.out(touch.point - touch.normal * unitRadius);
+				const double radius = frame.lengthOut(unitRadius);
 				const double depth = frame.lengthOut(delta) + KnownBalls::negligible * radius;
 				if (!isPole(touch.place, poles.centre[touch.place], radius, depth))
 					return false;
