@@ -45,7 +45,7 @@ struct CollectingBall
 
 	const Point3d& centre() const { return c; }
 	double reach() const { return radius; }
-	void visit(int slot, const Point3d&) { found.insert(slot); }
+	void visit(int slot, const Point3d&) { EXPECT_TRUE(found.insert(slot).second) << "twice"; }
 };
 
 struct Placement

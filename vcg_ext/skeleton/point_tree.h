@@ -78,7 +78,7 @@ public:
 	const Point3d& point(int slot) const { return sorted[slot]; }
 
 	/**
-	 * Visits every point of the ball, and some outside it.
+	 * Visits every point of the ball, and some outside it, each once.
 	 *
 	 * Ball: `Point3d centre()`, `double reach()`, its radius, and `void visit(int slot, const Point3d&)`,
 	 * which may replace the ball by one inside it. `order()[slot]` is the point's id.
@@ -226,7 +226,7 @@ private:
 		const int begin = leafStart[leaf - nodes.size()], end = leafStart[leaf - nodes.size() + 1];
 		using Four = Eigen::Array4f;
 		constexpr size_t groups = LeafSize / Lanes;
-		// The last group may hold points of the next leaf: they are points as good as any.
+		// The last group may hold points of the next leaf, which has its own turn.
 		Four squaredDistance[groups];
 		Four least = Four::Constant(std::numeric_limits<float>::infinity());
 		int count = 0;
@@ -240,12 +240,12 @@ private:
 		}
 		if (least.minCoeff() > single.squaredReach)
 			return false;
-		for (int group = 0; group < count; ++group)
-			for (int k = 0; k < Lanes; ++k)
-				if (squaredDistance[group][k] <= single.squaredReach) {
-					const int slot = begin + Lanes * group + k;
-					ball.visit(slot, sorted[slot]);
-				}
+		for (int group = 0; group < count; ++group) {
+			const int first = begin + Lanes * group, lanes = std::min(int(Lanes), end - first);
+			for (int k = 0; k < lanes; ++k)
+				if (squaredDistance[group][k] <= single.squaredReach)
+					ball.visit(first + k, sorted[first + k]);
+		}
 		return true;
 	}
 
