@@ -197,13 +197,13 @@ inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const ClosestSur
 /**
  * Whether a branch leads into a limb: not into the corner of a box, on the way to which the balls
  * shrink nearly as fast as they advance, not along the rim of a plate, that is into its corner, and not
- * through a plate, in which it could lead anywhere, unless that comes to a point, as an ear does, or is
- * itself a lobe, high above the balls and a large part of the shape.
+ * through a plate, in which it could lead anywhere, unless that comes to a point and is longer than the
+ * plate is thick, as an ear is, or is itself a lobe, high above the balls and a large part of the shape.
  */
 inline bool leadsIntoLimb(const FeatureBranch& branch, const Peak& peak, const FeatureRule& rule)
 {
 	constexpr double mostFlatIfSpiky = 1.7, evenGain = 0.8, mostFlatIfEven = 0.1, mostRim = 0.5;
-	constexpr double lobeSpikiness = 0.25;
+	constexpr double lobeSpikiness = 0.25, mostlyFlat = 0.5, leastWayIfFlat = 2;
 	const double way = branch.way();
 	if (branch.joint < 0
 		|| way < branch.radii.back()
@@ -216,6 +216,7 @@ inline bool leadsIntoLimb(const FeatureBranch& branch, const Peak& peak, const F
 		&& peak.spikiness >= lobeSpikiness;
 	return isLobe
 		|| (branch.rim <= mostRim
+			&& (branch.flat <= mostlyFlat || way >= leastWayIfFlat * branch.radii.back())
 			&& branch.flat
 				<= (gain > evenGain ? mostFlatIfEven : mostFlatIfSpiky * peak.spikiness));
 }
