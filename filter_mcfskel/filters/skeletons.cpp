@@ -33,21 +33,6 @@ MeshModel* rememberedLayer(const FilterRun& run, const CurveLayer& curve)
 	return link.layerId < 0 ? nullptr : run.document.getMesh(link.layerId);
 }
 
-/// The mean length of a thousand edges spread over a mesh.
-double typicalEdgeLength(const mcf::SurfaceMesh& mesh)
-{
-	const int step = std::max(1, mesh.faceSlots() / 1000);
-	double sum = 0;
-	int count = 0;
-	for (int f = 0; f < mesh.faceSlots(); f += step) {
-		if (!mesh.isFace(f))
-			continue;
-		sum += std::sqrt(mesh.squaredLength(3 * f));
-		++count;
-	}
-	return count ? sum / count : 0;
-}
-
 /// What mcfskel_node tells, if all of it can be about a skeleton of that many nodes; else empty.
 std::vector<int> nodesFromAttribute(const SkeletonSurface& surface, size_t nodes)
 {
@@ -75,7 +60,7 @@ std::vector<int> carriedOver(const mcf::SurfaceMesh& from, const std::vector<int
 	const mcf::SurfaceMesh& to, const mcf::Progress& progress)
 {
 	std::vector<int> result =
-		mcf::nearestPoints(from.position, to.position, typicalEdgeLength(from), progress);
+		mcf::nearestPoints(from.position, to.position, meanEdgeLength(from), progress);
 	for (int& v : result)
 		v = node[size_t(v)];
 	return result;
