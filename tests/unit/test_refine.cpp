@@ -361,9 +361,38 @@ TEST(Refine, GrowsNoBranchIntoCornersOrRims)
 		tips(refine(CurveMaker().line({6, 10, 1.5}, {24, 10, 1.5}).in(plate), plate)).size(), 2u);
 }
 
+TEST(Refine, GrowsABranchIntoABluntCornerThatIsAlone)
+{
+	// A long body with cones of 64 degrees on it, too blunt for limbs: a knee, or two corners.
+	const double slope = std::tan(32 * M_PI / 180), apex = 1 / std::sin(32 * M_PI / 180);
+	const auto body = [&](int corners) {
+		std::vector<std::pair<double, double>> profile;
+		const double from = corners == 2 ? -apex : -1;
+		for (int i = 0; i <= 200; ++i) {
+			const double x = from + (apex - from) * i / 200;
+			const double towards = corners == 2 ? std::abs(x) : x;
+			const double radius =
+				towards > 1 / apex ? (apex - towards) * slope : std::sqrt(std::max(0.0, 1 - x * x));
+			profile.emplace_back(x, i % 200 == 0 ? 0 : radius);
+		}
+		return shapes::transformed(shapes::revolved(profile, 64), [](const Point3d& p) {
+			return Point3d(p[0], 1.6 * p[1], p[2]);
+		}).mesh();
+	};
+	const auto refined = [](const SurfaceMesh& mesh) {
+		return refine(CurveMaker().line({0, -0.9, 0}, {0, 0.9, 0}).in(mesh), mesh);
+	};
+	const SurfaceMesh knee = body(1);
+	const CurveSkeleton s = refined(knee);
+	ASSERT_EQ(tips(s).size(), 3u);
+	EXPECT_GE(farthest(tips(s), 0), 1) << "outside of the body's balls";
+	EXPECT_TRUE(isInside(s, knee));
+	EXPECT_EQ(tips(refined(body(2))).size(), 2u);
+}
+
 TEST(Refine, TakesLowLimbsIfTheyAreLongAndFlatOnesIfTheyComeToAPoint)
 {
-	const refining::FeatureRule rule = {0.55, 0.75, 0.56, 0.35, 0.05, 0.005, 0.05, 0.005};
+	const refining::FeatureRule rule = {0.55, 0.75, 0.56, 0.35, 0.05, 0.005, 0.05, 0.04, 0.005};
 	// A way of balls that grow by two fifths of it.
 	const auto branch = [](double way, double flat) {
 		return refining::FeatureBranch {
@@ -433,7 +462,7 @@ TEST(Refine, GivesAHandItsFingersAndItsWristOnly)
 {
 	// The corners of the palm are no limbs, however the surface is triangulated.
 	const SurfaceMesh hand = shapes::fromFile("hand").mesh();
-	for (double length : {0.0048, 0.005, 0.0058}) {
+	for (double length : {0.0042, 0.0048, 0.005, 0.0058}) {
 		Parameters parameters;
 		parameters.targetLength = length;
 		const MeasuredSurface measured(hand);
@@ -477,6 +506,17 @@ TEST(Refine, StubsInPlatesAreTakenBack)
 									 .line({30, 1, 1}, {30, 5, 1}, 8)
 									 .in(bars);
 	EXPECT_EQ(tipsLeft(bars, inLimb), 3u) << "in a limb";
+
+	const SurfaceMesh ear = shapes::cells(60, 26, 12, [](int, int j, int k) {
+		return j < 12 || (k >= 5 && k < 7);
+	}).mesh();
+	const Point3d joint(30, 6, 6);
+	const CurveSkeleton inEar = CurveMaker()
+									.line({6, 6, 6}, joint, 30)
+									.line(joint, {54, 6, 6}, 30)
+									.line(joint, {30, 24, 6}, 30)
+									.in(ear);
+	EXPECT_EQ(tipsLeft(ear, inEar), 3u) << "a plate on a thicker body";
 }
 
 TEST(Refine, ABranchGrowsAroundAGap)

@@ -98,16 +98,21 @@ inline int wideSides(const ClosestSurface& surface, const Point3d& x,
 constexpr double lobeHeight = 5;
 
 /**
- * Removes terminal branches that run through a plate and are shorter than its lobes are high: where the
- * flow left such a stub is chance, and next to it growFeatures() would take the rim for several lobes.
+ * Removes terminal branches that stay within a plate and are shorter than two of its lobes are high, or
+ * than one if there is no other tip; the shortest first. Where the flow left such a stub is chance, and next
+ * to it growFeatures() would take the rim for several lobes. A plate that stands on a thicker body, as an
+ * ear does, is a limb and keeps its branch.
  * @pre the radius of junctions and tips is their distance from the surface.
  */
 inline CurveSkeleton withoutStubsInPlates(CurveSkeleton skeleton, const ClosestSurface& surface)
 {
-	constexpr double mostlyFlat = 0.8;
+	constexpr double mostlyFlat = 0.65, asThin = 0.5;
 	return withoutTerminalBranches(
 		std::move(skeleton), 0, [&](const CurveSkeleton& s, const Branch& fromJunction) {
-			if (branchLength(s, fromJunction) >= lobeHeight * s.radius[fromJunction.first()])
+			const double radius = s.radius[fromJunction.first()];
+			const double lobes = statistics(s).terminals > 1 ? 2 : 1;
+			const double excess = branchLength(s, fromJunction) - lobes * lobeHeight * radius;
+			if (excess >= 0 || s.radius[fromJunction.last()] < asThin * radius)
 				return 0.0;
 			int flat = 0;
 			for (size_t i = 1; i < fromJunction.nodes.size(); ++i) {
@@ -119,7 +124,7 @@ inline CurveSkeleton withoutStubsInPlates(CurveSkeleton skeleton, const ClosestS
 				const Point3d direction = x - s.position[fromJunction.nodes[i - 1]];
 				flat += isMedial(ball) && wideSides(surface, x, hit, ball.contact, direction) == 2;
 			}
-			return flat >= mostlyFlat * double(fromJunction.nodes.size() - 1) ? -1.0 : 0.0;
+			return flat >= mostlyFlat * double(fromJunction.nodes.size() - 1) ? excess : 0.0;
 		});
 }
 
@@ -221,6 +226,44 @@ inline bool leadsIntoLimb(const FeatureBranch& branch, const Peak& peak, const F
 				<= (gain > evenGain ? mostFlatIfEven : mostFlatIfSpiky * peak.spikiness));
 }
 
+/// A feature, whether it gets its branch or not.
+struct Feature
+{
+	Peak peak;
+	FeatureBranch branch;
+	bool grown;
+};
+
+/**
+ * Whether a branch that leads into no limb leads into a blunt corner that is a feature of the shape, as a
+ * knee is: high, neither in a plate nor on its rim, and alone. The corners in which solids end are no
+ * blunter, but around one ball there are several of them.
+ * @param features  all there are.
+ */
+inline bool leadsIntoLoneCorner(const CurveSkeleton& skeleton, const SurfaceComponent& surface,
+	const Feature& corner, const std::vector<Feature>& features, const FeatureRule& rule)
+{
+	constexpr double leastGain = 0.4, mostFlat = 0.35, leastSpikiness = 0.3, likeHeight = 0.5;
+	constexpr double leastWay = 0.7;
+	const FeatureBranch& branch = corner.branch;
+	if (branch.joint < 0 || corner.peak.height < rule.leastCorner
+		|| corner.peak.spikiness < leastSpikiness)
+		return false;
+	const double radius = branch.radii.back(), way = branch.way();
+	// From the surface itself, where the balls have no radius: the same wherever the branch starts.
+	const double whole =
+		way + Distance(surface.position(corner.peak.vertex), branch.points.front());
+	if (way < leastWay * radius || whole * (1 - leastGain) < radius
+		|| std::max(branch.flat, branch.rim) * way > mostFlat * whole)
+		return false;
+	return std::none_of(features.begin(), features.end(), [&](const Feature& other) {
+		return other.peak.vertex != corner.peak.vertex && other.branch.joint >= 0
+			&& other.peak.height >= likeHeight * corner.peak.height
+			&& Distance(skeleton.position[other.branch.joint], skeleton.position[branch.joint])
+			< std::max(radius, other.branch.radii.back());
+	});
+}
+
 /// The nearest node in view from a point that is nearer than `farthest`; -1 if there is none.
 /// Complexity: O(N), and O(log V) for each node that comes nearer than those before it.
 inline int nearestInView(const CurveSkeleton& skeleton, const ClosestSurface& surface,
@@ -293,11 +336,7 @@ inline void growFeatures(CurveSkeleton& skeleton, const SurfaceComponent& compon
 		skeleton.radius[v] = std::max(clearances.at(skeleton.position[v]), 0.0);
 	const Heights heights =
 		heightsAbove(skeleton, covering, component, surface.vertexOrder(), progress.part(0, 0.4));
-	for (const Peak& peak : peaks(skeleton, component, heights, rule, progress.part(0.4, 0.8))) {
-		const FeatureBranch branch =
-			branchInto(peak, skeleton, component, heights, surface, rule, progress.part(0.8, 0.8));
-		if (!leadsIntoLimb(branch, peak, rule))
-			continue;
+	const auto add = [&](const FeatureBranch& branch) {
 		int last = branch.joint;
 		for (size_t i = branch.points.size(); i-- > 0;) {
 			const int next = int(skeleton.position.size());
@@ -306,7 +345,21 @@ inline void growFeatures(CurveSkeleton& skeleton, const SurfaceComponent& compon
 			skeleton.edges.push_back({last, next});
 			last = next;
 		}
+	};
+	const int nodes = int(skeleton.position.size());
+	std::vector<Feature> features;
+	for (const Peak& peak : peaks(skeleton, component, heights, rule, progress.part(0.4, 0.8))) {
+		FeatureBranch branch =
+			branchInto(peak, skeleton, component, heights, surface, rule, progress.part(0.8, 0.8));
+		const bool grown = leadsIntoLimb(branch, peak, rule);
+		if (grown)
+			add(branch);
+		features.push_back({peak, std::move(branch), grown});
 	}
+	for (const Feature& feature : features)
+		if (!feature.grown && feature.branch.joint < nodes
+			&& leadsIntoLoneCorner(skeleton, component, feature, features, rule))
+			add(feature.branch);
 	std::sort(skeleton.edges.begin(), skeleton.edges.end());
 }
 

@@ -36,6 +36,8 @@ struct FeatureRule
 	double leastProminence, leastRise;
 	/// The lobe of a plate is at least this many diagonals high.
 	double leastLobe;
+	/// A blunt corner is at least this many diagonals high.
+	double leastCorner;
 	/// Longest step of a branch, in diagonals.
 	double spacing;
 };
