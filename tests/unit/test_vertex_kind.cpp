@@ -86,6 +86,26 @@ TEST(VertexKinds, TheSameAtAnySizeAndForEachBodyAsAlone)
 		both);
 }
 
+TEST(VertexKinds, TheSameInAnyNumbering)
+{
+	// Narrow enough at one end to be a curve there: its kinds differ, and some are told one by one.
+	shapes::Soup wedge = fineBox(1, 0.012, 1e-3);
+	for (vcg::Point3d& p : wedge.points)
+		p[1] *= 0.55 + p[0];
+	shapes::Soup turned = wedge;
+	std::reverse(turned.points.begin(), turned.points.end());
+	std::reverse(turned.triangles.begin(), turned.triangles.end());
+	for (auto& t : turned.triangles)
+		for (int& v : t)
+			v = int(wedge.points.size()) - 1 - v;
+	const std::vector<VertexKind> kinds = vertexKinds(stageOf(wedge));
+	std::vector<VertexKind> ofTurned = vertexKinds(stageOf(turned));
+	std::reverse(ofTurned.begin(), ofTurned.end());
+	EXPECT_GT(share(kinds, VertexKind::Curve), 0.02);
+	EXPECT_GT(share(kinds, VertexKind::Sheet), 0.3);
+	EXPECT_EQ(ofTurned, kinds);
+}
+
 TEST(VertexKinds, WhatTheFlowHasFixedIsNoVolume)
 {
 	Stage stage = stageOf(shapes::sphere(3));

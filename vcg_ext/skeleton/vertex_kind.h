@@ -59,35 +59,36 @@ struct FaceSamples
 /// Looks for a face that is closer than a limit and turned the other way.
 struct OppositeWall
 {
-	const FaceSamples& samples;
-	const std::vector<int>& order;
 	const SurfaceMesh& mesh;
+	/// The face of each sample and its unit normal, in the order of the tree.
+	const std::vector<int>& face;
 	const std::vector<Point3d>& faceNormal;
 	Point3d middle, normal;
 	double limit, spacing;
-	bool found = false;
+	int found = -1; ///< place in the order of the tree
 
 	const Point3d& centre() const { return middle; }
-	double reach() const { return found ? 0 : limit + spacing; }
-	void visit(int slot, const Point3d&)
+	/// No point of a piece is farther from the mean of its corners than 2/3 of its longest edge.
+	double reach() const { return found >= 0 ? 0 : limit + spacing * 2 / 3; }
+	void visit(int slot, const Point3d& p)
 	{
 		constexpr double opposite = -0.2; // cosine: no neighbour round an edge of a box
-		const int f = samples.face[size_t(order[slot])];
-		if (found || faceNormal[size_t(f)] * normal > opposite)
+		const Point3d& n = faceNormal[size_t(slot)];
+		// Most are turned alike, or lie in a plane that is too far.
+		if (found >= 0 || n * normal > opposite || std::abs((p - middle) * n) > limit)
 			return;
-		const Triangle t = mesh.triangle(f);
-		found =
-			closestOnTriangle(mesh.position[t[0]], mesh.position[t[1]], mesh.position[t[2]], middle)
-				.squaredDistance
-			<= limit * limit;
+		const Triangle t = mesh.triangle(face[size_t(slot)]);
+		const std::vector<Point3d>& corner = mesh.position;
+		if (closestOnTriangle(corner[t[0]], corner[t[1]], corner[t[2]], middle).squaredDistance
+			<= limit * limit)
+			found = slot;
 	}
 };
 
 /// Sums the area of the samples within a ball, until it is enough.
 struct AreaBall
 {
-	const FaceSamples& samples;
-	const std::vector<int>& order;
+	const std::vector<double>& areas; ///< in the order of the tree
 	Point3d middle;
 	double radius, enough;
 	double area = 0;
@@ -98,7 +99,7 @@ struct AreaBall
 	void visit(int slot, const Point3d& p)
 	{
 		if (SquaredDistance(p, middle) < radius * radius)
-			area += samples.area[size_t(order[slot])];
+			area += areas[size_t(slot)];
 	}
 };
 
@@ -106,8 +107,17 @@ struct AreaBall
 inline std::vector<VertexKind> majority(
 	const SurfaceMesh& mesh, const std::vector<VertexKind>& kind)
 {
+	// A vertex whose triangles are each of one kind keeps it.
+	std::vector<char> mixed(kind.size(), 0);
+	for (int f = 0; f < mesh.faceSlots(); ++f) {
+		const Triangle t = mesh.triangle(f);
+		if (kind[t[0]] != kind[t[1]] || kind[t[1]] != kind[t[2]])
+			mixed[t[0]] = mixed[t[1]] = mixed[t[2]] = 1;
+	}
 	std::vector<VertexKind> result = kind;
 	for (int v = 0; v < mesh.vertexSlots(); ++v) {
+		if (!mixed[v])
+			continue;
 		std::array<int, 3> votes = {0, 0, 0};
 		int all = 1;
 		++votes[size_t(kind[v])];
@@ -135,6 +145,10 @@ inline std::vector<VertexKind> majority(
  * full area; a strip narrower than about 3.4 epsilon is a curve.
  * Three rounds of majority among neighbours take single vertices out.
  *
+ * The area is that of samples, pieces of triangles with no edge longer than 4 epsilon. A ball around one
+ * of some near vertices, smaller by the distance of the farthest, lies within the balls of all: where its
+ * area is enough, they are sheets together.
+ *
  * @return the kind of each vertex, #V. @pre stage.mesh is compact.
  * Complexity: O(V log V). Source: ours; the paper shows kinds, but does not say how to tell them.
  */
@@ -143,7 +157,8 @@ inline std::vector<VertexKind> vertexKinds(const Stage& stage)
 	constexpr double thickness = 2;     // epsilon
 	constexpr double reach = 8;         // epsilon
 	constexpr double leastSheet = 0.27; // of 2 pi R^2
-	constexpr double spacing = 2;       // epsilon
+	constexpr double spacing = 4;       // epsilon
+	constexpr double together = 3; // epsilon: in the middle of a sheet, R - 3.8 epsilon is enough
 	constexpr int rounds = 3;
 	const SurfaceMesh& mesh = stage.mesh;
 	const int n = mesh.vertexSlots();
@@ -162,25 +177,76 @@ inline std::vector<VertexKind> vertexKinds(const Stage& stage)
 			spacing * epsilonAt(t[0]));
 	}
 	const PointTree tree(samples.point);
+	// What searches look at is kept in the order in which they come across it.
+	std::vector<int> face;
+	std::vector<double> area;
+	std::vector<Point3d> normal;
+	for (int sample : tree.order()) {
+		face.push_back(samples.face[size_t(sample)]);
+		area.push_back(samples.area[size_t(sample)]);
+		normal.push_back(faceNormal[size_t(face.back())]);
+	}
 	const std::vector<Point3d> vertexNormal = mesh.vertexNormals();
-	const auto isClosed = [&](int v) {
+	/// @param recent  walls found for vertices nearby, one of which often is this one's, too.
+	const auto isClosed = [&](int v, std::array<int, 4>& recent) {
 		if (stage.fixed[v] && !stage.held[v])
 			return true;
-		detail::OppositeWall wall {samples, tree.order(), mesh, faceNormal, mesh.position[v],
-			vertexNormal[v], thickness * epsilonAt(v), spacing * epsilonAt(v)};
-		tree.search(wall);
-		return wall.found;
+		detail::OppositeWall wall {mesh, face, normal, mesh.position[v], vertexNormal[v],
+			thickness * epsilonAt(v), spacing * epsilonAt(v)};
+		for (int slot : recent)
+			wall.visit(slot, tree.point(slot));
+		if (wall.found < 0) {
+			tree.search(wall);
+			if (wall.found >= 0) {
+				std::rotate(recent.begin(), recent.end() - 1, recent.end());
+				recent[0] = wall.found;
+			}
+		}
+		return wall.found >= 0;
 	};
+	const auto areaWithin = [&](const Point3d& middle, double radius, double enough) {
+		detail::AreaBall ball {area, middle, radius, enough};
+		tree.search(ball);
+		return ball.isEnough();
+	};
+	// Vertices in the order of the tree, where neighbours are near each other.
+	std::vector<int> order;
+	order.reserve(size_t(n));
+	std::vector<char> seen(size_t(n), 0);
+	for (int f : face)
+		for (int v : mesh.triangle(f))
+			if (!seen[v]) {
+				seen[v] = 1;
+				order.push_back(v);
+			}
 	std::vector<VertexKind> kind(size_t(n), VertexKind::Volume);
 	forEachBlock(n, Progress(), "Telling curves from sheets", [&](int begin, int end) {
-		for (int v = begin; v < end; ++v) {
-			if (!isClosed(v))
-				continue;
-			const double R = reach * epsilonAt(v);
-			detail::AreaBall ball {
-				samples, tree.order(), mesh.position[v], R, leastSheet * 2 * M_PI * R * R};
-			tree.search(ball);
-			kind[v] = ball.isEnough() ? VertexKind::Sheet : VertexKind::Curve;
+		std::vector<int> closed;
+		std::array<int, 4> recent = {0, 0, 0, 0};
+		for (int i = begin; i < end; ++i)
+			if (isClosed(order[size_t(i)], recent))
+				closed.push_back(order[size_t(i)]);
+		for (size_t first = 0; first < closed.size();) {
+			// The balls of vertices within d of this one all hold its ball of R - d: where that is enough,
+			// they are sheets, too.
+			const int v = closed[first];
+			const double epsilon = epsilonAt(v), R = reach * epsilon;
+			const double enough = leastSheet * 2 * M_PI * R * R;
+			double d = 0;
+			size_t last = first + 1;
+			for (; last < closed.size() && stage.component[closed[last]] == stage.component[v];
+				 ++last) {
+				const double next = Distance(mesh.position[closed[last]], mesh.position[v]);
+				if (next > together * epsilon)
+					break;
+				d = std::max(d, next);
+			}
+			if (last > first + 1 && areaWithin(mesh.position[v], R - d, enough))
+				while (first < last)
+					kind[closed[first++]] = VertexKind::Sheet;
+			else
+				kind[closed[first++]] =
+					areaWithin(mesh.position[v], R, enough) ? VertexKind::Sheet : VertexKind::Curve;
 		}
 	});
 	for (int i = 0; i < rounds; ++i)
