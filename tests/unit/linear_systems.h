@@ -8,6 +8,7 @@
 
 #include "mesh_checks.h"
 
+#include "skeleton/breadth_first_order.h"
 #include "skeleton/cotangent_laplacian.h"
 #include "skeleton/elimination_order.h"
 
@@ -49,9 +50,10 @@ Sparse diagonal(const std::vector<Scalar>& values)
 }
 
 /// The Laplacian of a mesh, numbered in the flow's elimination order.
-inline SymmetricRows orderedLaplacian(const SurfaceMesh& mesh)
+inline SymmetricRows orderedLaplacian(SurfaceMesh mesh)
 {
-	Stage stage = initialStage(mesh, checks::noPoles(mesh));
+	renumberBreadthFirst(mesh);
+	const Stage stage = initialStage(mesh, checks::noPoles(mesh));
 	const std::vector<int> order = eliminationOrder(stage);
 	std::vector<int> number(order.size());
 	for (size_t i = 0; i < order.size(); ++i)

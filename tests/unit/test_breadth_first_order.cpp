@@ -58,6 +58,9 @@ TEST(BreadthFirstOrder, ClosesHolesInTheNumbering)
 	EXPECT_EQ(ordered.faceSlots(), mesh.faceCount());
 	EXPECT_EQ(ordered.eulerCharacteristic(), 0);
 	EXPECT_EQ(renumbered(mesh.position, number.vertex, mesh.vertexCount()), ordered.position);
+	EXPECT_EQ(renumberBreadthFirst(mesh), number.vertex);
+	EXPECT_EQ(mesh.position, ordered.position);
+	EXPECT_EQ(mesh.triangles(), ordered.triangles());
 }
 
 TEST(BreadthFirstOrder, FindsTheComponentsInTheirOrder)

@@ -51,7 +51,7 @@ TEST(IncompleteFactor, DroppingSmallEntriesHardlyChangesTheSolution)
 	const SymmetricRows L =
 		systems::orderedLaplacian(shapes::jittered(shapes::torus(1, 0.3, 90, 30), 0.005).mesh());
 	const std::vector<float> shift(L.size(), 0.1f);
-	EXPECT_LT(relativeError(L, shift, 1e-3f), 0.05);
+	EXPECT_LT(relativeError(L, shift, 1e-3f), 0.07);
 	EXPECT_LT(relativeError(L, shift, 1e-3f), relativeError(L, shift, 1e-1f));
 }
 

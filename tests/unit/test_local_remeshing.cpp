@@ -212,17 +212,6 @@ TEST(CollapseShortEdges, NeverCollapsesTheSmallestMeshes)
 	EXPECT_EQ(octahedron.mesh.vertexCount(), 4);
 }
 
-TEST(CollapseShortEdges, WorksBeforeAnyContraction)
-{
-	// A stage without an elimination order.
-	Stage stage = stageOf(shapes::torus());
-	MergeForest forest(stage.mesh.vertexSlots());
-	collapseShortEdges(stage, 0.05, forest);
-	splitWideAngles(stage, Parameters(), forest);
-	EXPECT_EQ(checks::structureError(stage.mesh), "");
-	EXPECT_TRUE(stage.rank.empty());
-}
-
 TEST(CollapseShortEdges, CoincidentVerticesAllMerge)
 {
 	Stage stage = stageOf(shapes::sphere(3));

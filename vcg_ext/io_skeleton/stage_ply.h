@@ -51,7 +51,6 @@ inline PlyElement stageRow(const StageFile& file)
 	add("epsilon", PlyType::Double, stage.epsilon);
 	add("initial_volume", PlyType::Double, stage.initialVolume);
 	add("volume", PlyType::Double, stage.volume);
-	add("ranked_vertices", PlyType::Int32, stage.rankedVertices);
 	add("fingerprint_low", PlyType::UInt32, double(file.surfaceFingerprint & 0xFFFFFFFF));
 	add("fingerprint_high", PlyType::UInt32, double(file.surfaceFingerprint >> 32));
 	return row;
@@ -77,8 +76,6 @@ inline void writeStagePly(std::ostream& out, const StageFile& file)
 	vertex.add("mcfskel_held", PlyType::UInt8, stage.held);
 	vertex.add("mcfskel_sheet", PlyType::UInt8, stage.sheet);
 	vertex.add("mcfskel_component", PlyType::Int32, stage.component);
-	vertex.add(
-		"mcfskel_rank", PlyType::Int32, stage.rank.empty() ? std::vector<int>(n, -1) : stage.rank);
 
 	PlyElement face {"face", triangles.size(), {}};
 	addTuples(face, "vertex_indices", triangles);
@@ -180,9 +177,6 @@ inline void readVertices(const PlyTable& table, int components, Stage& stage)
 		stage.sheet.assign(sheet.begin(), sheet.end());
 	}
 	stage.component = table.integers("mcfskel_component", 0, components - 1);
-	stage.rank = table.integers("mcfskel_rank", -1, std::max(0, stage.rankedVertices - 1));
-	if (stage.rankedVertices == 0)
-		stage.rank.clear();
 }
 
 } // namespace detail
@@ -219,7 +213,6 @@ inline StageFile readStagePly(const PlyFile& ply)
 		stage.epsilon = row.reals("epsilon", 0)[0];
 	stage.initialVolume = row.reals("initial_volume")[0];
 	stage.volume = row.reals("volume")[0];
-	stage.rankedVertices = row.integers("ranked_vertices", 0, most)[0];
 	file.surfaceFingerprint = detail::fingerprintHalf(row, "fingerprint_low")
 		| detail::fingerprintHalf(row, "fingerprint_high") << 32;
 

@@ -9,6 +9,7 @@
 #include "progress.h"
 #include "surface_mesh.h"
 
+#include <utility>
 #include <vector>
 
 namespace vcg::tri::mcf {
@@ -89,6 +90,20 @@ inline Numbering breadthFirstOrder(const SurfaceMesh& mesh, const std::vector<in
 		for (int h : seeds)
 			addComponent(h);
 	return number;
+}
+
+/**
+ * Numbers a mesh breadth first and closes the holes in its numbering, in place of SurfaceMesh::compact().
+ * @return for each old vertex id the new one, -1 where it was removed.
+ * @throws Cancelled
+ * Complexity: O(V + F).
+ */
+inline std::vector<int> renumberBreadthFirst(
+	SurfaceMesh& mesh, const Progress& progress = Progress())
+{
+	Numbering number = breadthFirstOrder(mesh, {}, progress.part(0, 0.5));
+	mesh = mesh.renumbered(number.vertex, number.face, {}, progress.part(0.5, 1));
+	return std::move(number.vertex);
 }
 
 /**

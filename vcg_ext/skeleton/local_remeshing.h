@@ -46,8 +46,6 @@ inline void mergeVertexState(Stage& stage, int removed, int survivor)
 	stage.fixed[survivor] |= stage.fixed[removed];
 	stage.held[survivor] |= stage.held[removed];
 	stage.sheet[survivor] |= stage.sheet[removed];
-	if (!stage.rank.empty())
-		stage.rank[survivor] = std::max(stage.rank[survivor], stage.rank[removed]);
 }
 
 /// Sorts edges, each as its squared length and a half-edge: into as many parts of equal widths as there
@@ -326,8 +324,6 @@ inline void splitWideAngles(Stage& stage, const Parameters& parameters, MergeFor
 		stage.fixed.push_back(held);
 		stage.held.push_back(held);
 		stage.component.push_back(stage.component[a]);
-		if (!stage.rank.empty())
-			stage.rank.push_back(-1);
 		mesh.forEachOutgoing(m, [&](int e) {
 			queue.push_back(e);
 			queue.push_back(SurfaceMesh::next(e));

@@ -6,6 +6,7 @@
 #ifndef VCG_MCF_SKELETONIZE_H
 #define VCG_MCF_SKELETONIZE_H
 
+#include "breadth_first_order.h"
 #include "contraction.h"
 #include "degeneracy.h"
 #include "local_remeshing.h"
@@ -25,6 +26,10 @@
 namespace vcg::tri::mcf {
 
 namespace detail {
+
+/// After every so many steps a stage is numbered anew, so that neighbours are near each other in memory and
+/// in the elimination order. The first one counts: it may come from a surface numbered in any way.
+constexpr int renumberEvery = 4;
 
 /// step() of a stage that has entered its frames.
 inline void stepInFrames(
@@ -58,29 +63,20 @@ inline void stepInFrames(
 		toGrid(v);
 		stage.pole[v] = PrincipalFrame::rounded(stage.pole[v]);
 	}
-	const std::vector<int> renumbered = mesh.compact();
+	const std::vector<int> newVertex = stage.iteration % renumberEvery == 0
+		? renumberBreadthFirst(mesh, progress.part(1, 1))
+		: mesh.compact();
 	for (int& node : stage.node)
-		node = renumbered[mergedInto[node]];
-	for (size_t v = 0; v < renumbered.size(); ++v) {
-		const int to = renumbered[v];
-		if (to < 0)
-			continue;
-		stage.pole[to] = stage.pole[v];
-		stage.poleRadius[to] = stage.poleRadius[v];
-		stage.fixed[to] = stage.fixed[v];
-		stage.held[to] = stage.held[v];
-		stage.sheet[to] = stage.sheet[v];
-		stage.component[to] = stage.component[v];
-		stage.rank[to] = stage.rank[v];
-	}
-	const size_t left = size_t(mesh.vertexSlots());
-	stage.pole.resize(left);
-	stage.poleRadius.resize(left);
-	stage.fixed.resize(left);
-	stage.held.resize(left);
-	stage.sheet.resize(left);
-	stage.component.resize(left);
-	stage.rank.resize(left);
+		node = newVertex[mergedInto[node]];
+	const auto renumber = [&](auto& ofVertex) {
+		ofVertex = renumbered(ofVertex, newVertex, mesh.vertexSlots());
+	};
+	renumber(stage.pole);
+	renumber(stage.poleRadius);
+	renumber(stage.fixed);
+	renumber(stage.held);
+	renumber(stage.sheet);
+	renumber(stage.component);
 
 	const Extent extent = frames.extent(stage);
 	constexpr double settled = 1e-4;

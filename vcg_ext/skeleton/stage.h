@@ -40,10 +40,6 @@ struct Stage
 	std::vector<char> sheet;
 	/// Connected component of each vertex.
 	std::vector<int> component;
-	/// Where each vertex stands in the elimination order of the linear systems, and how many
-	/// vertices there were when that order was made; see elimination_order.h.
-	std::vector<int> rank;
-	int rankedVertices = 0;
 
 	/// Diagonal of each component of the surface, see MeasuredSurface: its unit of length.
 	std::vector<double> diagonal;
