@@ -28,7 +28,7 @@ namespace vcg::tri::mcf {
 namespace detail {
 
 /// After every so many steps a stage is numbered anew, so that neighbours are near each other in memory and
-/// in the elimination order. The first one counts: it may come from a surface numbered in any way.
+/// in the elimination order. Stage 0 is numbered so by surfaceForFlow().
 constexpr int renumberEvery = 4;
 
 /// step() of a stage that has entered its frames.
@@ -63,7 +63,7 @@ inline void stepInFrames(
 		toGrid(v);
 		stage.pole[v] = PrincipalFrame::rounded(stage.pole[v]);
 	}
-	const std::vector<int> newVertex = stage.iteration % renumberEvery == 0
+	const std::vector<int> newVertex = (stage.iteration + 1) % renumberEvery == 0
 		? renumberBreadthFirst(mesh, progress.part(1, 1))
 		: mesh.compact();
 	for (int& node : stage.node)
