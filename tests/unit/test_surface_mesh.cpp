@@ -404,3 +404,19 @@ TEST(SurfaceMesh, APillowIsAComponentOfItsOwn)
 	connectedComponents(mesh, &components);
 	EXPECT_EQ(components, 2);
 }
+
+TEST(SurfaceMesh, ACopyIsTheSameMeshAndCanBeCancelled)
+{
+	SurfaceMesh mesh = shapes::sphere(2).mesh();
+	mesh.collapse(0);
+	int reports = 0;
+	SurfaceMesh copy = mesh.copied(Progress([&](int, const char*) { return ++reports > 0; }));
+	EXPECT_GE(reports, 4) << "one for each of its large arrays";
+	EXPECT_EQ(copy.position, mesh.position);
+	EXPECT_EQ(copy.triangles(), mesh.triangles());
+	EXPECT_EQ(copy.vertexCount(), mesh.vertexCount());
+	EXPECT_EQ(copy.faceCount(), mesh.faceCount());
+	copy.compact();
+	EXPECT_EQ(structureError(copy), "");
+	EXPECT_THROW(mesh.copied(Progress([](int, const char*) { return false; })), Cancelled);
+}

@@ -175,7 +175,7 @@ inline SurfaceMesh smoothed(const MeasuredSurface& surface, const std::vector<in
 	constexpr double lambda = 0.5, passBand = 0.1;
 	constexpr double mu = 1 / (passBand - 1 / lambda);
 	const char* const what = "Smoothing noise";
-	SurfaceMesh mesh = surface.mesh();
+	SurfaceMesh mesh = surface.mesh().copied(progress.part(0, 0));
 	const int most = rounds.empty() ? 0 : *std::max_element(rounds.begin(), rounds.end());
 	const detail::RingMeans rings(mesh, progress.part(0, 0), what);
 	for (int half = 0; half < 2 * most; ++half) {

@@ -288,7 +288,7 @@ inline CurveSkeleton refine(const CurveSkeleton& curve, const SurfaceMesh& surfa
 	const auto fromUnit = [&](const Point3d& p, int c) {
 		return frame[c].out(p * frame[c].sizeInside());
 	};
-	SurfaceMesh unit = surface;
+	SurfaceMesh unit = surface.copied(progress.part(0.02, 0.02));
 	detail::reportedLoop(surface.vertexSlots(), progress.part(0.02, 0.03), what,
 		[&](int v) { unit.position[v] = toUnit(surface.position[v], component[v]); });
 

@@ -492,6 +492,26 @@ public:
 		return newVertex;
 	}
 
+	/// A copy, array by array: to copy a large mesh in one go would be a long silence.
+	/// @throws Cancelled
+	SurfaceMesh copied(const Progress& progress) const
+	{
+		SurfaceMesh copy;
+		const auto take = [&](const auto array) {
+			copy.*array = this->*array;
+			progress.report(0, "Copying the surface");
+		};
+		take(&SurfaceMesh::position);
+		take(&SurfaceMesh::origins);
+		take(&SurfaceMesh::twins);
+		take(&SurfaceMesh::outgoings);
+		take(&SurfaceMesh::stamps);
+		copy.stampClock = stampClock;
+		copy.liveVertices = liveVertices;
+		copy.liveFaces = liveFaces;
+		return copy;
+	}
+
 	/**
 	 * The same mesh with other ids for its vertices and faces, without holes in the numbering.
 	 * @param newVertex for each vertex slot its new id, -1 where it was removed; likewise newFace.

@@ -43,7 +43,7 @@ public:
 	 */
 	TrackedMesh(const SurfaceMesh& surface, const std::vector<int>& componentOfVertex,
 		const std::vector<double>& targetLength, const Progress& progress) :
-			mesh(surface),
+			mesh(surface.copied(progress)),
 			surface(surface),
 			surfaceCreases(
 				surface, [&](int v) { return shortestCrease * targetLength[componentOfVertex[v]]; },
