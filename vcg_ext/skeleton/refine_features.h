@@ -356,6 +356,7 @@ inline void growFeatures(CurveSkeleton& skeleton, const SurfaceComponent& compon
 			add(branch);
 		features.push_back({peak, std::move(branch), grown});
 	}
+	// A corner whose way ends in a branch that has just grown is one beside a limb.
 	for (const Feature& feature : features)
 		if (!feature.grown && feature.branch.joint < nodes
 			&& leadsIntoLoneCorner(skeleton, component, feature, features, rule))
