@@ -14,6 +14,7 @@
 namespace {
 
 using vcg::Point3d;
+using vcg::tri::mcf::FourSlabs;
 using vcg::tri::mcf::PointTree;
 
 std::vector<Point3d> randomPoints(int count, double size, const Point3d& middle)
@@ -90,6 +91,32 @@ TEST_P(PointTreeAnywhere, VisitsEveryPointOfTheBallAndNotManyMore)
 	}
 }
 
+TEST_P(PointTreeAnywhere, FindsPointsOfSurfacesAndLines)
+{
+	const auto [size, middle] = GetParam();
+	const Point3d along = Point3d(1, 2, 3).Normalize(), across = Point3d(3, 0, -1).Normalize();
+	std::vector<Point3d> sphere, plane, line;
+	for (const Point3d& p : randomPoints(3000, 1, {0, 0, 0})) {
+		sphere.push_back(middle + Point3d(p).Normalize() * size);
+		plane.push_back(middle + (along * p[0] + across * p[1]) * size);
+		line.push_back(middle + along * (p[0] * size));
+	}
+	for (const std::vector<Point3d>& points : {sphere, plane, line}) {
+		const PointTree tree(points);
+		for (const Point3d& x : randomPoints(50, size, middle)) {
+			const int nearest = nearestByHand(points, x);
+			ASSERT_EQ(tree.nearest(x), nearest);
+			// As a maximal ball does it: it touches the points from the side and holds none but one.
+			CollectingBall ball {x, Distance(points[size_t(nearest)], x), {}};
+			tree.search(ball);
+			bool found = false;
+			for (int slot : ball.found)
+				found |= tree.order()[slot] == nearest;
+			ASSERT_TRUE(found);
+		}
+	}
+}
+
 INSTANTIATE_TEST_SUITE_P(Places, PointTreeAnywhere,
 	testing::Values(Placement {1, {0, 0, 0}}, Placement {1e-6, {1e-6, 0, 0}},
 		Placement {1e6, {0, -1e7, 0}}, Placement {1, {1e5, 0, 1e5}}));
@@ -112,6 +139,40 @@ TEST(PointTree, TakesTheLowestOfEquallyNearPoints)
 	points[0] = {5, 5, 5};
 	EXPECT_EQ(PointTree(points).nearest({1, 2, 2}), 1);
 	EXPECT_EQ(PointTree({{1, 0, 0}, {-1, 0, 0}}).nearest({0, 0, 0}), 0);
+}
+
+TEST(FourSlabs, AreThinAroundAPlaneAskew)
+{
+	const Point3d along = Point3d(1, 2, 3).Normalize(), across = Point3d(3, 0, -1).Normalize();
+	std::vector<Point3d> points;
+	for (const Point3d& p : randomPoints(30, 1, {0, 0, 0}))
+		points.push_back(along * p[0] + across * p[1]);
+	FourSlabs slabs;
+	slabs.set(
+		2, int(points.size()), [&](int i) { return points[size_t(i)]; }, {0, 0, 0}, 0);
+	const Point3d up = along ^ across;
+	for (const double height : {-0.7, 0.2}) {
+		const Point3d p = along + across + up * height;
+		const float x[3] = {float(p[0]), float(p[1]), float(p[2])};
+		EXPECT_NEAR(slabs.distances(x)[2], std::abs(height), 1e-5);
+		EXPECT_EQ(slabs.distances(x)[1], 0) << "none was set: it holds all of space";
+	}
+}
+
+TEST(FourSlabs, HoldPointsThatHaveNoDirection)
+{
+	// One point, one point many times, and coordinates whose squares no number holds.
+	const std::vector<std::vector<Point3d>> sets = {{{1, 2, 3}}, std::vector<Point3d>(5, {1, 2, 3}),
+		{{1e200, 0, 0}, {0, -1e200, 0}, {0, 0, 1e200}}};
+	for (const std::vector<Point3d>& points : sets) {
+		FourSlabs slabs;
+		slabs.set(
+			0, int(points.size()), [&](int i) { return points[size_t(i)]; }, {0, 0, 0}, 1e-6);
+		for (const Point3d& p : points) {
+			const float x[3] = {float(p[0]), float(p[1]), float(p[2])};
+			EXPECT_FALSE(slabs.distances(x)[0] > 0);
+		}
+	}
 }
 
 TEST(PointTree, HasNoNearestPointWithoutPoints)

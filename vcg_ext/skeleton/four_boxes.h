@@ -48,7 +48,7 @@ public:
 	}
 
 	/// Squared distances from x to the boxes; 0 inside.
-	void squaredDistances(const float (&x)[3], float (&result)[4]) const
+	Eigen::Array4f squaredDistances(const float (&x)[3]) const
 	{
 		using Four = Eigen::Array4f;
 		Four sum = Four::Zero();
@@ -57,8 +57,7 @@ public:
 			const Four above = x[axis] - Eigen::Map<const Four>(high[axis]);
 			sum += below.max(above).max(0.f).square();
 		}
-		Eigen::Map<Four> out(result);
-		out = sum;
+		return sum;
 	}
 
 	/// How far [from, to] is from each box along the axis on which it is farthest; 0 or less where they

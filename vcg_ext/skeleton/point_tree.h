@@ -7,6 +7,7 @@
 #define VCG_MCF_POINT_TREE_H
 
 #include "four_boxes.h"
+#include "four_slabs.h"
 #include "progress.h"
 #include "ticker.h"
 
@@ -25,11 +26,12 @@
 namespace vcg::tri::mcf {
 
 /**
- * A balanced kd-tree with four children a node and tight boxes, split at medians of the longest side.
+ * A balanced kd-tree with four children a node, split at medians of the longest side, each with a tight
+ * box and, since the points are mostly those of a surface, a thin slab.
  *
  * A library's nearest-neighbour query has a fixed centre; a shrinking ball moves its centre with
  * every contact it finds. search() lets the ball change during one descent, which saves the
- * repeated queries of the classical algorithm. Boxes and points are tested in single precision,
+ * repeated queries of the classical algorithm. Boxes, slabs and points are tested in single precision,
  * four side by side as vector instructions like it, with room for the rounding; what passes is
  * decided in double precision by the ball itself.
  */
@@ -110,6 +112,20 @@ private:
 	static constexpr size_t LeafSize = 32;
 	static constexpr int Lanes = 4;
 
+	/// The bounds of four children: points are in both, the box and the slab.
+	struct Node
+	{
+		FourBoxes boxes;
+		FourSlabs slabs;
+
+		/// At most the squared distances from x to the points of each child.
+		void squaredDistances(const float (&x)[3], float (&result)[4]) const
+		{
+			Eigen::Map<Eigen::Array4f> out(result);
+			out = boxes.squaredDistances(x).max(slabs.distances(x).square());
+		}
+	};
+
 	/// A ball about the tree's origin in single precision, enlarged by what rounding may lose.
 	struct SingleBall
 	{
@@ -142,7 +158,7 @@ private:
 	/// Of the sorted points, from the origin; padded by infinities.
 	std::array<std::vector<float>, 3> coordinate;
 	/// The inner nodes of a complete tree, the children of i from 4 i + 1 on. The leaves follow.
-	std::vector<FourBoxes> nodes;
+	std::vector<Node> nodes;
 	std::vector<int> leafStart; ///< in `sorted`, and where the last one ends
 	Point3d origin = Point3d(0, 0, 0);
 	double slack;
@@ -190,7 +206,7 @@ private:
 		struct Place
 		{
 			int node;
-			float squaredDistance; ///< of its box from the centre, when it was found
+			float squaredDistance; ///< of its bounds from the centre, when it was found
 		};
 		std::array<Place, 64> stack; // three a level and one to spare; 4^16 leaves fill it
 		int top = 0;
@@ -308,7 +324,10 @@ private:
 		for (int k = 0; k < 4; ++k) {
 			report(cuts[k]);
 			const Box3d quarter = bounds(samples, cuts[k], cuts[k + 1]);
-			nodes[node].set(k, quarter, origin);
+			nodes[node].boxes.set(k, quarter, origin);
+			nodes[node].slabs.set(
+				k, cuts[k + 1] - cuts[k], [&](int i) { return samples[cuts[k] + i].point; }, origin,
+				slack);
 			build(samples, quarter, 4 * node + 1 + k, cuts[k], cuts[k + 1], progress);
 		}
 	}
