@@ -81,9 +81,11 @@ TEST(VertexKinds, TheSameAtAnySizeAndForEachBodyAsAlone)
 	std::vector<VertexKind> both = ofPlate;
 	both.insert(both.end(), ofBody.begin(), ofBody.end());
 	EXPECT_EQ(vertexKinds(stageOf(shapes::scaled(plate, 1e-4))), ofPlate);
-	EXPECT_EQ(vertexKinds(stageOf(shapes::joined(
-				  {plate, shapes::moved(shapes::scaled(body, 1000), {5000, 0, 0})}))),
-		both);
+	for (const double times : {1.5, 1e3, 1e6})
+		EXPECT_EQ(vertexKinds(stageOf(shapes::joined(
+					  {plate, shapes::moved(shapes::scaled(body, times), {5 * times, 0, 0})}))),
+			both)
+			<< times;
 }
 
 TEST(VertexKinds, TheSameInAnyNumbering)

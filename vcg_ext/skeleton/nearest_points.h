@@ -6,6 +6,7 @@
 #ifndef VCG_MCF_NEAREST_POINTS_H
 #define VCG_MCF_NEAREST_POINTS_H
 
+#include "cell_grid.h"
 #include "parallel_blocks.h"
 #include "point_tree.h"
 #include "progress.h"
@@ -17,81 +18,9 @@
 #include <array>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 #include <vector>
 
 namespace vcg::tri::mcf {
-
-namespace detail {
-
-/// A grid of cubic cells, numbered row by row along x, then y, then z.
-struct CellGrid
-{
-	static constexpr int bits = 12; ///< of a cell's place along an axis
-	/// From a cell to the next along y and along z.
-	static constexpr std::int64_t nextRow = std::int64_t(1) << bits, nextLayer = nextRow << bits;
-
-	/// @param box of all points; wanted: the size of the cells, larger if they would be too many.
-	CellGrid(const Box3d& box, double wanted) : low(box.min)
-	{
-		constexpr double most = (1 << bits) - 4; // one to spare at either end, and for rounding
-		const double longest = std::max({box.DimX(), box.DimY(), box.DimZ()});
-		size = std::max(wanted, longest / most);
-		if (!(size > 0))
-			size = 1;
-	}
-
-	std::int64_t cellOf(const Point3d& p) const
-	{
-		const auto place = [&](int axis) { return 1 + std::int64_t((p[axis] - low[axis]) / size); };
-		return place(0) + nextRow * place(1) + nextLayer * place(2);
-	}
-
-	double size;
-
-private:
-	Point3d low;
-};
-
-/// Points in the order of their cells.
-struct PointsByCell
-{
-	std::vector<std::int64_t> cell;
-	std::vector<int> id;
-
-	PointsByCell(const std::vector<Point3d>& points, const CellGrid& grid) :
-			cell(points.size()), id(points.size())
-	{
-		struct Entry
-		{
-			std::int64_t cell;
-			int id;
-		};
-		std::vector<Entry> entries, sorted(points.size());
-		entries.reserve(points.size());
-		for (const Point3d& p : points)
-			entries.push_back({grid.cellOf(p), int(entries.size())});
-		constexpr std::int64_t places = CellGrid::nextRow;
-		for (int axis = 0; axis < 3; ++axis) {
-			const auto place = [&](const Entry& e) {
-				return size_t((e.cell >> axis * CellGrid::bits) % places);
-			};
-			std::array<int, places + 1> start = {};
-			for (const Entry& e : entries)
-				++start[place(e) + 1];
-			std::partial_sum(start.begin(), start.end(), start.begin());
-			for (const Entry& e : entries)
-				sorted[start[place(e)]++] = e;
-			entries.swap(sorted);
-		}
-		for (size_t i = 0; i < entries.size(); ++i) {
-			cell[i] = entries[i].cell;
-			id[i] = entries[i].id;
-		}
-	}
-};
-
-} // namespace detail
 
 /**
  * For each query the id of the point nearest to it, the lowest of several: PointTree::nearest(), in
@@ -121,7 +50,11 @@ inline std::vector<int> nearestPoints(const std::vector<Point3d>& points,
 		for (const Point3d& p : *some)
 			box.Add(p);
 	const detail::CellGrid grid(box, cellOfSpacing * spacing);
-	const detail::PointsByCell sources(points, grid), asked(queries, grid);
+	const auto sorted = [&](const std::vector<Point3d>& some) {
+		return detail::PointsByCell(
+			some.size(), [&](size_t i) -> const Point3d& { return some[i]; }, grid);
+	};
+	const detail::PointsByCell sources = sorted(points), asked = sorted(queries);
 	// Nearer than this, with room for rounding, two points are in neighbouring cells.
 	const double certain = (1 - 1e-6) * grid.size;
 	struct Candidate
