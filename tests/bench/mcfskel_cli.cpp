@@ -223,7 +223,7 @@ void run(const Options& options)
 	seconds.add("resample", watch.lap());
 	const mcf::SurfaceMesh& surface = checked.mesh;
 	int components = 0;
-	mcf::connectedComponents(surface, &components);
+	mcf::connectedComponents(surface, &components, progress);
 	report.add("mesh_components", components).add("vertices", surface.vertexCount());
 	if (!options.surface.empty())
 		bench::writeMesh(surface, options.surface);

@@ -6,8 +6,10 @@
 #ifndef VCG_MCF_BREADTH_FIRST_ORDER_H
 #define VCG_MCF_BREADTH_FIRST_ORDER_H
 
+#include "large_arrays.h"
 #include "progress.h"
 #include "surface_mesh.h"
+#include "ticker.h"
 
 #include <utility>
 #include <vector>
@@ -45,11 +47,13 @@ inline Numbering breadthFirstOrder(const SurfaceMesh& mesh, const std::vector<in
 	const Progress& progress = Progress())
 {
 	constexpr size_t reportEvery = 1 << 15;
+	const char* const what = "Ordering the surface";
+	const size_t faceSlots = size_t(mesh.faceSlots());
 	Numbering number;
-	number.vertex.assign(mesh.vertexSlots(), -1);
-	number.face.assign(mesh.faceSlots(), -1);
+	detail::fillReported(number.vertex, size_t(mesh.vertexSlots()), -1, progress, what);
+	detail::fillReported(number.face, faceSlots, -1, progress, what);
+	detail::fillReported(number.firstCorner, faceSlots, char(0), progress, what);
 	number.component.reserve(mesh.vertexCount());
-	number.firstCorner.assign(mesh.faceSlots(), 0);
 	std::vector<int> order; // of the vertices, each as the half-edge that its ring begins with
 	order.reserve(mesh.vertexCount());
 	const auto reach = [&](int first) {
@@ -68,7 +72,7 @@ inline Numbering breadthFirstOrder(const SurfaceMesh& mesh, const std::vector<in
 		reach(seed);
 		for (; next < order.size(); ++next) {
 			if (next % reportEvery == 0)
-				progress.report(double(next) / mesh.vertexCount(), "Ordering the surface");
+				progress.report(double(next) / mesh.vertexCount(), what);
 			int h = order[next];
 			do {
 				reach(mesh.twin(h));
@@ -111,27 +115,28 @@ inline std::vector<int> renumberBreadthFirst(
  * the half-edge out of the vertex with the least coordinates (x before y before z) to its neighbour
  * with the least.
  * @param component of each vertex slot, see connectedComponents().
- * @param placeOf   Point3d(vertex): the coordinates that count. Complexity: O(V).
+ * @param placeOf   Point3d(vertex): the coordinates that count.
+ * @throws Cancelled. Complexity: O(V).
  */
 template <class PlaceOf>
-std::vector<int> leastHalfEdges(
-	const SurfaceMesh& mesh, const std::vector<int>& component, int components, PlaceOf&& placeOf)
+std::vector<int> leastHalfEdges(const SurfaceMesh& mesh, const std::vector<int>& component,
+	int components, PlaceOf&& placeOf, const Progress& progress = Progress())
 {
 	const auto before = [](const Point3d& p, const Point3d& q) {
 		return p[0] != q[0] ? p[0] < q[0] : p[1] != q[1] ? p[1] < q[1] : p[2] < q[2];
 	};
 	std::vector<int> least(components, -1);
 	std::vector<Point3d> leastPlace(components);
-	for (int v = 0; v < mesh.vertexSlots(); ++v) {
+	detail::reportedLoop(mesh.vertexSlots(), progress, "Ordering the surface", [&](int v) {
 		if (!mesh.isVertex(v))
-			continue;
+			return;
 		const int c = component[v];
 		const Point3d place = placeOf(v);
 		if (least[c] < 0 || before(place, leastPlace[c])) {
 			least[c] = v;
 			leastPlace[c] = place;
 		}
-	}
+	});
 	for (int& seed : least) {
 		int best = mesh.outgoing(seed);
 		mesh.forEachOutgoing(seed, [&](int h) {

@@ -6,6 +6,7 @@
 #ifndef VCG_MCF_CHECK_INPUT_H
 #define VCG_MCF_CHECK_INPUT_H
 
+#include "large_arrays.h"
 #include "progress.h"
 #include "soup_repair.h"
 #include "surface_mesh.h"
@@ -38,7 +39,8 @@ inline std::vector<int> connectedComponents(
 {
 	// Sets of vertices that grow face by face, each known by its lowest vertex: unlike a walk over
 	// the surface that reads the mesh in the order in which it lies in memory.
-	std::vector<int> lowest(mesh.vertexSlots());
+	const char* const what = "Measuring the surface";
+	std::vector<int> lowest = detail::filledArray(size_t(mesh.vertexSlots()), 0, progress, what);
 	std::iota(lowest.begin(), lowest.end(), 0);
 	const auto find = [&](int v) {
 		while (lowest[v] != v)
@@ -50,7 +52,6 @@ inline std::vector<int> connectedComponents(
 		w = find(w);
 		lowest[std::max(v, w)] = std::min(v, w);
 	};
-	const char* const what = "Measuring the surface";
 	detail::reportedLoop(mesh.faceSlots(), progress.part(0, 0.8), what, [&](int f) {
 		if (!mesh.isFace(f))
 			return;
@@ -58,9 +59,11 @@ inline std::vector<int> connectedComponents(
 		unite(t[0], t[1]);
 		unite(t[1], t[2]);
 	});
-	std::vector<int> component(mesh.vertexSlots(), -1);
+	const Progress counting = progress.part(0.8, 1);
+	std::vector<int> component =
+		detail::filledArray(size_t(mesh.vertexSlots()), -1, counting, what);
 	int count = 0;
-	detail::reportedLoop(mesh.vertexSlots(), progress.part(0.8, 1), what, [&](int v) {
+	detail::reportedLoop(mesh.vertexSlots(), counting, what, [&](int v) {
 		if (!mesh.isVertex(v))
 			return;
 		const int first = find(v);
@@ -106,9 +109,10 @@ inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
 		return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
 	};
 	std::vector<size_t> notFinite;
-	for (size_t v = 0; v < points.size(); ++v)
+	detail::reportedLoop(int(points.size()), progress.part(0.02, 0.04), what, [&](int v) {
 		if (!isFinite(points[v]))
-			notFinite.push_back(v);
+			notFinite.push_back(size_t(v));
+	});
 	if (!notFinite.empty()) {
 		std::string which = std::to_string(notFinite[0]);
 		for (size_t i = 1; i < std::min<size_t>(3, notFinite.size()); ++i)
@@ -122,12 +126,13 @@ inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
 	}
 
 	std::optional<SurfaceMesh> ready =
-		SurfaceMesh::ifClosedManifold(points, triangles, progress.part(0.02, 0.5));
+		SurfaceMesh::ifClosedManifold(detail::copiedArray(points, progress.part(0.04, 0.04), what),
+			triangles, progress.part(0.04, 0.5));
 	RepairedSoup soup;
 	std::vector<int>& vertexOfInput = soup.vertexOfInput;
 	const bool asGiven = ready && ready->vertexCount() == ready->vertexSlots();
 	if (ready) {
-		vertexOfInput.resize(points.size());
+		detail::fillReported(vertexOfInput, points.size(), 0, progress.part(0.5, 0.5), what);
 		std::iota(vertexOfInput.begin(), vertexOfInput.end(), 0);
 		if (!asGiven)
 			soup.faces = triangles;
@@ -139,16 +144,20 @@ inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
 
 	if (!asGiven) {
 		// Number the referenced vertices in their own order.
-		std::vector<int> number(points.size(), -1);
-		for (const Triangle& t : soup.faces)
-			for (int v : t)
+		const Progress numbering = progress.part(0.5, 0.5);
+		std::vector<int> number = detail::filledArray(points.size(), -1, numbering, what);
+		detail::reportedLoop(int(soup.faces.size()), numbering, what, [&](int f) {
+			for (int v : soup.faces[f])
 				number[v] = 0;
+		});
 		std::vector<Point3d> used;
-		for (size_t v = 0; v < points.size(); ++v)
+		used.reserve(points.size());
+		detail::reportedLoop(int(points.size()), numbering, what, [&](int v) {
 			if (number[v] == 0) {
 				number[v] = int(used.size());
 				used.push_back(points[v]);
 			}
+		});
 		for (int& v : vertexOfInput)
 			v = number[v];
 		const size_t unreferenced =
@@ -156,9 +165,10 @@ inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
 		if (unreferenced)
 			result.notes.push_back(
 				std::to_string(unreferenced) + " unreferenced vertices were left out.");
-		for (Triangle& t : soup.faces)
-			for (int& v : t)
+		detail::reportedLoop(int(soup.faces.size()), numbering, what, [&](int f) {
+			for (int& v : soup.faces[f])
 				v = number[v];
+		});
 		ready = SurfaceMesh(std::move(used), soup.faces, progress.part(0.5, 0.8));
 	}
 
@@ -197,10 +207,12 @@ inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
 			+ detail::countAndPlaces(flat.size(), "encloses no volume", "enclose no volume", flat)
 			+ ". Scale or remove the flat part ('Remove Isolated pieces (wrt Diameter)').");
 	if (insideOut) {
-		std::vector<Triangle> faces = mesh.triangles();
-		for (Triangle& t : faces)
-			if (volume[component[t[0]]] < 0)
-				std::swap(t[1], t[2]);
+		const Progress turning = progress.part(0.9, 0.9);
+		std::vector<Triangle> faces = mesh.triangles(turning);
+		detail::reportedLoop(int(faces.size()), turning, what, [&](int f) {
+			if (volume[component[faces[f][0]]] < 0)
+				std::swap(faces[f][1], faces[f][2]);
+		});
 		mesh = SurfaceMesh(std::move(mesh.position), faces, progress.part(0.9, 1));
 		result.notes.push_back(insideOut == components
 				? std::string("The mesh was inside out and has been turned.")

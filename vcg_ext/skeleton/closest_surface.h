@@ -62,8 +62,8 @@ public:
 			vertexCount(int(vertices.size())),
 			tree(samples(vertices, spacing, progress.part(0, 0.3)), progress.part(0.3, 1))
 	{
-		for (int v : vertices)
-			box.Add(surface.position[v]);
+		detail::reportedLoop(int(vertices.size()), progress.part(1, 1), sorting,
+			[&](int i) { box.Add(surface.position[vertices[i]]); });
 	}
 
 	/**
@@ -91,14 +91,15 @@ public:
 	}
 
 	/// The places of the vertices among those given at the beginning, in an order in which neighbours are
-	/// near each other.
-	std::vector<int> vertexOrder() const
+	/// near each other. @throws Cancelled
+	std::vector<int> vertexOrder(const Progress& progress = Progress()) const
 	{
 		std::vector<int> order;
 		order.reserve(vertexCount);
-		for (int sample : tree.order())
-			if (sample < vertexCount)
+		detail::reportedLoop(tree.size(), progress, sorting, [&](int slot) {
+			if (const int sample = tree.order()[slot]; sample < vertexCount)
 				order.push_back(sample);
+		});
 		return order;
 	}
 
@@ -192,6 +193,8 @@ private:
 		}
 	};
 
+	static constexpr const char* sorting = "Sorting the surface";
+
 	const SurfaceMesh& surface;
 	int vertexCount; ///< the first samples are the vertices
 	std::vector<int> faceOfSample;
@@ -201,21 +204,20 @@ private:
 	std::vector<Point3d> samples(
 		const std::vector<int>& vertices, double spacing, const Progress& progress)
 	{
-		detail::Ticker ticker(progress, "Sorting the surface", int(vertices.size()));
 		std::vector<Point3d> points;
 		points.reserve(vertices.size());
 		faceOfSample.reserve(vertices.size());
-		for (int v : vertices) {
-			points.push_back(surface.position[v]);
-			faceOfSample.push_back(surface.outgoing(v) / 3);
-		}
-		for (int v : vertices) {
-			ticker.tick();
-			surface.forEachOutgoing(v, [&](int h) {
+		const int count = int(vertices.size());
+		detail::reportedLoop(count, progress.part(0, 0.3), sorting, [&](int i) {
+			points.push_back(surface.position[vertices[i]]);
+			faceOfSample.push_back(surface.outgoing(vertices[i]) / 3);
+		});
+		detail::reportedLoop(count, progress.part(0.3, 1), sorting, [&](int i) {
+			surface.forEachOutgoing(vertices[i], [&](int h) {
 				if (h % 3 == 0) // each face once
 					sampleInside(h / 3, spacing, points);
 			});
-		}
+		});
 		return points;
 	}
 

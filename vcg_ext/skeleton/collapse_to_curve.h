@@ -181,7 +181,7 @@ inline void straightenZigzag(GluedComplex& complex, const Stage& stage, double s
 inline CurveSkeleton collapseToCurve(
 	Stage stage, double shortestEdge = 1e-4, const Progress& progress = Progress())
 {
-	StageFrames frames(stage);
+	StageFrames frames(stage, progress.part(0, 0));
 	frames.enter(stage);
 	GluedComplex complex(stage.mesh, stage.held);
 	detail::contractAllFaces(complex, progress.part(0, 0.9));
@@ -189,6 +189,7 @@ inline CurveSkeleton collapseToCurve(
 	detail::straightenZigzag(complex, stage, shortestEdge);
 	detail::contractShortCurveEdges(complex, stage, shortestEdge);
 
+	const char* const what = "Collapsing to curves";
 	CurveSkeleton skeleton;
 	std::vector<int> number(complex.nodeSlots(), -1), component;
 	std::vector<char> held;
@@ -204,9 +205,9 @@ inline CurveSkeleton collapseToCurve(
 			for (int B : complex.curveNeighbours(A))
 				if (A < B)
 					skeleton.edges.push_back({number[A], number[B]});
-	skeleton.node.resize(stage.node.size());
-	for (size_t s = 0; s < stage.node.size(); ++s)
-		skeleton.node[s] = number[complex.find(stage.node[s])];
+	skeleton.node.reserve(stage.node.size());
+	detail::reportedLoop(int(stage.node.size()), progress.part(0.9, 0.95), what,
+		[&](int s) { skeleton.node.push_back(number[complex.find(stage.node[s])]); });
 
 	constexpr double spurProminence = 0.12; // some more than a tenth: balls reach to vertices only
 	skeleton.radius.assign(skeleton.position.size(), 0);
@@ -214,9 +215,10 @@ inline CurveSkeleton collapseToCurve(
 		std::move(skeleton), stage, component, held, spurProminence, progress.part(0.95, 1));
 
 	// A node of split vertices only has no surface vertex: it takes the mean of its neighbours' radii.
-	skeleton.radius = meanSurfaceDistance(skeleton.position, *stage.surface, skeleton.node);
+	skeleton.radius =
+		meanSurfaceDistance(skeleton.position, *stage.surface, skeleton.node, progress.part(1, 1));
 	fillUnknownRadii(skeleton.radius, skeleton.neighbours());
-	progress.report(1, "Collapsing to curves");
+	progress.report(1, what);
 	return skeleton;
 }
 

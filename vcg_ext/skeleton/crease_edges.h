@@ -6,6 +6,7 @@
 #ifndef VCG_MCF_CREASE_EDGES_H
 #define VCG_MCF_CREASE_EDGES_H
 
+#include "large_arrays.h"
 #include "progress.h"
 #include "surface_mesh.h"
 #include "ticker.h"
@@ -51,24 +52,27 @@ public:
 		progress.report(0, findingCreases);
 		const std::vector<Point3d> normals = unitNormals(surface, progress.part(0, 0.5));
 		detail::reportedLoop(
-			surface.halfEdgeSlots(), progress.part(0.5, 1), findingCreases, [&](int h) {
+			surface.halfEdgeSlots(), progress.part(0.5, 0.9), findingCreases, [&](int h) {
 				if (surface.isEdge(h) && isSharp(normals[h / 3], normals[surface.twin(h) / 3]))
 					candidates.push_back(h);
 			});
 		if (candidates.empty())
 			return;
-		std::vector<char> candidate(surface.halfEdgeSlots(), 0);
+		const Progress chains = progress.part(0.9, 1);
+		const size_t slots = size_t(surface.halfEdgeSlots());
+		std::vector<char> candidate = detail::filledArray(slots, char(0), chains, findingCreases);
 		for (int h : candidates)
 			candidate[h] = candidate[surface.twin(h)] = 1;
-		marks.assign(surface.halfEdgeSlots(), 0);
+		detail::fillReported(marks, slots, char(0), chains, findingCreases);
 		bool any = false;
-		for (int h : candidates) {
+		detail::reportedLoop(int(candidates.size()), chains, findingCreases, [&](int i) {
+			const int h = candidates[i];
 			const double wanted = shortest(surface.origin(h));
 			if (chainLength(surface, candidate, h, wanted) < wanted)
-				continue;
+				return;
 			marks[h] = marks[surface.twin(h)] = 1;
 			any = true;
-		}
+		});
 		if (!any)
 			marks.clear();
 	}
@@ -77,15 +81,18 @@ public:
 	bool isCrease(int h) const { return !marks.empty() && marks[h]; }
 
 	/// The role of each vertex slot of `surface`; empty if there are no creases.
-	std::vector<CreaseRole> roles(const SurfaceMesh& surface) const
+	/// @throws Cancelled
+	std::vector<CreaseRole> roles(
+		const SurfaceMesh& surface, const Progress& progress = Progress()) const
 	{
 		std::vector<CreaseRole> role;
 		if (empty())
 			return role;
 		role.assign(surface.vertexSlots(), CreaseRole::Smooth);
-		for (int h = 0; h < surface.halfEdgeSlots(); ++h)
+		detail::reportedLoop(surface.halfEdgeSlots(), progress, findingCreases, [&](int h) {
 			if (marks[h] && surface.isHalfEdge(h))
 				role[surface.origin(h)] = roleAt(surface, h);
+		});
 		return role;
 	}
 
@@ -177,7 +184,8 @@ private:
 
 	static std::vector<Point3d> unitNormals(const SurfaceMesh& surface, const Progress& progress)
 	{
-		std::vector<Point3d> normals(surface.faceSlots(), Point3d(0, 0, 0));
+		std::vector<Point3d> normals = detail::filledArray(
+			size_t(surface.faceSlots()), Point3d(0, 0, 0), progress, findingCreases);
 		detail::reportedLoop(surface.faceSlots(), progress, findingCreases, [&](int f) {
 			if (!surface.isFace(f))
 				return;

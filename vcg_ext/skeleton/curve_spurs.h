@@ -39,7 +39,8 @@ inline CurveSkeleton withoutSpurs(CurveSkeleton skeleton, const Stage& stage,
 		neighbours.begin(), neighbours.end(), [](const auto& n) { return n.size() > 2; });
 	if (!branched)
 		return skeleton;
-	const std::vector<int> componentOfPoint = componentOfSurfaceVertices(stage);
+	const std::vector<int> componentOfPoint =
+		componentOfSurfaceVertices(stage, progress.part(0, 0));
 	for (size_t v = 0; v < neighbours.size(); ++v) {
 		if (held[v]) {
 			skeleton.radius[v] = infinity;
@@ -47,12 +48,14 @@ inline CurveSkeleton withoutSpurs(CurveSkeleton skeleton, const Stage& stage,
 		}
 		if (neighbours[v].size() == 2)
 			continue;
-		progress.report(double(v) / neighbours.size(), "Collapsing to curves");
+		const double done = double(v) / double(neighbours.size());
 		double squared = infinity;
-		for (size_t s = 0; s < stage.surface->size(); ++s)
-			if (componentOfPoint[s] == component[v])
-				squared =
-					std::min(squared, SquaredDistance(skeleton.position[v], (*stage.surface)[s]));
+		reportedLoop(int(stage.surface->size()), progress.part(done, done), "Collapsing to curves",
+			[&](int s) {
+				if (componentOfPoint[s] == component[v])
+					squared = std::min(
+						squared, SquaredDistance(skeleton.position[v], (*stage.surface)[s]));
+			});
 		skeleton.radius[v] = std::sqrt(squared);
 	}
 	return withoutTerminalBranches(

@@ -8,6 +8,7 @@
 
 #include "breadth_first_order.h"
 #include "halved_edges.h"
+#include "large_arrays.h"
 #include "measured_surface.h"
 #include "parameters.h"
 #include "poles.h"
@@ -89,24 +90,24 @@ FlowSurface surfaceForFlow(const SurfaceMesh& surface, double epsilon,
 			mesh, number.component, number.components, progress.part(0.2, 0.3));
 		result.diagonal = measured.diagonals();
 		result.area = measured.areas();
-		mayBeCoarse = isAny(coarseComponents(measured, epsilon));
+		mayBeCoarse = isAny(coarseComponents(measured, epsilon, {}, progress.part(0.3, 0.3)));
 	}
 	if (mayBeCoarse) {
 		const Progress part = progress.part(0.3, 0.3);
 		const MeasuredSurface measured(surface, part);
 		const std::vector<char> coarse =
-			coarseComponents(measured, epsilon, polesOfSurface(part).radius);
+			coarseComponents(measured, epsilon, polesOfSurface(part).radius, part);
 		if (isAny(coarse)) {
 			const SurfaceMesh halved =
 				withHalvedEdges(measured, longestEdgesForFlow(measured, coarse, epsilon), part);
-			const std::vector<int> component = connectedComponents(halved);
+			const std::vector<int> component = connectedComponents(halved, nullptr, part);
 			const auto placeOf = [&](int v) {
 				return measured.frame(component[v]).onGrid(halved.position[v]);
 			};
-			number = breadthFirstOrder(
-				halved, leastHalfEdges(halved, component, measured.components(), placeOf), part);
-			mesh = halved.renumbered(number.vertex, number.face, number.firstCorner);
-			result.finer = mesh;
+			number = breadthFirstOrder(halved,
+				leastHalfEdges(halved, component, measured.components(), placeOf, part), part);
+			mesh = halved.renumbered(number.vertex, number.face, number.firstCorner, part);
+			result.finer = mesh.copied(part);
 		}
 	}
 	std::vector<double> length;
@@ -114,18 +115,19 @@ FlowSurface surfaceForFlow(const SurfaceMesh& surface, double epsilon,
 		length.push_back(coarseningOfEpsilon * epsilon * diagonal);
 	std::vector<int> mergedInto = coarsen(
 		mesh, [&](int v) { return length[number.component[v]]; }, progress.part(0.3, 0.9));
-	const std::vector<int> place = mesh.compact();
+	const std::vector<int> place = mesh.compact(progress.part(0.9, 0.93));
 	result.component = renumbered(number.component, place, mesh.vertexSlots());
 	result.survivor.assign(mesh.vertexSlots(), -1);
 	result.inFiner.resize(result.finer ? mesh.vertexSlots() : 0);
-	result.node.resize(surface.vertexSlots());
-	detail::reportedLoop(
-		surface.vertexSlots(), progress.part(0.9, 1), "Ordering the surface", [&](int v) {
-			const int ordered = number.vertex[v];
-			result.node[v] = place[mergedInto[ordered]];
-			if (place[ordered] >= 0)
-				result.survivor[place[ordered]] = v;
-		});
+	const char* const what = "Ordering the surface";
+	const Progress end = progress.part(0.93, 1);
+	detail::fillReported(result.node, size_t(surface.vertexSlots()), -1, end, what);
+	detail::reportedLoop(surface.vertexSlots(), end, what, [&](int v) {
+		const int ordered = number.vertex[v];
+		result.node[v] = place[mergedInto[ordered]];
+		if (place[ordered] >= 0)
+			result.survivor[place[ordered]] = v;
+	});
 	if (result.finer)
 		for (size_t v = 0; v < place.size(); ++v)
 			if (place[v] >= 0)
@@ -199,11 +201,10 @@ inline Stage firstStage(const SurfaceMesh& surface, const Parameters& parameters
 	stage.component = std::move(start.component);
 	stage.diagonal = std::move(start.diagonal);
 	stage.initialArea = std::move(start.area);
-	const auto report = [&] { progress.report(1, "Ordering the surface"); };
-	report();
-	stage.initialVolume = surface.volume();
-	report();
-	stage.surface = std::make_shared<const std::vector<Point3d>>(surface.position);
+	const Progress end = progress.part(1, 1);
+	stage.initialVolume = surface.volume(end);
+	stage.surface = std::make_shared<const std::vector<Point3d>>(
+		detail::copiedArray(surface.position, end, "Copying the surface"));
 	stage.mesh = std::move(start.mesh);
 	stage.node = std::move(start.node);
 	const Extent extent =

@@ -6,10 +6,12 @@
 #ifndef VCG_MCF_HALVED_EDGES_H
 #define VCG_MCF_HALVED_EDGES_H
 
+#include "large_arrays.h"
 #include "measured_surface.h"
 #include "parameters.h"
 #include "progress.h"
 #include "surface_mesh.h"
+#include "ticker.h"
 
 #include <algorithm>
 #include <cmath>
@@ -46,10 +48,10 @@ inline double epsilonOfEdges(double epsilon)
  *
  * @param radius    of the inner medial ball at each vertex, -1 where it has none; empty: by the edges
  *                  alone, which finds all that are coarse, and perhaps more.
- * @return 1 for each component that is. @pre mesh is compact. Complexity: O(F).
+ * @return 1 for each component that is. @pre mesh is compact. @throws Cancelled. Complexity: O(F).
  */
-inline std::vector<char> coarseComponents(
-	const MeasuredSurface& surface, double epsilon, const std::vector<double>& radius = {})
+inline std::vector<char> coarseComponents(const MeasuredSurface& surface, double epsilon,
+	const std::vector<double>& radius = {}, const Progress& progress = Progress())
 {
 	constexpr double coarsePart = 0.25;
 	const SurfaceMesh& mesh = surface.mesh();
@@ -67,14 +69,14 @@ inline std::vector<char> coarseComponents(
 	for (int c = 0; c < surface.components(); ++c)
 		fine.push_back(longOfEpsilon * detail::epsilonOfEdges(epsilon) * surface.diagonal(c));
 	std::vector<double> coarseArea(fine.size(), 0);
-	for (int f = 0; f < mesh.faceSlots(); ++f) {
+	detail::reportedLoop(mesh.faceSlots(), progress, "Measuring the surface", [&](int f) {
 		const Triangle t = mesh.triangle(f);
 		const int c = surface.component()[t[0]];
 		const double length2 = std::max({mesh.squaredLength(3 * f), mesh.squaredLength(3 * f + 1),
 			mesh.squaredLength(3 * f + 2)});
 		if (length2 > fine[c] * fine[c] && length2 > thickness(t) * thickness(t))
 			coarseArea[c] += mesh.areaVector(f).Norm() / 2;
-	}
+	});
 	std::vector<char> coarse;
 	for (int c = 0; c < surface.components(); ++c)
 		coarse.push_back(coarseArea[c] > coarsePart * surface.area(c));
@@ -132,11 +134,13 @@ inline SurfaceMesh withHalvedEdges(const MeasuredSurface& surface,
 {
 	constexpr int reportEvery = 1 << 14;
 	const char* const what = "Halving long edges";
-	SurfaceMesh mesh = surface.mesh();
+	const Progress begin = progress.part(0, 0);
+	SurfaceMesh mesh = surface.mesh().copied(begin);
 	std::vector<int> component = surface.component();
-	std::vector<Point3d> inside(mesh.position.size());
-	for (size_t v = 0; v < inside.size(); ++v)
-		inside[v] = surface.frame(component[v]).onGrid(mesh.position[v]);
+	std::vector<Point3d> inside =
+		detail::filledArray(mesh.position.size(), Point3d(0, 0, 0), begin, what);
+	detail::reportedLoop(mesh.vertexSlots(), begin, what,
+		[&](int v) { inside[v] = surface.frame(component[v]).onGrid(mesh.position[v]); });
 	std::vector<double> limit;
 	for (int c = 0; c < surface.components(); ++c)
 		limit.push_back(surface.frame(c).lengthOnGrid(longest[c]));
@@ -152,9 +156,10 @@ inline SurfaceMesh withHalvedEdges(const MeasuredSurface& surface,
 		const Point3d middle = (inside[a] + inside[b]) / 2;
 		queue.emplace(length2, middle[0], middle[1], middle[2], h, a, b);
 	};
-	for (int h = 0; h < mesh.halfEdgeSlots(); ++h)
+	detail::reportedLoop(mesh.halfEdgeSlots(), begin, what, [&](int h) {
 		if (mesh.isEdge(h))
 			push(h);
+	});
 	for (int count = 0; !queue.empty(); ++count) {
 		if (count % reportEvery == 0)
 			progress.report(0, what);
@@ -170,7 +175,7 @@ inline SurfaceMesh withHalvedEdges(const MeasuredSurface& surface,
 			push(SurfaceMesh::next(e));
 		});
 	}
-	mesh.compact();
+	mesh.compact(progress.part(1, 1));
 	progress.report(1, what);
 	return mesh;
 }

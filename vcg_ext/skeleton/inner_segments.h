@@ -7,6 +7,7 @@
 #define VCG_MCF_INNER_SEGMENTS_H
 
 #include "four_boxes.h"
+#include "large_arrays.h"
 #include "point_tree.h"
 #include "progress.h"
 #include "surface_mesh.h"
@@ -43,13 +44,15 @@ public:
 	{
 		const char* const what = "Sorting the surface";
 		sortFaces(tree.order(), progress.part(0, 0.5), what);
-		const Box3d all = mesh.bounds();
+		const Progress ofBoxes = progress.part(0.5, 1);
+		const Box3d all = mesh.bounds(ofBoxes.part(0, 0));
 		origin = all.Center();
 		slack = FourBoxes::slack(all.Diag());
 		double longest = 0;
-		std::vector<Box3d> boxes((faces.size() + 3) / 4);
-		levels.emplace_back(boxes.size());
-		detail::reportedLoop(int(faces.size()), progress.part(0.5, 1), what, [&](int i) {
+		const auto four = [](size_t count) { return (count + 3) / 4; };
+		std::vector<Box3d> boxes = detail::filledArray(four(faces.size()), Box3d(), ofBoxes, what);
+		levels.push_back(detail::filledArray(boxes.size(), FourBoxes(), ofBoxes, what));
+		detail::reportedLoop(int(faces.size()), ofBoxes, what, [&](int i) {
 			Box3d box;
 			for (int k = 0; k < 3; ++k) {
 				const Point3d& p = mesh.position[faces[i][k]];
@@ -62,12 +65,14 @@ public:
 		});
 		largestPower = longest / 3;
 		while (boxes.size() > 1) {
-			std::vector<FourBoxes> level((boxes.size() + 3) / 4);
-			std::vector<Box3d> above(level.size());
-			for (size_t i = 0; i < boxes.size(); ++i) {
+			const Progress end = progress.part(1, 1);
+			std::vector<FourBoxes> level =
+				detail::filledArray(four(boxes.size()), FourBoxes(), end, what);
+			std::vector<Box3d> above = detail::filledArray(level.size(), Box3d(), end, what);
+			detail::reportedLoop(int(boxes.size()), end, what, [&](int i) {
 				level[i / 4].set(i % 4, boxes[i], origin);
 				above[i / 4].Add(boxes[i]);
-			}
+			});
 			levels.push_back(std::move(level));
 			boxes = std::move(above);
 		}
@@ -102,20 +107,21 @@ private:
 	/// Orders the faces by the lowest place of a corner in the order of the vertices.
 	void sortFaces(const std::vector<int>& order, const Progress& progress, const char* what)
 	{
-		std::vector<int> place(order.size());
-		for (size_t i = 0; i < order.size(); ++i)
-			place[order[i]] = int(i);
+		std::vector<int> place = detail::filledArray(order.size(), 0, progress, what);
+		detail::reportedLoop(
+			int(order.size()), progress.part(0, 0), what, [&](int i) { place[order[i]] = i; });
 		const auto key = [&](int f) {
 			const Triangle t = mesh.triangle(f);
 			return std::min({place[t[0]], place[t[1]], place[t[2]]});
 		};
-		std::vector<int> start(order.size() + 1, 0);
+		std::vector<int> start = detail::filledArray(order.size() + 1, 0, progress, what);
 		detail::reportedLoop(
 			mesh.faceSlots(), progress.part(0, 0.5), what, [&](int f) { ++start[key(f) + 1]; });
-		for (size_t i = 1; i < start.size(); ++i)
-			start[i] += start[i - 1];
-		faces.resize(mesh.faceSlots());
-		detail::reportedLoop(mesh.faceSlots(), progress.part(0.5, 1), what,
+		const Progress placing = progress.part(0.5, 1);
+		detail::reportedLoop(
+			int(order.size()), placing.part(0, 0), what, [&](int i) { start[i + 1] += start[i]; });
+		detail::fillReported(faces, size_t(mesh.faceSlots()), Triangle(), placing, what);
+		detail::reportedLoop(mesh.faceSlots(), placing, what,
 			[&](int f) { faces[start[key(f)]++] = mesh.triangle(f); });
 	}
 

@@ -54,20 +54,22 @@ public:
 	 */
 	void refine(const Progress& progress)
 	{
-		tracked.startPatches();
-		splitLongEdges(progress);
+		tracked.startPatches(progress.part(0, 0.1));
+		splitLongEdges(progress.part(0.1, 0.8));
 		tracked.endPatches();
-		tracked.renumber();
+		tracked.renumber(progress.part(0.8, 1));
 	}
 
 	/// Splits every edge longer than 4/3 of the target at its middle, the longest first.
 	void splitLongEdges(const Progress& progress)
 	{
+		const char* const what = "Splitting long edges";
 		LongEdgeQueue queue(mesh, [&](int v) { return longestEdge * tracked.lengthAt(v); });
-		for (int h = 0; h < mesh.halfEdgeSlots(); ++h)
+		reportedLoop(mesh.halfEdgeSlots(), progress.part(0, 0.1), what, [&](int h) {
 			if (mesh.isHalfEdge(h) && queue.isTooLong(h) && mesh.isEdge(h))
 				queue.push(h);
-		Ticker ticker(progress, "Splitting long edges", queue.size());
+		});
+		Ticker ticker(progress.part(0.1, 1), what, queue.size());
 		for (int h = queue.pop(); h >= 0; h = queue.pop()) {
 			ticker.tick();
 			const int m = tracked.split(h);

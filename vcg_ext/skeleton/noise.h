@@ -6,6 +6,7 @@
 #ifndef VCG_MCF_NOISE_H
 #define VCG_MCF_NOISE_H
 
+#include "large_arrays.h"
 #include "measured_surface.h"
 #include "progress.h"
 #include "surface_mesh.h"
@@ -27,7 +28,8 @@ class RingMeans
 public:
 	/// @pre mesh is compact. @param what it is done for. @throws Cancelled
 	RingMeans(const SurfaceMesh& mesh, const Progress& progress, const char* what) :
-			mesh(mesh), what(what), valences(mesh.vertexSlots(), 0)
+			mesh(mesh), what(what),
+			valences(filledArray(size_t(mesh.vertexSlots()), 0, progress, what))
 	{
 		reportedLoop(
 			mesh.halfEdgeSlots(), progress, what, [&](int h) { ++valences[mesh.origin(h)]; });
@@ -40,15 +42,15 @@ public:
 	std::vector<Point3d> of(const std::vector<Point3d>& values, const Progress& progress) const
 	{
 		// In the order of the faces, which lie side by side, unlike those of a ring.
-		std::vector<Point3d> mean(values.size(), Point3d(0, 0, 0));
-		reportedLoop(mesh.faceSlots(), progress, what, [&](int f) {
+		std::vector<Point3d> mean = filledArray(values.size(), Point3d(0, 0, 0), progress, what);
+		reportedLoop(mesh.faceSlots(), progress.part(0, 0.8), what, [&](int f) {
 			const auto [a, b, c] = mesh.triangle(f);
 			mean[a] += values[b];
 			mean[b] += values[c];
 			mean[c] += values[a];
 		});
-		for (size_t v = 0; v < mean.size(); ++v)
-			mean[v] /= double(valences[v]);
+		reportedLoop(int(mean.size()), progress.part(0.8, 1), what,
+			[&](int v) { mean[v] /= double(valences[v]); });
 		return mean;
 	}
 
@@ -62,8 +64,10 @@ private:
 class BilaplacianRows
 {
 public:
-	BilaplacianRows(const SurfaceMesh& mesh, const RingMeans& rings) :
-			mesh(mesh), rings(rings), entry(mesh.vertexSlots(), 0)
+	/// @throws Cancelled
+	BilaplacianRows(const SurfaceMesh& mesh, const RingMeans& rings, const Progress& progress) :
+			mesh(mesh), rings(rings),
+			entry(filledArray(size_t(mesh.vertexSlots()), 0.0, progress, measuringNoise))
 	{
 	}
 
@@ -132,7 +136,7 @@ inline std::vector<double> noiseLevel(
 	std::vector<Point3d> normal = mesh.vertexNormals(progress.part(0.1, 0.2));
 	for (int round = 0; round < normalRounds; ++round)
 		normal = rings.of(normal, progress.part(0.2 + 0.2 * round, 0.4 + 0.2 * round));
-	detail::BilaplacianRows rows(mesh, rings);
+	detail::BilaplacianRows rows(mesh, rings, progress.part(0.8, 0.8));
 	const int components = surface.components();
 	std::vector<int> size(components, 0), seen(components, 0);
 	for (int c : surface.component())

@@ -8,6 +8,7 @@
 
 #include "four_boxes.h"
 #include "four_slabs.h"
+#include "large_arrays.h"
 #include "progress.h"
 #include "ticker.h"
 
@@ -40,15 +41,16 @@ class PointTree
 public:
 	/// @pre the points are finite. @throws Cancelled. Complexity: O(n log n).
 	explicit PointTree(const std::vector<Point3d>& points, const Progress& progress = Progress()) :
-			ids(points.size()), sorted(points.size())
+			ids(detail::filledArray(points.size(), 0, progress, sorting)),
+			sorted(detail::filledArray(points.size(), Point3d(), progress, sorting))
 	{
 		Box3d box;
 		std::vector<Sample> samples;
 		samples.reserve(points.size());
-		for (const Point3d& p : points) {
-			samples.push_back({p, int(samples.size())});
-			box.Add(p);
-		}
+		detail::reportedLoop(int(points.size()), progress.part(0, 0), sorting, [&](int i) {
+			samples.push_back({points[i], i});
+			box.Add(points[i]);
+		});
 		if (!points.empty())
 			origin = box.Center();
 		slack = points.empty() ? 0 : FourBoxes::slack(box.Diag());
@@ -62,7 +64,8 @@ public:
 		build(samples, box, 0, 0, int(points.size()), progress.part(0, 0.9));
 		leafStart.push_back(int(points.size()));
 		for (std::vector<float>& values : coordinate)
-			values.assign(ids.size() + Lanes, std::numeric_limits<float>::infinity());
+			detail::fillReported(values, ids.size() + Lanes, std::numeric_limits<float>::infinity(),
+				progress.part(0.9, 0.9), sorting);
 		detail::reportedLoop(int(ids.size()), progress.part(0.9, 1), sorting, [&](int i) {
 			ids[i] = samples[i].id;
 			sorted[i] = samples[i].point;

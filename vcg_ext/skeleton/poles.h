@@ -54,24 +54,29 @@ PoleSet polesInShapeFrame(const SurfaceMesh& mesh, const std::vector<int>& verti
 	const bool single = components == 1;
 	const PrincipalFrame frame = single
 		? frames.front()
-		: PrincipalFrame::ofPoints(mesh.position, std::vector<int>(component.size(), 0), 1).front();
-	SurfaceMesh own = mesh;
+		: PrincipalFrame::ofPoints(
+			mesh.position, std::vector<int>(component.size(), 0), 1, progress.part(0.04, 0.04))
+			  .front();
+	SurfaceMesh own = mesh.copied(progress.part(0.04, 0.04));
 	reportedLoop(own.vertexSlots(), progress.part(0.04, 0.05), "Measuring the surface", [&](int v) {
 		Point3d& p = own.position[v];
 		p = single ? frame.onGrid(p) : frame.in(p);
 	});
 	std::vector<double> delta;
 	delta.reserve(vertices.size());
-	for (int v : vertices)
-		delta.push_back(poleTolerance * frame.lengthOnGrid(frames[component[v]].size()));
+	const int count = int(vertices.size());
+	reportedLoop(count, progress.part(0.05, 0.05), "Measuring the surface", [&](int i) {
+		const PrincipalFrame& ofComponent = frames[component[vertices[i]]];
+		delta.push_back(poleTolerance * frame.lengthOnGrid(ofComponent.size()));
+	});
 	PoleSet poles = find(own, delta, progress.part(0.05, 1));
-	for (size_t i = 0; i < vertices.size(); ++i) {
+	reportedLoop(count, progress.part(1, 1), "Measuring the surface", [&](int i) {
 		Point3d& centre = poles.centre[i];
 		centre = single ? frame.out(PrincipalFrame::rounded(centre))
 						: frames[component[vertices[i]]].snapped(frame.out(centre));
-		if (poles.has(int(i)))
+		if (poles.has(i))
 			poles.radius[i] = Distance(centre, mesh.position[vertices[i]]);
-	}
+	});
 	return poles;
 }
 

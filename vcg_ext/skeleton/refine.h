@@ -256,23 +256,24 @@ inline CurveSkeleton refine(const CurveSkeleton& curve, const SurfaceMesh& surfa
 			+ std::to_string(curve.node.size()) + " vertices, this one has "
 			+ std::to_string(surface.vertexSlots())
 			+ ": choose the surface that it was made from.");
-	for (int v : curve.node)
-		if (v >= int(curve.position.size()))
-			throw InvalidInput("The skeleton's correspondence names nodes that it does not have.");
-
 	const char* const what = "Refining the skeleton";
-	progress.report(0, what);
+	const Progress begin = progress.part(0, 0);
+	detail::reportedLoop(int(curve.node.size()), begin, what, [&](int s) {
+		if (curve.node[s] >= int(curve.position.size()))
+			throw InvalidInput("The skeleton's correspondence names nodes that it does not have.");
+	});
 	int components = 0;
 	const std::vector<int> component =
 		connectedComponents(surface, &components, progress.part(0, 0.01));
 	const std::vector<int> componentOfNode = refining::componentOfNodes(curve, component);
 	std::vector<std::vector<int>> vertices(components), nodes(components), edges(components);
-	for (int v = 0; v < surface.vertexSlots(); ++v)
-		vertices[component[v]].push_back(v);
-	std::vector<int> place(surface.vertexSlots());
-	for (const std::vector<int>& ofComponent : vertices)
-		for (size_t i = 0; i < ofComponent.size(); ++i)
-			place[ofComponent[i]] = int(i);
+	std::vector<int> place;
+	place.reserve(surface.vertexSlots());
+	detail::reportedLoop(surface.vertexSlots(), progress.part(0.01, 0.01), what, [&](int v) {
+		std::vector<int>& ofComponent = vertices[component[v]];
+		place.push_back(int(ofComponent.size()));
+		ofComponent.push_back(v);
+	});
 	for (size_t v = 0; v < componentOfNode.size(); ++v)
 		if (componentOfNode[v] >= 0)
 			nodes[componentOfNode[v]].push_back(int(v));
@@ -293,7 +294,7 @@ inline CurveSkeleton refine(const CurveSkeleton& curve, const SurfaceMesh& surfa
 		[&](int v) { unit.position[v] = toUnit(surface.position[v], component[v]); });
 
 	CurveSkeleton refined;
-	refined.node.assign(curve.node.size(), -1);
+	detail::fillReported(refined.node, curve.node.size(), -1, progress.part(0.03, 0.03), what);
 	std::vector<int> number(curve.position.size(), -1);
 	constexpr double sampleSpacing = 0.01;
 	for (int c = 0; c < components; ++c) {
@@ -328,7 +329,8 @@ inline CurveSkeleton refine(const CurveSkeleton& curve, const SurfaceMesh& surfa
 		for (const auto& [a, b] : part.edges)
 			refined.edges.push_back({first + a, first + b});
 	}
-	refined.radius = meanSurfaceDistance(refined.position, surface.position, refined.node);
+	refined.radius =
+		meanSurfaceDistance(refined.position, surface.position, refined.node, progress.part(1, 1));
 	fillUnknownRadii(refined.radius, refined.neighbours());
 	progress.report(1, what);
 	return refined;

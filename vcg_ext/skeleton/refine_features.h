@@ -334,8 +334,8 @@ inline void growFeatures(CurveSkeleton& skeleton, const SurfaceComponent& compon
 	const std::vector<int> covering = coveringNodes(skeleton);
 	for (int v : covering)
 		skeleton.radius[v] = std::max(clearances.at(skeleton.position[v]), 0.0);
-	const Heights heights =
-		heightsAbove(skeleton, covering, component, surface.vertexOrder(), progress.part(0, 0.4));
+	const Heights heights = heightsAbove(skeleton, covering, component,
+		surface.vertexOrder(progress.part(0, 0)), progress.part(0, 0.4));
 	const auto add = [&](const FeatureBranch& branch) {
 		int last = branch.joint;
 		for (size_t i = branch.points.size(); i-- > 0;) {

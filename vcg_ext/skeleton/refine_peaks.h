@@ -7,6 +7,7 @@
 #define VCG_MCF_REFINE_PEAKS_H
 
 #include "curve_skeleton.h"
+#include "large_arrays.h"
 #include "parallel_blocks.h"
 #include "progress.h"
 #include "skeleton_branches.h"
@@ -115,8 +116,11 @@ inline Heights heightsAbove(const CurveSkeleton& skeleton, const std::vector<int
 	const SurfaceComponent& surface, const std::vector<int>& order, const Progress& progress)
 {
 	constexpr int groupSize = 16;
-	Heights heights = {std::vector<double>(surface.size()), std::vector<int>(surface.size())};
-	forEachBlock(surface.size(), progress, "Refining the skeleton", [&](int begin, int end) {
+	const char* const what = "Refining the skeleton";
+	const size_t size = size_t(surface.size());
+	Heights heights = {detail::filledArray(size, 0.0, progress, what),
+		detail::filledArray(size, -1, progress, what)};
+	forEachBlock(surface.size(), progress, what, [&](int begin, int end) {
 		const auto boxOf = [&](int first, int last) {
 			Box3d box;
 			for (int i = first; i < last; ++i)
@@ -177,14 +181,15 @@ public:
 		const auto slice = [&](int v) {
 			return std::min(slices - 1, int((1 - height[v] / top) * slices));
 		};
-		ends.assign(slices + 1, 0);
+		detail::fillReported(ends, size_t(slices) + 1, 0, progress, what);
 		detail::reportedLoop(surface.size(), progress.part(0, 0.5), what, [&](int v) {
 			if (height[v] > 0)
 				++ends[slice(v) + 1];
 		});
 		std::partial_sum(ends.begin(), ends.end(), ends.begin());
-		entries.resize(ends.back());
-		detail::reportedLoop(surface.size(), progress.part(0.5, 1), what, [&](int v) {
+		const Progress placing = progress.part(0.5, 1);
+		detail::fillReported(entries, size_t(ends.back()), {0.0, -1}, placing, what);
+		detail::reportedLoop(surface.size(), placing, what, [&](int v) {
 			if (height[v] > 0)
 				entries[ends[slice(v)]++] = {height[v], v};
 		});
@@ -240,7 +245,9 @@ inline std::vector<Peak> peaks(const CurveSkeleton& skeleton, const SurfaceCompo
 	detail::reportedLoop(surface.size(), progress.part(0.4, 0.5), what,
 		[&](int v) { highLeft += height[v] > 0 && isHigh(v); });
 	// The parts above a level that falls, as a forest; they are numbered from the highest peak down.
-	std::vector<int> parent(surface.size(), -1), partOfRoot(surface.size(), -1);
+	const Progress begin = progress.part(0.5, 0.5);
+	std::vector<int> parent = detail::filledArray(size_t(surface.size()), -1, begin, what);
+	std::vector<int> partOfRoot = detail::filledArray(parent.size(), -1, begin, what);
 	std::vector<Peak> parts;
 	const auto root = [&](int v) {
 		while (parent[v] != v)

@@ -67,8 +67,8 @@ inline SurfaceMesh resample(const MeasuredSurface& surface,
 		if (!(length > 0) || !std::isfinite(length))
 			throw InvalidParameter("The target length of a component must be greater than 0.");
 	if (iterations <= 0) {
-		SurfaceMesh copy = surface.mesh();
-		copy.compact();
+		SurfaceMesh copy = surface.mesh().copied(progress.part(0, 0));
+		copy.compact(progress);
 		return copy;
 	}
 	std::vector<double> targetLength;
@@ -84,10 +84,11 @@ inline SurfaceMesh resample(const MeasuredSurface& surface,
 	// The input as the passes like it: neighbours near each other, no triangles without a normal.
 	const char* const what = "Ordering the surface";
 	const auto onGrid = [&](int c, const Point3d& p) { return surface.frame(c).onGrid(p); };
-	progress.report(0, what);
-	const std::vector<int> seeds = leastHalfEdges(surface.mesh(), component, components,
-		[&](int v) { return onGrid(component[v], surface.mesh().position[v]); });
-	const Numbering number = breadthFirstOrder(surface.mesh(), seeds, progress.part(0, 0.06));
+	const std::vector<int> seeds = leastHalfEdges(
+		surface.mesh(), component, components,
+		[&](int v) { return onGrid(component[v], surface.mesh().position[v]); },
+		progress.part(0, 0.01));
+	const Numbering number = breadthFirstOrder(surface.mesh(), seeds, progress.part(0.01, 0.06));
 	SurfaceMesh reference = surface.mesh().renumbered(
 		number.vertex, number.face, number.firstCorner, progress.part(0.06, 0.1));
 	detail::reportedLoop(reference.vertexSlots(), progress.part(0.1, 0.12), what,

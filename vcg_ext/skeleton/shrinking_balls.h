@@ -8,6 +8,7 @@
 #define VCG_MCF_SHRINKING_BALLS_H
 
 #include "inner_segments.h"
+#include "large_arrays.h"
 #include "parallel_blocks.h"
 #include "point_tree.h"
 #include "pole_set.h"
@@ -150,10 +151,11 @@ PoleSet maximalBalls(const std::vector<Touch>& touches, size_t count, const Unit
 {
 	constexpr int neighbours = 8;
 	PoleSet poles;
-	poles.centre.assign(count, Point3d(0, 0, 0));
-	poles.radius.assign(count, -1);
+	const char* const what = "Poles: shrinking balls";
+	fillReported(poles.centre, count, Point3d(0, 0, 0), progress, what);
+	fillReported(poles.radius, count, -1.0, progress, what);
 	const int size = int(touches.size());
-	forEachBlock(size, progress, "Poles: shrinking balls", [&](int begin, int end) {
+	forEachBlock(size, progress, what, [&](int begin, int end) {
 		// What held the balls of the last points will nearly hold the next one.
 		std::array<int, 4> recent = {-1, -1, -1, -1};
 		int oldest = 0;
@@ -219,9 +221,10 @@ inline OsculatingNormals osculatingNormals(const SurfaceMesh& mesh, const Progre
 	constexpr double byFar = 1e-3; // cosine; rounding and the ball's own error are far below
 	const char* const what = "Measuring the surface";
 	OsculatingNormals found;
-	found.normal.assign(mesh.vertexSlots(), Point3d(0, 0, 0));
-	found.leadsInside.assign(mesh.vertexSlots(), 1);
-	reportedLoop(mesh.faceSlots(), progress.part(0, 0.5), what, [&](int f) {
+	const size_t vertices = size_t(mesh.vertexSlots());
+	fillReported(found.normal, vertices, Point3d(0, 0, 0), progress, what);
+	fillReported(found.leadsInside, vertices, char(1), progress, what);
+	reportedLoop(mesh.faceSlots(), progress.part(0, 0.4), what, [&](int f) {
 		const Triangle t = mesh.triangle(f);
 		const Point3d areaVector = mesh.areaVector(f);
 		std::array<double, 3> squared; // length of the edge that starts at a corner
@@ -233,11 +236,11 @@ inline OsculatingNormals osculatingNormals(const SurfaceMesh& mesh, const Progre
 				found.normal[t[k]] += areaVector / one / other;
 		}
 	});
-	for (size_t v = 0; v < found.normal.size(); ++v) {
+	reportedLoop(mesh.vertexSlots(), progress.part(0.4, 0.5), what, [&](int v) {
 		const double length = found.normal[v].Norm();
 		const bool isDefined = length > 0 && std::isfinite(length);
 		found.normal[v] = isDefined ? Point3d(found.normal[v] / length) : Point3d(0, 0, 0);
-	}
+	});
 	reportedLoop(mesh.faceSlots(), progress.part(0.5, 1), what, [&](int f) {
 		const Point3d areaVector = mesh.areaVector(f);
 		const double least = byFar * byFar * areaVector.SquaredNorm();
@@ -295,9 +298,9 @@ inline PoleSet shrinkingBalls(const std::vector<Point3d>& points,
 inline PoleSet shrinkingBallPoles(const SurfaceMesh& mesh, const std::vector<int>& vertices,
 	const std::vector<double>& delta = {}, const Progress& progress = Progress())
 {
-	const UnitFrame frame(mesh.position);
-	progress.report(0, "Sorting the surface");
-	const PointTree tree(frame.in(mesh.position), progress.part(0, 0.2));
+	const Progress begin = progress.part(0, 0);
+	const UnitFrame frame(mesh.position, begin);
+	const PointTree tree(frame.in(mesh.position, begin), progress.part(0, 0.2));
 	std::vector<int> place(mesh.vertexSlots(), -1);
 	for (size_t i = 0; i < vertices.size(); ++i)
 		place[vertices[i]] = int(i);
@@ -305,13 +308,15 @@ inline PoleSet shrinkingBallPoles(const SurfaceMesh& mesh, const std::vector<int
 	touches.reserve(vertices.size());
 	const detail::OsculatingNormals normals =
 		detail::osculatingNormals(mesh, progress.part(0.2, 0.25));
-	for (int slot = 0; slot < tree.size(); ++slot) {
-		const int v = tree.order()[slot];
-		if (place[v] < 0)
-			continue;
-		const double tolerance = detail::ballTolerance(frame, delta.empty() ? 0 : delta[place[v]]);
-		touches.push_back({tree.point(slot), normals.normal[v], tolerance, place[v], slot});
-	}
+	detail::reportedLoop(
+		tree.size(), progress.part(0.25, 0.25), "Sorting the surface", [&](int slot) {
+			const int v = tree.order()[slot];
+			if (place[v] < 0)
+				return;
+			const double tolerance =
+				detail::ballTolerance(frame, delta.empty() ? 0 : delta[place[v]]);
+			touches.push_back({tree.point(slot), normals.normal[v], tolerance, place[v], slot});
+		});
 	const InnerSegments segments(mesh, tree, progress.part(0.25, 0.4));
 	return detail::maximalBalls(touches, vertices.size(), frame, tree, progress.part(0.4, 1),
 		[&](int i, const Point3d& centre, double, double depth) {

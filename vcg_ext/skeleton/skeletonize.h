@@ -15,6 +15,7 @@
 #include "sheet_marks.h"
 #include "stage.h"
 #include "stage_frames.h"
+#include "ticker.h"
 
 #include <cmath>
 #include <functional>
@@ -112,7 +113,7 @@ inline Stage step(Stage stage, const Parameters& parameters, const Progress& pro
 	parameters.check();
 	if (stage.converged)
 		return stage;
-	StageFrames frames(stage);
+	StageFrames frames(stage, progress.part(0, 0));
 	frames.enter(stage);
 	detail::stepInFrames(stage, frames, parameters, progress);
 	frames.leave(stage);
@@ -139,7 +140,8 @@ inline Stage contractToSkeleton(Stage stage, const Parameters& parameters,
 	const Progress& progress = Progress(), const StageObserver& observer = StageObserver())
 {
 	parameters.check();
-	StageFrames frames(stage); // found by the surface's own correspondence
+	const Progress begin = progress.part(0, 0), end = progress.part(1, 1);
+	StageFrames frames(stage, begin); // found by the surface's own correspondence
 	// The surface, and the first stages, have many more vertices than the others. Only what becomes of
 	// the vertices of one of them is followed, until half of these are gone; the surface's are told when
 	// somebody looks, and at the end.
@@ -154,12 +156,13 @@ inline Stage contractToSkeleton(Stage stage, const Parameters& parameters,
 	const bool staysInside = stage.heldCount() == 0 && goesOn();
 	if (staysInside)
 		frames.enter(stage);
-	const auto outside = [&](Stage inside) {
+	const auto outside = [&](Stage inside, const Progress& part) {
 		if (staysInside)
 			frames.leave(inside);
-		std::vector<int> node(ofSurface.size());
-		for (size_t s = 0; s < node.size(); ++s)
-			node[s] = inside.node[ofFirst[ofSurface[s]]];
+		std::vector<int> node;
+		node.reserve(ofSurface.size());
+		detail::reportedLoop(int(ofSurface.size()), part, "Contracting",
+			[&](int s) { node.push_back(inside.node[ofFirst[ofSurface[s]]]); });
 		inside.node = std::move(node);
 		return inside;
 	};
@@ -176,7 +179,7 @@ inline Stage contractToSkeleton(Stage stage, const Parameters& parameters,
 		if (observer.onFigures)
 			observer.onFigures(figuresOf(stage));
 		if (observer.onStage && stage.iteration % observer.every == 0)
-			observer.onStage(outside(stage));
+			observer.onStage(outside(stage, part.part(1, 1)));
 		if (2 * size_t(stage.mesh.vertexSlots()) < stage.node.size()) {
 			for (int& node : ofFirst)
 				node = stage.node[node];
@@ -184,8 +187,7 @@ inline Stage contractToSkeleton(Stage stage, const Parameters& parameters,
 			std::iota(stage.node.begin(), stage.node.end(), 0);
 		}
 	}
-	progress.report(1, "Contracting");
-	return outside(std::move(stage));
+	return outside(std::move(stage), end);
 }
 
 } // namespace vcg::tri::mcf

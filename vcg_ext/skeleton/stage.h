@@ -6,15 +6,19 @@
 #ifndef VCG_MCF_STAGE_H
 #define VCG_MCF_STAGE_H
 
+#include "large_arrays.h"
 #include "measured_surface.h"
 #include "parameters.h"
 #include "pole_set.h"
 #include "principal_frame.h"
+#include "progress.h"
 #include "surface_mesh.h"
+#include "ticker.h"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <vector>
 
 namespace vcg::tri::mcf {
@@ -132,35 +136,40 @@ inline Extent measuredExtent(
 	return extent;
 }
 
-/// The component of each vertex of the surface that a stage came from.
-inline std::vector<int> componentOfSurfaceVertices(const Stage& stage)
+/// The component of each vertex of the surface that a stage came from. @throws Cancelled
+inline std::vector<int> componentOfSurfaceVertices(
+	const Stage& stage, const Progress& progress = Progress())
 {
 	std::vector<int> component;
 	component.reserve(stage.node.size());
-	for (int v : stage.node)
-		component.push_back(stage.component[v]);
+	detail::reportedLoop(int(stage.node.size()), progress, "Measuring the surface",
+		[&](int s) { component.push_back(stage.component[stage.node[s]]); });
 	return component;
 }
 
 /// Stage 0 of a surface. @pre the surface is compact; poles has an entry for each vertex.
-inline Stage initialStage(const MeasuredSurface& measured, const PoleSet& poles)
+/// @throws Cancelled
+inline Stage initialStage(
+	const MeasuredSurface& measured, const PoleSet& poles, const Progress& progress = Progress())
 {
 	const SurfaceMesh& surface = measured.mesh();
+	const auto copied = [&](const auto& array) {
+		return detail::copiedArray(array, progress, "Copying the surface");
+	};
 	Stage stage;
-	stage.mesh = surface;
-	stage.pole = poles.centre;
-	stage.poleRadius = poles.radius;
+	stage.mesh = surface.copied(progress);
+	stage.pole = copied(poles.centre);
+	stage.poleRadius = copied(poles.radius);
 	stage.fixed.assign(surface.vertexSlots(), 0);
 	stage.held.assign(surface.vertexSlots(), 0);
 	stage.sheet.assign(surface.vertexSlots(), 0);
-	stage.component = measured.component();
+	stage.component = copied(measured.component());
 	stage.diagonal = measured.diagonals();
 	stage.initialArea = stage.area = measured.areas();
-	stage.initialVolume = stage.volume = surface.volume();
-	stage.surface = std::make_shared<const std::vector<Point3d>>(surface.position);
-	stage.node.resize(surface.vertexSlots());
-	for (size_t v = 0; v < stage.node.size(); ++v)
-		stage.node[v] = int(v);
+	stage.initialVolume = stage.volume = surface.volume(progress.part(0, 0));
+	stage.surface = std::make_shared<const std::vector<Point3d>>(copied(surface.position));
+	stage.node = detail::filledArray(stage.pole.size(), 0, progress, "Copying the surface");
+	std::iota(stage.node.begin(), stage.node.end(), 0);
 	return stage;
 }
 
@@ -168,18 +177,20 @@ inline Stage initialStage(const MeasuredSurface& measured, const PoleSet& poles)
  * Local thickness: for each vertex (or skeleton node) the mean distance to the surface vertices
  * that have merged into it; -1 where there are none.
  * @param position where the vertices are; node: for each surface vertex its vertex.
+ * @throws Cancelled
  */
 inline std::vector<double> meanSurfaceDistance(const std::vector<Point3d>& position,
-	const std::vector<Point3d>& surface, const std::vector<int>& node)
+	const std::vector<Point3d>& surface, const std::vector<int>& node,
+	const Progress& progress = Progress())
 {
 	std::vector<double> sum(position.size(), 0);
 	std::vector<int> count(position.size(), 0);
-	for (size_t s = 0; s < node.size(); ++s) {
+	detail::reportedLoop(int(node.size()), progress, "Measuring the thickness", [&](int s) {
 		if (node[s] < 0)
-			continue;
+			return;
 		sum[node[s]] += Distance(surface[s], position[node[s]]);
 		++count[node[s]];
-	}
+	});
 	for (size_t v = 0; v < sum.size(); ++v)
 		sum[v] = count[v] ? sum[v] / count[v] : -1;
 	return sum;

@@ -29,13 +29,14 @@ class StageFrames
 {
 public:
 	/// Finds the frames if no stage before has found them, and leaves them with the stage.
-	/// Complexity: O(V), V the vertices of the surface, the first time.
-	explicit StageFrames(Stage& stage)
+	/// @throws Cancelled. Complexity: O(V), V the vertices of the surface, the first time.
+	explicit StageFrames(Stage& stage, const Progress& progress = Progress())
 	{
 		if (!stage.frames) {
 			stage.frames =
 				std::make_shared<const std::vector<PrincipalFrame>>(PrincipalFrame::ofPoints(
-					*stage.surface, componentOfSurfaceVertices(stage), stage.diagonal.size()));
+					*stage.surface, componentOfSurfaceVertices(stage, progress.part(0, 0.2)),
+					stage.diagonal.size(), progress.part(0.2, 1)));
 		}
 		frames = stage.frames;
 	}

@@ -7,6 +7,7 @@
 #define VCG_MCF_SURFACE_MESH_H
 
 #include "errors.h"
+#include "large_arrays.h"
 #include "progress.h"
 #include "ticker.h"
 
@@ -68,18 +69,21 @@ public:
 	static std::optional<SurfaceMesh> ifClosedManifold(std::vector<Point3d> points,
 		const std::vector<Triangle>& triangles, const Progress& progress = Progress())
 	{
-		for (const Triangle& t : triangles)
-			if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0])
-				return std::nullopt;
+		bool distinct = true;
+		detail::reportedLoop(int(triangles.size()), progress.part(0, 0.02), checking, [&](int f) {
+			const Triangle& t = triangles[f];
+			distinct &= t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
+		});
+		if (!distinct)
+			return std::nullopt;
 		SurfaceMesh mesh;
 		mesh.position = std::move(points);
-		mesh.setTriangles(triangles, progress.part(0, 0.1));
+		mesh.setTriangles(triangles, progress.part(0.02, 0.1));
 		if (!mesh.pairTwins(progress.part(0.1, 0.6)))
 			return std::nullopt;
 		mesh.chooseOutgoing(progress.part(0.6, 0.7));
 		// One ring of distinct neighbours at each vertex, and no half-edge outside of these rings.
 		long inRings = 0;
-		bool distinct = true;
 		detail::reportedLoop(mesh.vertexSlots(), progress.part(0.7, 1), checking, [&](int v) {
 			if (!distinct || !mesh.isVertex(v))
 				return;
@@ -191,22 +195,27 @@ public:
 	}
 
 	/// Signed volume; positive when the triangles are counter-clockwise seen from outside.
-	double volume() const
+	/// @throws Cancelled
+	double volume(const Progress& progress = Progress()) const
 	{
-		const Point3d middle = bounds().Center(); // keeps the digits of a mesh far from the origin
+		// About the middle: this keeps the digits of a mesh far from the origin.
+		const Point3d middle = bounds(progress.part(0, 0.2)).Center();
 		double sum = 0;
-		for (int f = 0; f < faceSlots(); ++f)
+		detail::reportedLoop(faceSlots(), progress.part(0.2, 1), measuring, [&](int f) {
 			if (isFace(f))
 				sum += (position[origins[3 * f]] - middle) * areaVector(f);
+		});
 		return sum / 6;
 	}
 
-	Box3d bounds() const
+	/// @throws Cancelled
+	Box3d bounds(const Progress& progress = Progress()) const
 	{
 		Box3d box;
-		for (int v = 0; v < vertexSlots(); ++v)
+		detail::reportedLoop(vertexSlots(), progress, measuring, [&](int v) {
 			if (isVertex(v))
 				box.Add(position[v]);
+		});
 		return box;
 	}
 
@@ -214,29 +223,33 @@ public:
 	/// @throws Cancelled
 	std::vector<Point3d> vertexNormals(const Progress& progress = Progress()) const
 	{
-		std::vector<Point3d> normals(vertexSlots(), Point3d(0, 0, 0));
-		detail::reportedLoop(faceSlots(), progress, "Measuring the surface", [&](int f) {
+		std::vector<Point3d> normals =
+			detail::filledArray(size_t(vertexSlots()), Point3d(0, 0, 0), progress, measuring);
+		detail::reportedLoop(faceSlots(), progress.part(0, 0.8), measuring, [&](int f) {
 			if (!isFace(f))
 				return;
 			const Point3d n = areaVector(f);
 			for (int k = 0; k < 3; ++k)
 				normals[origins[3 * f + k]] += n;
 		});
-		for (Point3d& n : normals) {
+		detail::reportedLoop(vertexSlots(), progress.part(0.8, 1), measuring, [&](int v) {
+			Point3d& n = normals[v];
 			const double length = n.Norm();
 			n = length > 0 ? Point3d(n / length) : Point3d(0, 0, 0);
-		}
+		});
 		return normals;
 	}
 
 	/// The live triangles in the order of their ids.
-	std::vector<Triangle> triangles() const
+	/// @throws Cancelled
+	std::vector<Triangle> triangles(const Progress& progress = Progress()) const
 	{
 		std::vector<Triangle> live;
 		live.reserve(liveFaces);
-		for (int f = 0; f < faceSlots(); ++f)
+		detail::reportedLoop(faceSlots(), progress, "Copying the surface", [&](int f) {
 			if (isFace(f))
 				live.push_back(triangle(f));
+		});
 		return live;
 	}
 
@@ -456,50 +469,53 @@ public:
 	 * Closes the holes in the numbering, order kept, and makes each vertex's outgoing half-edge its
 	 * lowest one, so that the mesh is the same as one built anew from its triangles.
 	 * @return for each old vertex id the new one, -1 where it was removed.
+	 * @throws Cancelled, which leaves a mesh that is good for nothing.
 	 */
-	std::vector<int> compact()
+	std::vector<int> compact(const Progress& progress = Progress())
 	{
-		std::vector<int> newVertex(vertexSlots(), -1);
+		std::vector<int> newVertex =
+			detail::filledArray(size_t(vertexSlots()), -1, progress, ordering);
 		int v = 0;
-		for (int old = 0; old < vertexSlots(); ++old) {
+		detail::reportedLoop(vertexSlots(), progress.part(0, 0.2), ordering, [&](int old) {
 			if (!isVertex(old))
-				continue;
+				return;
 			newVertex[old] = v;
 			position[v] = position[old];
 			++v;
-		}
+		});
 		position.resize(v);
-		std::vector<int> newFace(faceSlots(), -1);
+		const Progress ofFaces = progress.part(0.2, 0.4);
+		std::vector<int> newFace = detail::filledArray(size_t(faceSlots()), -1, ofFaces, ordering);
 		int f = 0;
-		for (int old = 0; old < faceSlots(); ++old)
+		detail::reportedLoop(faceSlots(), ofFaces, ordering, [&](int old) {
 			if (isFace(old))
 				newFace[old] = f++;
-		for (int old = 0; old < faceSlots(); ++old) {
+		});
+		detail::reportedLoop(faceSlots(), progress.part(0.4, 0.9), ordering, [&](int old) {
 			if (newFace[old] < 0)
-				continue;
+				return;
 			for (int k = 0; k < 3; ++k) {
 				const int t = twins[3 * old + k];
 				origins[3 * newFace[old] + k] = newVertex[origins[3 * old + k]];
 				twins[3 * newFace[old] + k] = 3 * newFace[t / 3] + t % 3;
 			}
-		}
+		});
 		origins.resize(3 * size_t(f));
 		twins.resize(3 * size_t(f));
 		outgoings.assign(v, -1);
 		stamps.assign(v, 0);
 		stampClock = 0;
-		chooseOutgoing();
+		chooseOutgoing(progress.part(0.9, 1));
 		return newVertex;
 	}
 
-	/// A copy, array by array: to copy a large mesh in one go would be a long silence.
+	/// A copy, piece by piece: to copy a large mesh in one go would be a long silence.
 	/// @throws Cancelled
 	SurfaceMesh copied(const Progress& progress) const
 	{
 		SurfaceMesh copy;
 		const auto take = [&](const auto array) {
-			copy.*array = this->*array;
-			progress.report(0, "Copying the surface");
+			copy.*array = detail::copiedArray(this->*array, progress, "Copying the surface");
 		};
 		take(&SurfaceMesh::position);
 		take(&SurfaceMesh::origins);
@@ -523,34 +539,39 @@ public:
 	SurfaceMesh renumbered(const std::vector<int>& newVertex, const std::vector<int>& newFace,
 		const std::vector<char>& firstCorner = {}, const Progress& progress = Progress()) const
 	{
-		const char* const what = "Ordering the surface";
 		const auto newId = [&](int h) {
 			const int corner = firstCorner.empty() ? h % 3 : (h % 3 + 3 - firstCorner[h / 3]) % 3;
 			return 3 * newFace[h / 3] + corner;
 		};
 		SurfaceMesh result;
-		result.position.resize(liveVertices);
-		detail::reportedLoop(vertexSlots(), progress.part(0, 0.2), what, [&](int v) {
+		const Progress ofVertices = progress.part(0, 0.2), ofFaces = progress.part(0.2, 0.8);
+		detail::fillReported(
+			result.position, size_t(liveVertices), Point3d(0, 0, 0), ofVertices, ordering);
+		detail::reportedLoop(vertexSlots(), ofVertices, ordering, [&](int v) {
 			if (newVertex[v] >= 0)
 				result.position[newVertex[v]] = position[v];
 		});
 		result.liveFaces = liveFaces;
-		result.origins.resize(3 * size_t(liveFaces));
-		result.twins.resize(3 * size_t(liveFaces));
-		detail::reportedLoop(halfEdgeSlots(), progress.part(0.2, 0.8), what, [&](int h) {
+		for (std::vector<int>* array : {&result.origins, &result.twins})
+			detail::fillReported(*array, 3 * size_t(liveFaces), -1, ofFaces, ordering);
+		detail::reportedLoop(halfEdgeSlots(), ofFaces, ordering, [&](int h) {
 			if (newFace[h / 3] < 0)
 				return;
 			const int id = newId(h);
 			result.origins[id] = newVertex[origins[h]];
 			result.twins[id] = newId(twins[h]);
 		});
-		result.outgoings.assign(result.position.size(), -1);
-		result.chooseOutgoing(progress.part(0.8, 1));
+		const Progress ofLinks = progress.part(0.8, 1);
+		detail::fillReported(result.outgoings, result.position.size(), -1, ofLinks, ordering);
+		result.chooseOutgoing(ofLinks);
 		return result;
 	}
 
 private:
 	static constexpr const char* checking = "Checking the surface";
+	static constexpr const char* measuring = "Measuring the surface";
+	static constexpr const char* ordering = "Ordering the surface";
+	static constexpr const char* linking = "Linking the surface";
 
 	std::vector<int> origins;
 	std::vector<int> twins;
@@ -590,13 +611,14 @@ private:
 
 	void setTriangles(const std::vector<Triangle>& triangles, const Progress& progress)
 	{
-		origins.resize(3 * triangles.size());
+		const Progress begin = progress.part(0, 0);
+		detail::fillReported(origins, 3 * triangles.size(), -1, begin, checking);
+		detail::fillReported(twins, origins.size(), -1, begin, checking);
+		detail::fillReported(outgoings, position.size(), -1, begin, checking);
 		detail::reportedLoop(int(triangles.size()), progress, checking, [&](int f) {
 			for (int k = 0; k < 3; ++k)
 				origins[3 * f + k] = triangles[f][k];
 		});
-		twins.assign(origins.size(), -1);
-		outgoings.assign(position.size(), -1);
 		liveFaces = int(triangles.size());
 	}
 
@@ -606,14 +628,16 @@ private:
 	bool pairTwins(const Progress& progress)
 	{
 		const int n = int(position.size());
-		std::vector<int> start(n + 1, 0), bucket(origins.size());
+		std::vector<int> start = detail::filledArray(size_t(n) + 1, 0, progress, checking);
+		std::vector<int> bucket = detail::filledArray(origins.size(), 0, progress, checking);
 		const auto lower = [&](int h) { return std::min(origin(h), target(h)); };
 		detail::reportedLoop(halfEdgeSlots(), progress.part(0, 0.2), checking,
 			[&](int h) { ++start[lower(h) + 1]; });
-		for (int v = 0; v < n; ++v)
-			start[v + 1] += start[v];
-		std::vector<int> end(start.begin(), start.end() - 1);
-		detail::reportedLoop(halfEdgeSlots(), progress.part(0.2, 1), checking, [&](int h) {
+		const Progress pairing = progress.part(0.2, 1);
+		detail::reportedLoop(
+			n, pairing.part(0, 0), checking, [&](int v) { start[v + 1] += start[v]; });
+		std::vector<int> end = detail::copiedArray(start, pairing, checking);
+		detail::reportedLoop(halfEdgeSlots(), pairing, checking, [&](int h) {
 			const int low = lower(h);
 			for (int i = start[low]; i < end[low]; ++i) {
 				const int g = bucket[i];
@@ -633,11 +657,11 @@ private:
 	void chooseOutgoing(const Progress& progress = Progress())
 	{
 		const int last = halfEdgeSlots() - 1;
-		detail::reportedLoop(halfEdgeSlots(), progress, "Linking the surface",
+		detail::reportedLoop(halfEdgeSlots(), progress, linking,
 			[&](int i) { outgoings[origins[last - i]] = last - i; });
 		liveVertices =
 			int(std::count_if(outgoings.begin(), outgoings.end(), [](int h) { return h >= 0; }));
-		stamps.assign(outgoings.size(), 0);
+		detail::fillReported(stamps, outgoings.size(), 0, progress.part(1, 1), linking);
 	}
 };
 

@@ -8,9 +8,12 @@
 
 #include "breadth_first_order.h"
 #include "crease_edges.h"
+#include "large_arrays.h"
+#include "progress.h"
 #include "surface_mesh.h"
 #include "surface_tracking.h"
 #include "thin_triangles.h"
+#include "ticker.h"
 
 #include <utility>
 #include <vector>
@@ -48,16 +51,22 @@ public:
 			surfaceCreases(
 				surface, [&](int v) { return shortestCrease * targetLength[componentOfVertex[v]]; },
 				progress),
-			surfaceRoles(surfaceCreases.roles(surface)), creases(surfaceCreases),
-			role(surfaceRoles), component(componentOfVertex), length(targetLength),
-			track(surface.vertexSlots())
+			surfaceRoles(surfaceCreases.roles(surface, progress.part(1, 1))),
+			creases(surfaceCreases), role(surfaceRoles),
+			component(copiedArray(componentOfVertex, progress.part(1, 1), tracking)),
+			length(targetLength),
+			track(filledArray(size_t(surface.vertexSlots()), -1, progress.part(1, 1), tracking))
 	{
-		for (int v = 0; v < surface.vertexSlots(); ++v)
-			track[v] = surface.outgoing(v);
-		if (!surfaceCreases.empty())
-			for (int h = surface.halfEdgeSlots() - 1; h >= 0; --h)
-				if (surfaceCreases.isCrease(h))
-					track[surface.origin(h)] = h;
+		const Progress end = progress.part(1, 1);
+		reportedLoop(
+			surface.vertexSlots(), end, tracking, [&](int v) { track[v] = surface.outgoing(v); });
+		if (surfaceCreases.empty())
+			return;
+		const int last = surface.halfEdgeSlots() - 1;
+		reportedLoop(surface.halfEdgeSlots(), end, tracking, [&](int i) {
+			if (surfaceCreases.isCrease(last - i))
+				track[surface.origin(last - i)] = last - i;
+		});
 	}
 
 	SurfaceMesh mesh;
@@ -141,14 +150,15 @@ public:
 	}
 
 	/// From now on each triangle there is stands for a patch, of which splits make parts.
-	void startPatches()
+	/// @throws Cancelled
+	void startPatches(const Progress& progress)
 	{
-		patch.resize(mesh.faceSlots());
-		isInputPatch.resize(mesh.faceSlots());
-		for (int f = 0; f < mesh.faceSlots(); ++f) {
+		fillReported(patch, size_t(mesh.faceSlots()), -1, progress, tracking);
+		fillReported(isInputPatch, size_t(mesh.faceSlots()), char(0), progress, tracking);
+		reportedLoop(mesh.faceSlots(), progress, tracking, [&](int f) {
 			patch[f] = f;
 			isInputPatch[f] = mesh.isFace(f) && mesh.triangle(f) == surface.triangle(f);
-		}
+		});
 	}
 
 	void endPatches()
@@ -164,19 +174,22 @@ public:
 	}
 
 	/// Closes the holes in the numbering and brings neighbours together, for speed.
-	void renumber()
+	/// @throws Cancelled
+	void renumber(const Progress& progress = Progress())
 	{
 		std::vector<int> seeds(length.size(), -1);
-		for (int v = mesh.vertexSlots() - 1; v >= 0; --v)
-			if (mesh.isVertex(v))
-				seeds[component[v]] = mesh.outgoing(v);
-		Numbering number = breadthFirstOrder(mesh, seeds);
+		const int last = mesh.vertexSlots() - 1;
+		reportedLoop(mesh.vertexSlots(), progress.part(0, 0.1), tracking, [&](int i) {
+			if (mesh.isVertex(last - i))
+				seeds[component[last - i]] = mesh.outgoing(last - i);
+		});
+		Numbering number = breadthFirstOrder(mesh, seeds, progress.part(0.1, 0.4));
 		component = std::move(number.component);
 		track = renumbered(track, number.vertex, mesh.vertexCount());
 		if (!role.empty())
 			role = renumbered(role, number.vertex, mesh.vertexCount());
 		creases.beforeRenumber(mesh, number.face);
-		mesh = mesh.renumbered(number.vertex, number.face);
+		mesh = mesh.renumbered(number.vertex, number.face, {}, progress.part(0.4, 1));
 	}
 
 	/// Closes the holes in the numbering, order kept, within the memory there is.
@@ -200,6 +213,7 @@ public:
 	}
 
 private:
+	static constexpr const char* tracking = "Following the surface";
 	/// A chain of sharp edges shorter than this is no crease; target lengths.
 	static constexpr double shortestCrease = 6;
 	/// Creases closer to each other than this are joined; target lengths.

@@ -6,6 +6,9 @@
 #ifndef VCG_MCF_UNIT_FRAME_H
 #define VCG_MCF_UNIT_FRAME_H
 
+#include "progress.h"
+#include "ticker.h"
+
 #include <vcg/space/box3.h>
 #include <vcg/space/point3.h>
 
@@ -23,12 +26,12 @@ namespace vcg::tri::mcf {
 class UnitFrame
 {
 public:
-	/// @pre the points are finite.
-	explicit UnitFrame(const std::vector<Point3d>& points)
+	/// @pre the points are finite. @throws Cancelled
+	explicit UnitFrame(const std::vector<Point3d>& points, const Progress& progress = Progress())
 	{
 		Box3d box;
-		for (const Point3d& p : points)
-			box.Add(p);
+		detail::reportedLoop(int(points.size()), progress, "Measuring the surface",
+			[&](int i) { box.Add(points[i]); });
 		if (!points.empty())
 			origin = box.Center();
 		const double diagonal = points.empty() ? 0 : box.Diag();
@@ -47,12 +50,14 @@ public:
 	Point3d in(const Point3d& p) const { return (p - origin) * scaleIn; }
 	Point3d out(const Point3d& p) const { return p * scaleOut + origin; }
 
-	std::vector<Point3d> in(const std::vector<Point3d>& points) const
+	/// @throws Cancelled
+	std::vector<Point3d> in(
+		const std::vector<Point3d>& points, const Progress& progress = Progress()) const
 	{
 		std::vector<Point3d> moved;
 		moved.reserve(points.size());
-		for (const Point3d& p : points)
-			moved.push_back(in(p));
+		detail::reportedLoop(int(points.size()), progress, "Measuring the surface",
+			[&](int i) { moved.push_back(in(points[i])); });
 		return moved;
 	}
 

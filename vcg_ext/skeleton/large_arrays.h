@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file Large arrays, made in pieces between which the user can cancel.
+///
+/// Memory that nobody has touched before can come slowly, a few GB in ten seconds on a virtual machine:
+/// to make an array of a hundred MB in one go would be a silence of half a second.
+
+#ifndef VCG_MCF_LARGE_ARRAYS_H
+#define VCG_MCF_LARGE_ARRAYS_H
+
+#include "progress.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace vcg::tri::mcf::detail {
+
+/// How many elements of a large array are made between two reports: 4 MB.
+template <class T>
+constexpr size_t pieceOf = (size_t(1) << 22) / sizeof(T);
+
+/**
+ * Makes an array `count` elements long, all of them `value`, whatever it was before.
+ * @param progress what follows in this window need not know: only its beginning is reported.
+ * @throws Cancelled
+ */
+template <class T>
+void fillReported(
+	std::vector<T>& array, size_t count, const T& value, const Progress& progress, const char* what)
+{
+	array.clear();
+	array.reserve(count);
+	while (array.size() < count) {
+		progress.report(0, what);
+		array.resize(std::min(count, array.size() + pieceOf<T>), value);
+	}
+}
+
+/// An array of `count` elements, all of them `value`: see fillReported().
+template <class T>
+std::vector<T> filledArray(size_t count, const T& value, const Progress& progress, const char* what)
+{
+	std::vector<T> array;
+	fillReported(array, count, value, progress, what);
+	return array;
+}
+
+/// A copy of an array, made and reported as by fillReported().
+template <class T>
+std::vector<T> copiedArray(const std::vector<T>& array, const Progress& progress, const char* what)
+{
+	std::vector<T> copy;
+	copy.reserve(array.size());
+	while (copy.size() < array.size()) {
+		progress.report(0, what);
+		const size_t end = std::min(array.size(), copy.size() + pieceOf<T>);
+		copy.insert(copy.end(), array.begin() + long(copy.size()), array.begin() + long(end));
+	}
+	return copy;
+}
+
+} // namespace vcg::tri::mcf::detail
+
+#endif
