@@ -417,7 +417,8 @@ TEST(VoronoiPoles, TellWhatQhullSaysWhenItFails)
 {
 	testing::internal::CaptureStderr();
 	try {
-		detail::delaunayTetrahedra(shapes::box().points, "qhull d QV999"); // there is no point 999
+		// There is no point 999.
+		detail::delaunayTetrahedra(shapes::box().points, Progress(), "qhull d QJ QV999");
 		ADD_FAILURE() << "no exception";
 	}
 	catch (const SolverError& error) {

@@ -7,16 +7,21 @@
 #include "shapes.h"
 
 #include "skeleton/check_input.h"
+#include "skeleton/errors.h"
 #include "skeleton/first_stage.h"
+#include "skeleton/large_arrays.h"
 #include "skeleton/measured_surface.h"
 #include "skeleton/noise.h"
 #include "skeleton/point_tree.h"
+#include "skeleton/refine.h"
 #include "skeleton/resample.h"
 #include "skeleton/skeletonize.h"
+#include "skeleton/voronoi_poles.h"
 
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <vector>
 
 using namespace vcg::tri::mcf;
 
@@ -87,4 +92,73 @@ TEST(ProgressGaps, ResamplingReportsAsItsResultGrows)
 	SurfaceMesh fine;
 	const int reports = reportsOf([&](const Progress& p) { fine = resample(mesh, {0.03}, 5, p); });
 	EXPECT_GE(reports, 5 * 4 * fine.vertexCount() / mostVerticesBetweenReports); // rounds, passes
+}
+
+/// Between two reports some MB may be touched that nobody has touched before: these come slowly.
+TEST(ProgressGaps, LargeArraysAreMadeInPieces)
+{
+	constexpr size_t count = 10'000'000;
+	constexpr int wanted = int(count * sizeof(int) >> 22);
+	std::vector<int> filled, copied;
+	EXPECT_GE(reportsOf([&](const Progress& p) { filled = detail::filledArray(count, 7, p, ""); }),
+		wanted);
+	EXPECT_EQ(filled, std::vector<int>(count, 7));
+	filled[count / 2] = 8;
+	EXPECT_GE(
+		reportsOf([&](const Progress& p) { copied = detail::copiedArray(filled, p, ""); }), wanted);
+	EXPECT_EQ(copied, filled);
+	detail::fillReported(copied, 3, 9, Progress(), "");
+	EXPECT_EQ(copied, std::vector<int>(3, 9));
+}
+
+TEST(ProgressGaps, WhatADenseSurfaceIsToldAtTheEndReportsAsItGrows)
+{
+	const SurfaceMesh mesh = shapes::sphere(7).mesh();
+	const int wanted = mesh.vertexCount() / mostVerticesBetweenReports;
+	EXPECT_GE(reportsOf([&](const Progress& p) { mesh.copied(p); }), wanted / 4);
+	EXPECT_GE(reportsOf([&](const Progress& p) { mesh.volume(p); }), wanted / 4);
+	EXPECT_GE(reportsOf([&](const Progress& p) { SurfaceMesh(mesh).compact(p); }), wanted / 4);
+	const Stage stage = firstStage(mesh, Parameters());
+	EXPECT_GE(reportsOf([&](const Progress& p) {
+		Stage first = stage;
+		StageFrames(first, p);
+	}),
+		wanted / 4);
+}
+
+namespace {
+
+/// The poles of a mesh, cancelled at the given report; how many reports there were.
+int cancelledAt(const SurfaceMesh& mesh, int report)
+{
+	int reports = 0;
+	EXPECT_THROW(voronoiPoles(mesh, Progress([&](int, const char*) { return ++reports < report; })),
+		Cancelled);
+	return reports;
+}
+
+} // namespace
+
+TEST(ProgressGaps, QhullReportsAsItsPointsGrow)
+{
+	constexpr int mostPointsBetweenReports = 512; // each takes some 50 us: 25 ms
+	const SurfaceMesh mesh = shapes::sphere(5).mesh();
+	int reports = 0, last = 0, steps = 0;
+	PoleSet poles;
+	EXPECT_GE(reports = reportsOf([&](const Progress& p) {
+		poles = voronoiPoles(mesh, Progress([&](int percent, const char* what) {
+			steps += percent > last;
+			last = percent;
+			p.report(percent / 100.0, what);
+			return true;
+		}));
+	}),
+		mesh.vertexCount() / mostPointsBetweenReports);
+	EXPECT_GE(steps, 50); // the bar moves all the way, not only at both ends
+	// Cancelled wherever it is, none but the report that says so follows, and a new run is whole.
+	for (int report = 1; report < reports; report += 1 + reports / 40)
+		EXPECT_EQ(cancelledAt(mesh, report), report);
+	const PoleSet again = voronoiPoles(mesh);
+	EXPECT_EQ(again.radius, poles.radius);
+	EXPECT_EQ(again.centre, poles.centre);
 }

@@ -48,14 +48,12 @@ inline CurveSkeleton withoutSpurs(CurveSkeleton skeleton, const Stage& stage,
 		}
 		if (neighbours[v].size() == 2)
 			continue;
-		const double done = double(v) / double(neighbours.size());
+		progress.report(double(v) / neighbours.size(), "Collapsing to curves");
 		double squared = infinity;
-		reportedLoop(int(stage.surface->size()), progress.part(done, done), "Collapsing to curves",
-			[&](int s) {
-				if (componentOfPoint[s] == component[v])
-					squared = std::min(
-						squared, SquaredDistance(skeleton.position[v], (*stage.surface)[s]));
-			});
+		for (size_t s = 0; s < stage.surface->size(); ++s)
+			if (componentOfPoint[s] == component[v])
+				squared =
+					std::min(squared, SquaredDistance(skeleton.position[v], (*stage.surface)[s]));
 		skeleton.radius[v] = std::sqrt(squared);
 	}
 	return withoutTerminalBranches(
