@@ -59,11 +59,11 @@ public:
 		if (candidates.empty())
 			return;
 		const Progress chains = progress.part(0.9, 1);
-		const size_t slots = size_t(surface.halfEdgeSlots());
-		std::vector<char> candidate = detail::filledArray(slots, char(0), chains, findingCreases);
+		const size_t count = size_t(surface.halfEdgeSlots());
+		std::vector<char> candidate = detail::filledArray(count, char(0), chains, findingCreases);
 		for (int h : candidates)
 			candidate[h] = candidate[surface.twin(h)] = 1;
-		detail::fillReported(marks, slots, char(0), chains, findingCreases);
+		detail::fillReported(marks, count, char(0), chains, findingCreases);
 		bool any = false;
 		detail::reportedLoop(int(candidates.size()), chains, findingCreases, [&](int i) {
 			const int h = candidates[i];
