@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
+#include <memory>
 #include <new>
 
 namespace mcfskel {
@@ -23,16 +24,20 @@ vcg::tri::mcf::Progress hostProgress(vcg::CallBackPos* callback)
 	using Clock = std::chrono::steady_clock;
 	if (!callback)
 		return {};
-	auto lastPercent = -1;
-	auto lastTime = Clock::time_point::min();
-	return vcg::tri::mcf::Progress([=](int percent, const char* what) mutable {
-		const auto now = Clock::now();
-		if (percent == lastPercent && now - lastTime < std::chrono::milliseconds(100))
-			return true;
-		lastPercent = percent;
-		lastTime = now;
-		return callback(percent, what);
-	});
+	struct Last
+	{
+		int percent = -1;
+		Clock::time_point time = Clock::time_point::min();
+	};
+	// Shared by all windows into the bar, which copy the function.
+	return vcg::tri::mcf::Progress(
+		[callback, last = std::make_shared<Last>()](int percent, const char* what) {
+			const auto now = Clock::now();
+			if (percent == last->percent && now < last->time + std::chrono::milliseconds(50))
+				return true;
+			*last = {percent, now};
+			return callback(percent, what);
+		});
 }
 
 QString valueText(const QVariant& value)

@@ -7,6 +7,7 @@
 
 #include <skeleton/check_input.h>
 #include <skeleton/errors.h>
+#include <skeleton/ticker.h>
 #include <skeleton/vertex_kind.h>
 
 #include <QRegularExpression>
@@ -329,31 +330,42 @@ SurfaceLayer readSurface(const MeshModel& layer, const mcf::Progress& progress)
 		throw mcf::InvalidInput("The current layer " + label
 			+ " is a curve, edges without faces: make the surface layer current.");
 
-	progress.report(0, "Reading the layer");
-	const std::vector<int> live = liveSlots(mesh);
-	std::vector<int> pointOfSlot(mesh.vert.size(), -1);
+	const char* const what = "Reading the layer";
+	const int slotCount = int(mesh.vert.size());
+	std::vector<int> pointOfSlot;
+	pointOfSlot.reserve(mesh.vert.size());
 	std::vector<vcg::Point3d> points;
-	points.reserve(live.size());
-	const SurfaceRounding rounded(liveBounds(mesh));
-	for (int slot : live) {
-		pointOfSlot[size_t(slot)] = int(points.size());
-		points.push_back(rounded(toDouble(mesh.vert[size_t(slot)].cP())));
-	}
-	progress.report(0.1, "Reading the layer");
+	points.reserve(size_t(mesh.vn));
+	vcg::Box3d box;
+	mcf::detail::reportedLoop(slotCount, progress.part(0, 0.1), what, [&](int slot) {
+		const CVertexO& v = mesh.vert[size_t(slot)];
+		pointOfSlot.push_back(v.IsD() ? -1 : int(points.size()));
+		if (v.IsD())
+			return;
+		points.push_back(toDouble(v.cP()));
+		box.Add(points.back());
+	});
+	const SurfaceRounding rounded(box);
+	mcf::detail::reportedLoop(int(points.size()), progress.part(0.1, 0.1), what,
+		[&](int i) { points[size_t(i)] = rounded(points[size_t(i)]); });
 	std::vector<mcf::Triangle> triangles;
 	triangles.reserve(size_t(mesh.fn));
-	for (const CFaceO& f : mesh.face) {
+	mcf::detail::reportedLoop(int(mesh.face.size()), progress.part(0.1, 0.2), what, [&](int i) {
+		const CFaceO& f = mesh.face[size_t(i)];
 		if (f.IsD())
-			continue;
+			return;
 		mcf::Triangle triangle;
 		for (int k = 0; k < 3; ++k)
 			triangle[size_t(k)] = pointOfSlot[vcg::tri::Index(mesh, f.cV(k))];
 		triangles.push_back(triangle);
-	}
+	});
 	mcf::CheckedSurface checked = mcf::checkedSurface(points, triangles, progress.part(0.2, 1));
-	auto vertexOfSlot = std::make_shared<std::vector<int>>(mesh.vert.size(), -1);
-	for (int slot : live)
-		(*vertexOfSlot)[size_t(slot)] = checked.vertexOfInput[size_t(pointOfSlot[size_t(slot)])];
+	auto vertexOfSlot = std::make_shared<std::vector<int>>();
+	vertexOfSlot->reserve(pointOfSlot.size());
+	mcf::detail::reportedLoop(slotCount, progress.part(1, 1), what, [&](int slot) {
+		const int point = pointOfSlot[size_t(slot)];
+		vertexOfSlot->push_back(point < 0 ? -1 : checked.vertexOfInput[size_t(point)]);
+	});
 	return {std::make_shared<const mcf::SurfaceMesh>(std::move(checked.mesh)), vertexOfSlot,
 		std::move(checked.notes)};
 }

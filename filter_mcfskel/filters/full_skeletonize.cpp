@@ -80,8 +80,8 @@ Pipeline skeletonize(FilterRun& run, const mcf::Parameters& parameters)
 		? resampledSurface(run, *pipeline.input.mesh, parameters, run.progress.part(0.02, 0.15))
 		: pipeline.input;
 	if (parameters.resample && !pipeline.held.empty())
-		pipeline.held =
-			mcf::selectionOnResampled(*pipeline.input.mesh, pipeline.held, *pipeline.surface.mesh);
+		pipeline.held = mcf::selectionOnResampled(*pipeline.input.mesh, pipeline.held,
+			*pipeline.surface.mesh, run.progress.part(0.15, 0.15));
 	note("resample", watch.lap());
 
 	if (!parameters.resample)

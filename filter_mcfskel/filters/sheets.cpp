@@ -46,7 +46,8 @@ mcf::Stage startOfFlow(FilterRun& run, const mcf::Parameters& parameters,
 {
 	if (held.empty() && !parameters.keepSheets)
 		return mcf::firstStage(surface, parameters, &poles, progress);
-	mcf::Stage stage = mcf::initialStage(surface, poles);
+	const mcf::Progress begin = progress.part(0, 0);
+	mcf::Stage stage = mcf::initialStage({surface, begin}, poles, begin);
 	if (parameters.keepSheets) {
 		mcf::markSheets(stage, mcf::sheetness(surface, poles, progress), parameters.sheetThreshold);
 		const auto marked = std::count(stage.sheet.begin(), stage.sheet.end(), 1);

@@ -6,6 +6,10 @@
 #ifndef VCG_MCF_CELL_GRID_H
 #define VCG_MCF_CELL_GRID_H
 
+#include "large_arrays.h"
+#include "progress.h"
+#include "ticker.h"
+
 #include <vcg/space/box3.h>
 #include <vcg/space/point3.h>
 
@@ -53,36 +57,42 @@ struct PointsByCell
 	std::vector<int> id;
 
 	/// @param pointAt  of an index from 0 to count - 1, within the grid's box.
+	/// @throws Cancelled
 	template <class PointAt>
-	PointsByCell(size_t count, const PointAt& pointAt, const CellGrid& grid) :
-			cell(count), id(count)
+	PointsByCell(int count, const PointAt& pointAt, const CellGrid& grid, const Progress& progress,
+		const char* what)
 	{
 		struct Entry
 		{
 			std::int64_t cell;
 			int id;
 		};
-		std::vector<Entry> entries, sorted(count);
-		entries.reserve(count);
-		for (size_t i = 0; i < count; ++i)
-			entries.push_back({grid.cellOf(pointAt(i)), int(i)});
+		std::vector<Entry> sorted = filledArray(size_t(count), Entry(), progress, what);
+		std::vector<Entry> entries;
+		entries.reserve(size_t(count));
+		reportedLoop(count, progress.part(0, 0.2), what, [&](int i) {
+			entries.push_back({grid.cellOf(pointAt(i)), i});
+		});
 		constexpr std::int64_t places = CellGrid::nextRow;
 		for (int axis = 0; axis < 3; ++axis) {
 			const auto place = [&](const Entry& e) {
 				return size_t((e.cell >> axis * CellGrid::bits) % places);
 			};
+			const Progress part = progress.part(0.2 + 0.2 * axis, 0.4 + 0.2 * axis);
 			std::array<int, places + 1> start = {};
-			for (const Entry& e : entries)
-				++start[place(e) + 1];
+			reportedLoop(
+				count, part.part(0, 0.5), what, [&](int i) { ++start[place(entries[i]) + 1]; });
 			std::partial_sum(start.begin(), start.end(), start.begin());
-			for (const Entry& e : entries)
-				sorted[start[place(e)]++] = e;
+			reportedLoop(count, part.part(0.5, 1), what,
+				[&](int i) { sorted[start[place(entries[i])]++] = entries[i]; });
 			entries.swap(sorted);
 		}
-		for (size_t i = 0; i < entries.size(); ++i) {
-			cell[i] = entries[i].cell;
-			id[i] = entries[i].id;
-		}
+		cell.reserve(size_t(count));
+		id.reserve(size_t(count));
+		reportedLoop(count, progress.part(0.8, 1), what, [&](int i) {
+			cell.push_back(entries[i].cell);
+			id.push_back(entries[i].id);
+		});
 	}
 };
 

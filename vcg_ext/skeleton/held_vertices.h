@@ -9,8 +9,10 @@
 #include "closest_surface.h"
 #include "errors.h"
 #include "point_tree.h"
+#include "progress.h"
 #include "stage.h"
 #include "surface_mesh.h"
+#include "ticker.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -42,16 +44,22 @@ inline void holdVertices(Stage& stage, const std::vector<char>& held)
  * vertices on triangles whose corners are all selected.
  * @param selected  1 where a vertex of `surface` is selected, #V.
  * @return 1 for such vertices of `resampled`; at least one if any vertex is selected.
- * @pre both are compact. Complexity: O((V + R) log (V + R)) for R vertices of `resampled`.
+ * @pre both are compact. @throws Cancelled
+ * Complexity: O((V + R) log (V + R)) for R vertices of `resampled`.
  */
-inline std::vector<char> selectionOnResampled(
-	const SurfaceMesh& surface, const std::vector<char>& selected, const SurfaceMesh& resampled)
+inline std::vector<char> selectionOnResampled(const SurfaceMesh& surface,
+	const std::vector<char>& selected, const SurfaceMesh& resampled,
+	const Progress& progress = Progress())
 {
+	const char* const what = "Finding the selected vertices";
 	std::vector<char> result(size_t(resampled.vertexSlots()), 0);
-	const PointTree tree(resampled.position);
-	for (int v = 0; v < surface.vertexSlots(); ++v)
+	const PointTree tree(resampled.position, progress.part(0, 0.1));
+	detail::Ticker nearest(progress.part(0.1, 0.5), what, surface.vertexSlots());
+	for (int v = 0; v < surface.vertexSlots(); ++v) {
+		nearest.tick();
 		if (selected[v])
 			result[size_t(tree.nearest(surface.position[v]))] = 1;
+	}
 	const auto isSelected = [&](int f) {
 		const Triangle t = surface.triangle(f);
 		return selected[t[0]] && selected[t[1]] && selected[t[2]];
@@ -64,10 +72,15 @@ inline std::vector<char> selectionOnResampled(
 	std::vector<int> all(size_t(surface.vertexSlots()));
 	std::iota(all.begin(), all.end(), 0);
 	constexpr double sampleSpacing = 0.01; // of the diagonal
-	const ClosestSurface closest(surface, all, sampleSpacing * surface.bounds().Diag());
-	for (size_t v = 0; v < result.size(); ++v)
-		if (!result[v])
-			result[v] = isSelected(closest.closest(resampled.position[v]).face);
+	const double diagonal = surface.bounds(progress.part(0.5, 0.5)).Diag();
+	const ClosestSurface closest(surface, all, sampleSpacing * diagonal, progress.part(0.5, 0.9));
+	constexpr int reportEvery = 1 << 12;
+	for (int v = 0; v < resampled.vertexSlots(); ++v) {
+		if (v % reportEvery == 0)
+			progress.report(0.9 + 0.1 * v / resampled.vertexSlots(), what);
+		if (!result[size_t(v)])
+			result[size_t(v)] = isSelected(closest.closest(resampled.position[v]).face);
+	}
 	return result;
 }
 

@@ -7,9 +7,11 @@
 #define VCG_MCF_NEAREST_POINTS_H
 
 #include "cell_grid.h"
+#include "large_arrays.h"
 #include "parallel_blocks.h"
 #include "point_tree.h"
 #include "progress.h"
+#include "ticker.h"
 
 #include <vcg/space/box3.h>
 #include <vcg/space/point3.h>
@@ -44,17 +46,18 @@ inline std::vector<int> nearestPoints(const std::vector<Point3d>& points,
 		0.85; // on even triangles no place is farther than 0.58 from a corner
 	constexpr size_t mostCandidates = 256;
 	const char* const what = "Finding the nearest points";
-	progress.report(0, what);
 	Box3d box;
 	for (const std::vector<Point3d>* some : {&points, &queries})
-		for (const Point3d& p : *some)
-			box.Add(p);
+		detail::reportedLoop(
+			int(some->size()), progress.part(0, 0), what, [&](int i) { box.Add((*some)[i]); });
 	const detail::CellGrid grid(box, cellOfSpacing * spacing);
-	const auto sorted = [&](const std::vector<Point3d>& some) {
+	const auto sorted = [&](const std::vector<Point3d>& some, const Progress& ofSorting) {
 		return detail::PointsByCell(
-			some.size(), [&](size_t i) -> const Point3d& { return some[i]; }, grid);
+			int(some.size()), [&](int i) -> const Point3d& { return some[size_t(i)]; }, grid,
+			ofSorting, what);
 	};
-	const detail::PointsByCell sources = sorted(points), asked = sorted(queries);
+	const detail::PointsByCell sources = sorted(points, progress.part(0, 0.05));
+	const detail::PointsByCell asked = sorted(queries, progress.part(0.05, 0.2));
 	// Nearer than this, with room for rounding, two points are in neighbouring cells.
 	const double certain = (1 - 1e-6) * grid.size;
 	struct Candidate
@@ -63,7 +66,8 @@ inline std::vector<int> nearestPoints(const std::vector<Point3d>& points,
 		int id;
 	};
 
-	std::vector<int> result(queries.size(), -1);
+	std::vector<int> result =
+		detail::filledArray(queries.size(), -1, progress.part(0.2, 0.2), what);
 	const auto blockOfCells = [&](int begin, int end) {
 		std::array<std::int64_t, 9> row;
 		std::array<size_t, 9> next;

@@ -39,6 +39,8 @@ constexpr double toldTogether = 3; // in the middle of a sheet, a ball of 4.2 ha
 constexpr double wallReach = mostThickness + longestPiece * 2 / 3;
 constexpr double kindCell = std::max(wallReach, (sheetReach + toldTogether) / 2);
 
+constexpr const char* tellingKinds = "Telling curves from sheets";
+
 inline double epsilonAt(const Stage& stage, int v)
 {
 	return stage.epsilon * stage.diagonal[stage.component[v]];
@@ -91,8 +93,9 @@ public:
 			addPieces(unsorted, whole, corners, longestPiece * epsilonAt(stage, t[0]), box, 16);
 		}
 		const PointsByCell sorted(
-			unsorted.size(),
-			[&](size_t i) { return Point3d::Construct(unsorted[i].middle) + origin; }, grid);
+			int(unsorted.size()),
+			[&](int i) { return Point3d::Construct(unsorted[size_t(i)].middle) + origin; }, grid,
+			Progress(), tellingKinds);
 		pieces.reserve(unsorted.size());
 		for (size_t i = 0; i < unsorted.size(); ++i) {
 			const Piece& piece = unsorted[size_t(sorted.id[i])];
@@ -427,7 +430,9 @@ inline std::vector<VertexKind> vertexKinds(const Stage& stage)
 		box.Offset(2 * cellSize);
 		const detail::CellGrid grid(box, cellSize);
 		const detail::PointsByCell sorted(
-			some.vertices.size(), [&](size_t i) { return mesh.position[some.vertices[i]]; }, grid);
+			int(some.vertices.size()),
+			[&](int i) { return mesh.position[some.vertices[size_t(i)]]; }, grid, Progress(),
+			detail::tellingKinds);
 		const detail::PiecesByCell surface(stage, box, grid);
 		const auto cells = [&](int begin, int end) {
 			detail::CellsAround around(surface.cells, sorted.cell[begin]);
@@ -450,7 +455,7 @@ inline std::vector<VertexKind> vertexKinds(const Stage& stage)
 					detail::tellSomeKinds(stage, surface, near, closed, kind);
 			}
 		};
-		forEachBlock(int(some.vertices.size()), Progress(), "Telling curves from sheets", cells);
+		forEachBlock(int(some.vertices.size()), Progress(), detail::tellingKinds, cells);
 	}
 	for (int i = 0; i < rounds; ++i)
 		kind = detail::majority(mesh, kind);
