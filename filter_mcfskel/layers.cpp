@@ -496,17 +496,23 @@ SurfaceLink linkTo(const MeshModel& layer, const SurfaceLayer& surface)
 
 namespace {
 
-void fillSurface(MeshModel& layer, const mcf::SurfaceMesh& mesh)
+/// @throws Cancelled
+void fillSurface(
+	MeshModel& layer, const mcf::SurfaceMesh& mesh, const mcf::Progress& progress = mcf::Progress())
 {
+	const char* const what = "Writing the layer";
+	progress.report(0, what);
 	addVertices(layer, mesh.position);
-	const std::vector<mcf::Triangle> triangles = mesh.triangles();
+	const std::vector<mcf::Triangle> triangles = mesh.triangles(progress.part(0.2, 0.4));
 	auto face = Allocator::AddFaces(layer.cm, triangles.size());
-	for (const mcf::Triangle& triangle : triangles) {
+	mcf::detail::reportedLoop(int(triangles.size()), progress.part(0.4, 0.8), what, [&](int f) {
 		for (int k = 0; k < 3; ++k)
-			face->V(k) = &layer.cm.vert[size_t(triangle[size_t(k)])];
+			face->V(k) = &layer.cm.vert[size_t(triangles[size_t(f)][size_t(k)])];
 		++face;
-	}
+	});
+	progress.report(0.8, what);
 	host::updateBoxAndNormals(layer);
+	progress.report(1, what);
 }
 
 void fillCurve(MeshModel& layer, const std::vector<vcg::Point3d>& nodes,
@@ -632,11 +638,11 @@ MeshModel& DocumentEdit::addLayer(const Matrix44m& frame, const QString& label)
 	return layer;
 }
 
-MeshModel& DocumentEdit::addSurface(
-	const MeshModel& source, const QString& label, const mcf::SurfaceMesh& mesh)
+MeshModel& DocumentEdit::addSurface(const MeshModel& source, const QString& label,
+	const mcf::SurfaceMesh& mesh, const mcf::Progress& progress)
 {
 	MeshModel& layer = addLayer(source, label);
-	fillSurface(layer, mesh);
+	fillSurface(layer, mesh, progress);
 	return layer;
 }
 

@@ -141,9 +141,9 @@ public:
 	DocumentEdit(const DocumentEdit&) = delete;
 	DocumentEdit& operator=(const DocumentEdit&) = delete;
 
-	/// A new surface layer in the frame of `source`.
-	MeshModel& addSurface(
-		const MeshModel& source, const QString& label, const vcg::tri::mcf::SurfaceMesh& mesh);
+	/// A new surface layer in the frame of `source`. @throws Cancelled
+	MeshModel& addSurface(const MeshModel& source, const QString& label,
+		const vcg::tri::mcf::SurfaceMesh& mesh, const vcg::tri::mcf::Progress& progress);
 
 	/// A new layer of points without faces in the frame of `source`.
 	MeshModel& addPoints(

@@ -141,7 +141,8 @@ Results run(FilterRun& run)
 	const QString name = baseName(input);
 	MeshModel* surface = &input;
 	if (parameters.resample)
-		surface = &edit.addSurface(input, name + "_resampled", *pipeline.surface.mesh);
+		surface = &edit.addSurface(
+			input, name + "_resampled", *pipeline.surface.mesh, run.progress.part(1, 1));
 	const SurfaceLink link = linkTo(*surface, pipeline.surface);
 	for (const auto& stage : pipeline.kept)
 		edit.addStage(input, stageLabel(name, *stage), stage, link);

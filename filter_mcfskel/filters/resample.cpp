@@ -22,7 +22,8 @@ Results run(FilterRun& run)
 	const mcf::SurfaceMesh& mesh = *resampled.mesh;
 
 	DocumentEdit edit(run.document);
-	MeshModel& layer = edit.addSurface(run.layer(), baseName(run.layer()) + "_resampled", mesh);
+	MeshModel& layer = edit.addSurface(
+		run.layer(), baseName(run.layer()) + "_resampled", mesh, run.progress.part(1, 1));
 	edit.attachSurface(layer, resampled);
 	edit.commit();
 	return {{"vertices", mesh.vertexCount()}, {"faces", mesh.faceCount()},

@@ -212,7 +212,7 @@ public:
 	}
 
 	/// @see TrackedMesh::take()
-	SurfaceMesh take() { return tracked.take(); }
+	SurfaceMesh take(const Progress& progress) { return tracked.take(progress); }
 	/// @see TrackedMesh::componentOfVertex()
 	const std::vector<int>& componentOfVertex() const { return tracked.componentOfVertex(); }
 

@@ -111,15 +111,16 @@ inline SurfaceMesh resample(const MeasuredSurface& surface,
 	remesher.flipForAngles(progress.part(0.95, 0.96));
 	remesher.smoothAndProject(progress.part(0.96, 0.99));
 	remesher.flipForAngles(progress.part(0.99, 1));
-	SurfaceMesh result = remesher.take();
+	const Progress end = progress.part(1, 1);
+	SurfaceMesh result = remesher.take(end);
 	const std::vector<int>& componentOfResult = remesher.componentOfVertex();
 	// On a grid of its own: far from the origin the digits beyond are lost on the way out.
 	const std::vector<PrincipalFrame> frameOfResult =
-		PrincipalFrame::ofPoints(result.position, componentOfResult, size_t(components));
-	for (int v = 0; v < result.vertexSlots(); ++v) {
+		PrincipalFrame::ofPoints(result.position, componentOfResult, size_t(components), end);
+	detail::reportedLoop(result.vertexSlots(), end, what, [&](int v) {
 		const int c = componentOfResult[v];
 		result.position[v] = surface.frame(c).out(frameOfResult[c].snapped(result.position[v]));
-	}
+	});
 	return result;
 }
 

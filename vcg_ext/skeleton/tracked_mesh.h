@@ -175,7 +175,7 @@ public:
 
 	/// Closes the holes in the numbering and brings neighbours together, for speed.
 	/// @throws Cancelled
-	void renumber(const Progress& progress = Progress())
+	void renumber(const Progress& progress)
 	{
 		std::vector<int> seeds(length.size(), -1);
 		const int last = mesh.vertexSlots() - 1;
@@ -204,11 +204,13 @@ public:
 
 	/// The mesh as it is now, without thin triangles, one component after the other. Only
 	/// componentOfVertex() can be asked afterwards.
-	SurfaceMesh take()
+	/// @throws Cancelled
+	SurfaceMesh take(const Progress& progress)
 	{
 		creases = CreaseEdges();
-		removeThinTriangles(mesh, [&](int v) { return lengthAt(v); });
-		renumber();
+		removeThinTriangles(
+			mesh, [&](int v) { return lengthAt(v); }, progress.part(0, 0.2));
+		renumber(progress.part(0.2, 1));
 		return std::move(mesh);
 	}
 
