@@ -16,11 +16,13 @@
 #include "skeleton/refine.h"
 #include "skeleton/resample.h"
 #include "skeleton/skeletonize.h"
+#include "skeleton/soup_repair.h"
 #include "skeleton/voronoi_poles.h"
 
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <utility>
 #include <vector>
 
 using namespace vcg::tri::mcf;
@@ -55,6 +57,44 @@ TEST(ProgressGaps, ReadingADenseSurfaceReportsAsItGrows)
 		wanted / 4); // these take less than a microsecond for a vertex
 	EXPECT_GE(reportsOf([&](const Progress& p) { PointTree(mesh.position, p); }), wanted / 4);
 	EXPECT_GE(reportsOf([&](const Progress& p) { measureNoise(mesh, p); }), wanted);
+}
+
+/// What a surface that is not closed as given takes in addition: edges sorted, faces turned, fans told.
+TEST(ProgressGaps, RepairingADenseSurfaceReportsAsItGrows)
+{
+	const shapes::Soup closed = shapes::sphere(7), unmerged = shapes::unmerged(closed);
+	shapes::Soup turned = closed, doubled = closed, open = closed;
+	for (size_t f = 0; f < turned.triangles.size(); f += 10)
+		std::swap(turned.triangles[f][0], turned.triangles[f][1]);
+	doubled.triangles.push_back(doubled.triangles[5]);
+	open.triangles.pop_back();
+	for (const shapes::Soup& soup : {unmerged, turned, doubled}) {
+		const int wanted = int(soup.triangles.size()) / mostVerticesBetweenReports;
+		EXPECT_GE(
+			reportsOf([&](const Progress& p) { repairedSoup(soup.points, soup.triangles, p); }),
+			4 * wanted); // faces, edges, sides, fans
+		EXPECT_GE(
+			reportsOf([&](const Progress& p) { checkedSurface(soup.points, soup.triangles, p); }),
+			5 * wanted);
+	}
+	const int wanted = int(open.triangles.size()) / mostVerticesBetweenReports;
+	EXPECT_GE(reportsOf([&](const Progress& p) {
+		EXPECT_THROW(repairedSoup(open.points, open.triangles, p), InvalidInput);
+	}),
+		4 * wanted); // faces and edges, as given and merged
+}
+
+TEST(ProgressGaps, RepairIsCancelledAtAnyReport)
+{
+	const shapes::Soup soup = shapes::unmerged(shapes::sphere(5));
+	const int reports =
+		reportsOf([&](const Progress& p) { repairedSoup(soup.points, soup.triangles, p); });
+	for (int last = 1; last <= reports; ++last) {
+		int heard = 0;
+		const Progress progress([&](int, const char*) { return ++heard < last; });
+		EXPECT_THROW(repairedSoup(soup.points, soup.triangles, progress), Cancelled);
+		EXPECT_EQ(heard, last);
+	}
 }
 
 TEST(ProgressGaps, PolesAndStepsReportAsTheSurfaceGrows)

@@ -86,7 +86,7 @@ inline std::vector<int> connectedComponents(
  * @param triangles corners as indices into `points`.
  * @throws InvalidInput saying what is wrong, how many, where, and which MeshLab filter cures it;
  *         Cancelled.
- * Complexity: O(V + F); O((V + F) log F) where the connectivity has to be repaired.
+ * Complexity: about O(V + F): see repairedSoup().
  */
 inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
 	const std::vector<Triangle>& triangles, const Progress& progress = Progress())
@@ -127,49 +127,51 @@ inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
 
 	std::optional<SurfaceMesh> ready =
 		SurfaceMesh::ifClosedManifold(detail::copiedArray(points, progress.part(0.04, 0.04), what),
-			triangles, progress.part(0.04, 0.5));
+			triangles, progress.part(0.04, 0.3));
 	RepairedSoup soup;
 	std::vector<int>& vertexOfInput = soup.vertexOfInput;
 	const bool asGiven = ready && ready->vertexCount() == ready->vertexSlots();
 	if (ready) {
-		detail::fillReported(vertexOfInput, points.size(), 0, progress.part(0.5, 0.5), what);
+		detail::fillReported(vertexOfInput, points.size(), 0, progress.part(0.3, 0.3), what);
 		std::iota(vertexOfInput.begin(), vertexOfInput.end(), 0);
 		if (!asGiven)
 			soup.faces = triangles;
 	}
 	else
-		soup = repairedSoup(points, triangles);
+		soup = repairedSoup(points, triangles, progress.part(0.3, 0.65));
 	result.notes = std::move(soup.notes);
-	progress.report(0.5, what);
+	progress.report(0.65, what);
 
 	if (!asGiven) {
 		// Number the referenced vertices in their own order.
-		const Progress numbering = progress.part(0.5, 0.5);
+		const Progress numbering = progress.part(0.65, 0.72);
 		std::vector<int> number = detail::filledArray(points.size(), -1, numbering, what);
-		detail::reportedLoop(int(soup.faces.size()), numbering, what, [&](int f) {
+		detail::reportedLoop(int(soup.faces.size()), numbering.part(0, 0.2), what, [&](int f) {
 			for (int v : soup.faces[f])
 				number[v] = 0;
 		});
 		std::vector<Point3d> used;
 		used.reserve(points.size());
-		detail::reportedLoop(int(points.size()), numbering, what, [&](int v) {
+		detail::reportedLoop(int(points.size()), numbering.part(0.2, 0.4), what, [&](int v) {
 			if (number[v] == 0) {
 				number[v] = int(used.size());
 				used.push_back(points[v]);
 			}
 		});
-		for (int& v : vertexOfInput)
+		size_t unreferenced = 0;
+		detail::reportedLoop(int(vertexOfInput.size()), numbering.part(0.4, 0.7), what, [&](int i) {
+			int& v = vertexOfInput[i];
 			v = number[v];
-		const size_t unreferenced =
-			size_t(std::count(vertexOfInput.begin(), vertexOfInput.end(), -1));
+			unreferenced += v < 0;
+		});
 		if (unreferenced)
 			result.notes.push_back(
 				std::to_string(unreferenced) + " unreferenced vertices were left out.");
-		detail::reportedLoop(int(soup.faces.size()), numbering, what, [&](int f) {
+		detail::reportedLoop(int(soup.faces.size()), numbering.part(0.7, 1), what, [&](int f) {
 			for (int& v : soup.faces[f])
 				v = number[v];
 		});
-		ready = SurfaceMesh(std::move(used), soup.faces, progress.part(0.5, 0.8));
+		ready = SurfaceMesh(std::move(used), soup.faces, progress.part(0.72, 0.8));
 	}
 
 	// Each component must enclose a volume, and is turned so that the volume is positive.

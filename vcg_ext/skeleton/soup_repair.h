@@ -6,11 +6,15 @@
 #ifndef VCG_MCF_SOUP_REPAIR_H
 #define VCG_MCF_SOUP_REPAIR_H
 
+#include "coincident_points.h"
 #include "errors.h"
+#include "large_arrays.h"
+#include "progress.h"
+#include "sorted_groups.h"
 #include "surface_mesh.h"
+#include "ticker.h"
 
 #include <algorithm>
-#include <numeric>
 #include <sstream>
 #include <string>
 #include <tuple>
@@ -46,28 +50,56 @@ inline std::string countAndPlaces(
 	return text.str();
 }
 
-/// A half-edge of the soup, to be sorted by its edge.
+constexpr const char* repairing = "Repairing the surface";
+
+/// A half-edge of the soup, in the group of its lower end.
 struct SoupEdge
 {
-	int low, high, face;
-	bool forward; ///< runs from low to high in its face
+	int high; ///< the other end
+	unsigned face : 31;
+	unsigned forward : 1; ///< runs from low to high in its face
 	bool operator<(const SoupEdge& other) const
 	{
-		return std::tie(low, high, face) < std::tie(other.low, other.high, other.face);
+		return high != other.high ? high < other.high : face < other.face;
 	}
 };
 
-inline std::vector<SoupEdge> sortedSoupEdges(const std::vector<Triangle>& triangles)
+using SoupEdges = SortedGroups<SoupEdge>;
+
+inline SoupEdges sortedSoupEdges(
+	size_t vertices, const std::vector<Triangle>& triangles, const Progress& progress)
 {
-	std::vector<SoupEdge> edges;
-	edges.reserve(3 * triangles.size());
-	for (int f = 0; f < int(triangles.size()); ++f)
-		for (int k = 0; k < 3; ++k) {
-			const int a = triangles[f][k], b = triangles[f][(k + 1) % 3];
-			edges.push_back({std::min(a, b), std::max(a, b), f, a < b});
+	const auto ends = [&](int h) {
+		const Triangle& t = triangles[h / 3];
+		return std::make_pair(t[h % 3], t[(h + 1) % 3]);
+	};
+	return SoupEdges(
+		int(3 * triangles.size()), vertices,
+		[&](int h) {
+			const auto [a, b] = ends(h);
+			return std::min(a, b);
+		},
+		[&](int h) {
+			const auto [a, b] = ends(h);
+			return SoupEdge {std::max(a, b), unsigned(h / 3), a < b};
+		},
+		progress, repairing);
+}
+
+/// Calls visit(low, first half-edge, end of the half-edges) for each edge, in order.
+/// @throws Cancelled
+template <class Visit>
+void forEachSoupEdge(const SoupEdges& edges, const Progress& progress, Visit&& visit)
+{
+	edges.forEach(progress, repairing, [&](int low, const SoupEdge* begin, const SoupEdge* end) {
+		while (begin != end) {
+			const SoupEdge* next = begin + 1;
+			while (next != end && next->high == begin->high)
+				++next;
+			visit(low, begin, next);
+			begin = next;
 		}
-	std::sort(edges.begin(), edges.end());
-	return edges;
+	});
 }
 
 /// How many faces meet at each edge, as the two counts that must be zero.
@@ -79,68 +111,83 @@ struct EdgeDefects
 };
 
 inline EdgeDefects edgeDefects(
-	const std::vector<Point3d>& points, const std::vector<SoupEdge>& edges)
+	const std::vector<Point3d>& points, const SoupEdges& edges, const Progress& progress)
 {
 	EdgeDefects defects;
-	for (size_t i = 0; i < edges.size();) {
-		size_t j = i;
-		while (j < edges.size() && edges[j].low == edges[i].low && edges[j].high == edges[i].high)
-			++j;
-		const Point3d middle = (points[edges[i].low] + points[edges[i].high]) / 2.0;
-		if (j - i == 1) {
-			if (++defects.border <= 3)
-				defects.borderPlaces.push_back(middle);
-		}
-		else if (j - i > 2) {
-			if (++defects.nonManifold <= 3)
-				defects.nonManifoldPlaces.push_back(middle);
-		}
-		i = j;
-	}
+	const auto note = [&](size_t& count, std::vector<Point3d>& places, int low, int high) {
+		if (++count <= 3)
+			places.push_back((points[low] + points[high]) / 2.0);
+	};
+	forEachSoupEdge(edges, progress, [&](int low, const SoupEdge* begin, const SoupEdge* end) {
+		if (end - begin == 1)
+			note(defects.border, defects.borderPlaces, low, begin->high);
+		else if (end - begin > 2)
+			note(defects.nonManifold, defects.nonManifoldPlaces, low, begin->high);
+	});
 	return defects;
 }
 
-/// For each point the first one at the very same place.
-inline std::vector<int> firstCoincident(const std::vector<Point3d>& points)
-{
-	std::vector<int> order(points.size()), first(points.size());
-	std::iota(order.begin(), order.end(), 0);
-	const auto key = [&](int i) {
-		return std::make_tuple(points[i][0], points[i][1], points[i][2], i);
-	};
-	std::sort(order.begin(), order.end(), [&](int i, int j) { return key(i) < key(j); });
-	for (size_t i = 0; i < order.size(); ++i)
-		first[order[i]] =
-			i > 0 && points[order[i]] == points[order[i - 1]] ? first[order[i - 1]] : order[i];
-	return first;
-}
-
 /// Removes faces that use a vertex twice and copies of a face (same corners, same turn).
-inline size_t removeDegenerateFaces(std::vector<Triangle>& triangles)
+inline size_t removeDegenerateFaces(
+	size_t vertices, std::vector<Triangle>& triangles, const Progress& progress)
 {
 	const size_t before = triangles.size();
-	triangles.erase(
-		std::remove_if(triangles.begin(), triangles.end(),
-			[](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }),
-		triangles.end());
-	const auto turned = [](Triangle t) {
-		std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
-		return t;
+	const auto keepIf = [&](const Progress& part, const auto& isKept) {
+		size_t kept = 0;
+		reportedLoop(int(triangles.size()), part, repairing, [&](int f) {
+			if (isKept(f))
+				triangles[kept++] = triangles[f];
+		});
+		triangles.resize(kept);
 	};
-	std::vector<std::pair<Triangle, int>> keys;
-	keys.reserve(triangles.size());
-	for (int f = 0; f < int(triangles.size()); ++f)
-		keys.emplace_back(turned(triangles[f]), f);
-	std::sort(keys.begin(), keys.end());
-	std::vector<char> copy(triangles.size(), 0);
-	for (size_t i = 1; i < keys.size(); ++i)
-		copy[keys[i].second] = keys[i].first == keys[i - 1].first;
-	size_t kept = 0;
-	for (size_t f = 0; f < triangles.size(); ++f)
-		if (!copy[f])
-			triangles[kept++] = triangles[f];
-	triangles.resize(kept);
-	return before - kept;
+	keepIf(progress.part(0, 0.1), [&](int f) {
+		const Triangle& t = triangles[f];
+		return t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
+	});
+	// A face in the group of its lowest corner, known by the other two.
+	struct Corners
+	{
+		int second, third, face;
+		bool operator<(const Corners& other) const
+		{
+			return std::tie(second, third, face) < std::tie(other.second, other.third, other.face);
+		}
+	};
+	const auto lowest = [&](int f) {
+		const Triangle& t = triangles[f];
+		return int(std::min_element(t.begin(), t.end()) - t.begin());
+	};
+	const SortedGroups<Corners> groups(
+		int(triangles.size()), vertices, [&](int f) { return triangles[f][lowest(f)]; },
+		[&](int f) {
+			const Triangle& t = triangles[f];
+			const int k = lowest(f);
+			return Corners {t[(k + 1) % 3], t[(k + 2) % 3], f};
+		},
+		progress.part(0.1, 0.8), repairing);
+	std::vector<char> copy =
+		filledArray(triangles.size(), char(0), progress.part(0.8, 0.8), repairing);
+	bool copies = false;
+	groups.forEach(
+		progress.part(0.8, 0.9), repairing, [&](int, const Corners* begin, const Corners* end) {
+			for (const Corners* i = begin + 1; i < end; ++i)
+				if (i->second == i[-1].second && i->third == i[-1].third) {
+					copy[i->face] = 1;
+					copies = true;
+				}
+		});
+	if (copies)
+		keepIf(progress.part(0.9, 1), [&](int f) { return !copy[f]; });
+	return before - triangles.size();
+}
+
+/// 0, 1, 2, ...
+inline std::vector<int> numbered(size_t count, const Progress& progress)
+{
+	std::vector<int> numbers;
+	numbers.reserve(count);
+	reportedLoop(int(count), progress, repairing, [&](int i) { numbers.push_back(i); });
+	return numbers;
 }
 
 /**
@@ -148,84 +195,88 @@ inline size_t removeDegenerateFaces(std::vector<Triangle>& triangles)
  * @return the number of faces turned, or -1 if the surface is one-sided.
  * @pre no edge has more than two faces.
  */
-inline int orientCoherently(std::vector<Triangle>& triangles, const std::vector<SoupEdge>& edges)
+inline int orientCoherently(
+	std::vector<Triangle>& triangles, const SoupEdges& edges, const Progress& progress)
 {
-	struct Neighbour
-	{
-		int face;
-		bool agrees;
-	};
-	std::vector<std::array<Neighbour, 3>> neighbours(triangles.size());
-	std::vector<char> count(triangles.size(), 0);
-	for (size_t i = 0; i + 1 < edges.size(); ++i) {
-		if (edges[i].low != edges[i + 1].low || edges[i].high != edges[i + 1].high)
-			continue;
-		const bool agrees = edges[i].forward != edges[i + 1].forward;
-		neighbours[edges[i].face][size_t(count[edges[i].face]++)] = {edges[i + 1].face, agrees};
-		neighbours[edges[i + 1].face][size_t(count[edges[i + 1].face]++)] = {edges[i].face, agrees};
-	}
-	std::vector<char> state(triangles.size(), 0); // 0 unseen, 1 kept, 2 turned
-	std::vector<int> stack, component;
-	int turned = 0;
-	for (int seed = 0; seed < int(triangles.size()); ++seed) {
-		if (state[seed])
-			continue;
-		state[seed] = 1;
-		stack.assign(1, seed);
-		component.clear();
-		int turnedHere = 0;
-		while (!stack.empty()) {
-			const int f = stack.back();
-			stack.pop_back();
-			component.push_back(f);
-			turnedHere += state[f] == 2;
-			for (int k = 0; k < count[f]; ++k) {
-				const Neighbour& n = neighbours[f][size_t(k)];
-				const char wanted = n.agrees ? state[f] : char(3 - state[f]);
-				if (!state[n.face]) {
-					state[n.face] = wanted;
-					stack.push_back(n.face);
-				}
-				else if (state[n.face] != wanted)
-					return -1;
-			}
+	// Sets of faces, each known by its lowest one, and whether a face is turned against its parent.
+	const size_t count = triangles.size();
+	std::vector<int> parent = numbered(count, progress.part(0, 0.1));
+	std::vector<char> against = filledArray(count, char(0), progress.part(0.1, 0.1), repairing);
+	const auto find = [&](int f) {
+		bool turned = false;
+		while (parent[f] != f) {
+			against[f] ^= against[parent[f]];
+			parent[f] = parent[parent[f]];
+			turned ^= bool(against[f]);
+			f = parent[f];
 		}
-		// The majority of a component keeps its side.
-		const bool swapAll = 2 * turnedHere > int(component.size());
-		for (int f : component)
-			if ((state[f] == 2) != swapAll) {
-				std::swap(triangles[f][1], triangles[f][2]);
-				++turned;
+		return std::make_pair(f, turned);
+	};
+	bool twoSided = true;
+	forEachSoupEdge(
+		edges, progress.part(0.1, 0.7), [&](int, const SoupEdge* begin, const SoupEdge* end) {
+			if (!twoSided || end - begin != 2)
+				return;
+			const bool disagree = begin[0].forward == begin[1].forward;
+			const auto [a, aTurned] = find(int(begin[0].face));
+			const auto [b, bTurned] = find(int(begin[1].face));
+			const bool turn = (aTurned ^ bTurned) != disagree;
+			if (a == b)
+				twoSided = !turn;
+			else {
+				parent[std::max(a, b)] = std::min(a, b);
+				against[std::max(a, b)] = turn;
 			}
-	}
-	return turned;
+		});
+	if (!twoSided)
+		return -1;
+	// The majority of a component keeps its side.
+	std::vector<int> majority = filledArray(count, 0, progress.part(0.7, 0.7), repairing);
+	reportedLoop(int(count), progress.part(0.7, 0.85), repairing, [&](int f) {
+		const auto [first, turned] = find(f);
+		majority[first] += turned ? 1 : -1;
+	});
+	int turnedFaces = 0;
+	reportedLoop(int(count), progress.part(0.85, 1), repairing, [&](int f) {
+		const auto [first, turned] = find(f);
+		if (turned != (majority[first] > 0)) {
+			std::swap(triangles[f][1], triangles[f][2]);
+			++turnedFaces;
+		}
+	});
+	return turnedFaces;
 }
 
 /// Vertices at which two or more fans of faces meet. @pre every edge has exactly two faces.
-inline std::vector<int> nonManifoldVertices(size_t vertices, const std::vector<Triangle>& triangles)
+inline std::vector<int> nonManifoldVertices(size_t vertices, const std::vector<Triangle>& triangles,
+	const SoupEdges& edges, const Progress& progress)
 {
 	// Corners around a vertex are joined over shared edges: one class for each fan.
-	std::vector<int> parent(3 * triangles.size());
-	std::iota(parent.begin(), parent.end(), 0);
+	std::vector<int> parent = numbered(3 * triangles.size(), progress.part(0, 0.1));
 	const auto find = [&](int c) {
 		while (parent[c] != c)
 			c = parent[c] = parent[parent[c]];
 		return c;
 	};
-	const auto corner = [&](int f, int v) {
-		return 3 * f + (triangles[f][0] == v ? 0 : triangles[f][1] == v ? 1 : 2);
+	const auto corner = [&](unsigned f, int v) {
+		return 3 * int(f) + (triangles[f][0] == v ? 0 : triangles[f][1] == v ? 1 : 2);
 	};
-	const std::vector<SoupEdge> edges = sortedSoupEdges(triangles);
-	for (size_t i = 0; i + 1 < edges.size(); i += 2)
-		for (int v : {edges[i].low, edges[i].high})
-			parent[find(corner(edges[i].face, v))] = find(corner(edges[i + 1].face, v));
-	std::vector<int> fans(vertices, 0), found;
-	for (int c = 0; c < int(parent.size()); ++c)
-		if (parent[c] == c)
-			++fans[triangles[c / 3][c % 3]];
-	for (int v = 0; v < int(vertices); ++v)
+	forEachSoupEdge(
+		edges, progress.part(0.1, 0.7), [&](int low, const SoupEdge* begin, const SoupEdge*) {
+			for (int v : {low, begin->high})
+				parent[find(corner(begin[0].face, v))] = find(corner(begin[1].face, v));
+		});
+	std::vector<char> fans = filledArray(vertices, char(0), progress.part(0.7, 0.7), repairing);
+	reportedLoop(int(parent.size()), progress.part(0.7, 0.9), repairing, [&](int c) {
+		char& here = fans[triangles[c / 3][c % 3]];
+		if (parent[c] == c && here < 2)
+			++here;
+	});
+	std::vector<int> found;
+	reportedLoop(int(vertices), progress.part(0.9, 1), repairing, [&](int v) {
 		if (fans[v] > 1)
 			found.push_back(v);
+	});
 	return found;
 }
 
@@ -234,44 +285,46 @@ inline std::vector<int> nonManifoldVertices(size_t vertices, const std::vector<T
 /**
  * Repairs the connectivity of a soup: coincident vertices are merged (only if there are fewer
  * defects so), degenerate and duplicate faces left out, faces turned to agree with their neighbours.
- * @throws InvalidInput if it still is no closed two-manifold.
- * Complexity: O((V + F) log F).
+ * @throws InvalidInput if it still is no closed two-manifold; Cancelled.
+ * Complexity: about O(V + F); O(V + F log n) where n faces meet at a vertex.
  */
-inline RepairedSoup repairedSoup(
-	const std::vector<Point3d>& points, const std::vector<Triangle>& triangles)
+inline RepairedSoup repairedSoup(const std::vector<Point3d>& points,
+	const std::vector<Triangle>& triangles, const Progress& progress = Progress())
 {
 	using namespace detail;
 	RepairedSoup result;
-	std::vector<Triangle>& faces = result.faces = triangles;
-	if (const size_t removed = removeDegenerateFaces(faces))
+	std::vector<Triangle>& faces = result.faces;
+	faces = copiedArray(triangles, progress, repairing);
+	if (const size_t removed = removeDegenerateFaces(points.size(), faces, progress.part(0, 0.15)))
 		result.notes.push_back(
 			std::to_string(removed) + " degenerate or duplicate faces were left out.");
-	std::vector<SoupEdge> edges = sortedSoupEdges(faces);
-	EdgeDefects defects = edgeDefects(points, edges);
+	SoupEdges edges = sortedSoupEdges(points.size(), faces, progress.part(0.15, 0.35));
+	EdgeDefects defects = edgeDefects(points, edges, progress.part(0.35, 0.4));
 	std::vector<int>& vertexOfInput = result.vertexOfInput;
-	vertexOfInput.resize(points.size());
-	std::iota(vertexOfInput.begin(), vertexOfInput.end(), 0);
 	if (!defects.none()) {
-		std::vector<Triangle> merged = faces;
-		const std::vector<int> first = firstCoincident(points);
-		for (Triangle& t : merged)
-			for (int& v : t)
+		std::vector<int> first = firstCoincident(points, progress.part(0.4, 0.5), repairing);
+		std::vector<Triangle> merged = copiedArray(faces, progress.part(0.5, 0.5), repairing);
+		size_t copies = 0;
+		reportedLoop(int(first.size()), progress.part(0.5, 0.52), repairing,
+			[&](int v) { copies += first[v] != v; });
+		reportedLoop(int(merged.size()), progress.part(0.52, 0.55), repairing, [&](int f) {
+			for (int& v : merged[f])
 				v = first[v];
-		removeDegenerateFaces(merged);
-		const std::vector<SoupEdge> mergedEdges = sortedSoupEdges(merged);
-		const EdgeDefects mergedDefects = edgeDefects(points, mergedEdges);
+		});
+		removeDegenerateFaces(points.size(), merged, progress.part(0.55, 0.6));
+		SoupEdges mergedEdges = sortedSoupEdges(points.size(), merged, progress.part(0.6, 0.7));
+		EdgeDefects mergedDefects = edgeDefects(points, mergedEdges, progress.part(0.7, 0.7));
 		if (mergedDefects.border + mergedDefects.nonManifold
 			< defects.border + defects.nonManifold) {
-			size_t copies = 0;
-			for (size_t v = 0; v < points.size(); ++v)
-				copies += first[v] != int(v);
 			result.notes.push_back(std::to_string(copies) + " coincident vertices were merged.");
 			faces = std::move(merged);
-			edges = mergedEdges;
-			defects = mergedDefects;
-			vertexOfInput = first;
+			edges = std::move(mergedEdges);
+			defects = std::move(mergedDefects);
+			vertexOfInput = std::move(first);
 		}
 	}
+	if (vertexOfInput.empty())
+		vertexOfInput = numbered(points.size(), progress.part(0.7, 0.72));
 	if (faces.empty())
 		throw InvalidInput("All faces are degenerate: a closed triangle mesh is needed.");
 	if (defects.nonManifold)
@@ -282,7 +335,7 @@ inline RepairedSoup repairedSoup(
 			+ (defects.border
 					? ", then 'Close Holes' (" + std::to_string(defects.border) + " border edges)."
 					: "."));
-	const int turned = orientCoherently(faces, edges);
+	const int turned = orientCoherently(faces, edges, progress.part(0.72, 0.85));
 	if (turned < 0)
 		throw InvalidInput(
 			"The mesh is one-sided (like a Moebius strip or a Klein bottle): its faces cannot be "
@@ -297,7 +350,8 @@ inline RepairedSoup repairedSoup(
 	if (turned > 0)
 		result.notes.push_back(
 			std::to_string(turned) + " faces were turned to agree with their neighbours.");
-	const std::vector<int> pinched = nonManifoldVertices(points.size(), faces);
+	const std::vector<int> pinched =
+		nonManifoldVertices(points.size(), faces, edges, progress.part(0.85, 1));
 	if (!pinched.empty()) {
 		std::vector<Point3d> places;
 		for (size_t i = 0; i < std::min<size_t>(3, pinched.size()); ++i)
