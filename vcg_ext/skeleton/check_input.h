@@ -127,7 +127,7 @@ inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
 
 	std::optional<SurfaceMesh> ready =
 		SurfaceMesh::ifClosedManifold(detail::copiedArray(points, progress.part(0.04, 0.04), what),
-			triangles, progress.part(0.04, 0.3));
+			triangles, progress.part(0.06, 0.3));
 	RepairedSoup soup;
 	std::vector<int>& vertexOfInput = soup.vertexOfInput;
 	const bool asGiven = ready && ready->vertexCount() == ready->vertexSlots();

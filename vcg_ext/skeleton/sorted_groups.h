@@ -82,14 +82,13 @@ public:
 		// A group's place counts up to its end as it is filled, which is where the next one begins.
 		start = filledArray(groups + 2, 0, progress, what);
 		reportedLoop(
-			count, progress.part(0, 0.25), what, [&](int i) { ++start[size_t(groupOf(i)) + 2]; });
-		const Progress filling = progress.part(0.25, 0.7);
-		reportedLoop(int(groups), filling.part(0, 0), what,
+			count, progress.part(0.1, 0.25), what, [&](int i) { ++start[size_t(groupOf(i)) + 2]; });
+		reportedLoop(int(groups), progress.part(0.25, 0.35), what,
 			[&](int g) { start[size_t(g) + 2] += start[size_t(g) + 1]; });
-		entries = filledArray(size_t(count), Entry(), filling, what);
-		reportedLoop(count, filling, what,
+		entries = filledArray(size_t(count), Entry(), progress.part(0.35, 1), what);
+		reportedLoop(count, progress.part(0.45, 0.75), what,
 			[&](int i) { entries[size_t(start[size_t(groupOf(i)) + 1]++)] = entryOf(i); });
-		const Progress sorting = progress.part(0.7, 1);
+		const Progress sorting = progress.part(0.75, 1);
 		forEachRange(sorting, what, [&](int, size_t from, size_t to) {
 			if (to - from > sortedAtOnce)
 				sortReported(entries, from, to, sorting.part(shareOf(from), shareOf(to)), what);

@@ -299,21 +299,21 @@ inline RepairedSoup repairedSoup(const std::vector<Point3d>& points,
 		result.notes.push_back(
 			std::to_string(removed) + " degenerate or duplicate faces were left out.");
 	SoupEdges edges = sortedSoupEdges(points.size(), faces, progress.part(0.15, 0.35));
-	EdgeDefects defects = edgeDefects(points, edges, progress.part(0.35, 0.4));
+	EdgeDefects defects = edgeDefects(points, edges, progress.part(0.35, 0.37));
 	std::vector<int>& vertexOfInput = result.vertexOfInput;
 	if (!defects.none()) {
-		std::vector<int> first = firstCoincident(points, progress.part(0.4, 0.5), repairing);
-		std::vector<Triangle> merged = copiedArray(faces, progress.part(0.5, 0.5), repairing);
+		std::vector<int> first = firstCoincident(points, progress.part(0.37, 0.45), repairing);
+		std::vector<Triangle> merged = copiedArray(faces, progress.part(0.45, 0.45), repairing);
 		size_t copies = 0;
-		reportedLoop(int(first.size()), progress.part(0.5, 0.52), repairing,
+		reportedLoop(int(first.size()), progress.part(0.45, 0.47), repairing,
 			[&](int v) { copies += first[v] != v; });
-		reportedLoop(int(merged.size()), progress.part(0.52, 0.55), repairing, [&](int f) {
+		reportedLoop(int(merged.size()), progress.part(0.47, 0.5), repairing, [&](int f) {
 			for (int& v : merged[f])
 				v = first[v];
 		});
-		removeDegenerateFaces(points.size(), merged, progress.part(0.55, 0.6));
-		SoupEdges mergedEdges = sortedSoupEdges(points.size(), merged, progress.part(0.6, 0.7));
-		EdgeDefects mergedDefects = edgeDefects(points, mergedEdges, progress.part(0.7, 0.7));
+		removeDegenerateFaces(points.size(), merged, progress.part(0.5, 0.59));
+		SoupEdges mergedEdges = sortedSoupEdges(points.size(), merged, progress.part(0.59, 0.69));
+		EdgeDefects mergedDefects = edgeDefects(points, mergedEdges, progress.part(0.69, 0.7));
 		if (mergedDefects.border + mergedDefects.nonManifold
 			< defects.border + defects.nonManifold) {
 			result.notes.push_back(std::to_string(copies) + " coincident vertices were merged.");

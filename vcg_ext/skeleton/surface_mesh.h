@@ -78,13 +78,19 @@ public:
 			return std::nullopt;
 		SurfaceMesh mesh;
 		mesh.position = std::move(points);
-		mesh.setTriangles(triangles, progress.part(0.02, 0.1));
-		if (!mesh.pairTwins(progress.part(0.1, 0.6)))
+		mesh.setTriangles(triangles, progress.part(0.02, 0.2));
+		const Progress pairing = progress.part(0.2, 0.65);
+		if (!mesh.pairTwins(pairing)) {
+			// Memory is given back in pieces, too.
+			pairing.report(1, checking);
+			mesh.position = std::vector<Point3d>();
+			pairing.report(1, checking);
 			return std::nullopt;
-		mesh.chooseOutgoing(progress.part(0.6, 0.7));
+		}
+		mesh.chooseOutgoing(progress.part(0.65, 0.75));
 		// One ring of distinct neighbours at each vertex, and no half-edge outside of these rings.
 		long inRings = 0;
-		detail::reportedLoop(mesh.vertexSlots(), progress.part(0.7, 1), checking, [&](int v) {
+		detail::reportedLoop(mesh.vertexSlots(), progress.part(0.75, 1), checking, [&](int v) {
 			if (!distinct || !mesh.isVertex(v))
 				return;
 			const int stamp = mesh.nextStamp();
@@ -611,11 +617,10 @@ private:
 
 	void setTriangles(const std::vector<Triangle>& triangles, const Progress& progress)
 	{
-		const Progress begin = progress.part(0, 0);
-		detail::fillReported(origins, 3 * triangles.size(), -1, begin, checking);
-		detail::fillReported(twins, origins.size(), -1, begin, checking);
-		detail::fillReported(outgoings, position.size(), -1, begin, checking);
-		detail::reportedLoop(int(triangles.size()), progress, checking, [&](int f) {
+		detail::fillReported(origins, 3 * triangles.size(), -1, progress, checking);
+		detail::fillReported(twins, origins.size(), -1, progress.part(0.25, 1), checking);
+		detail::fillReported(outgoings, position.size(), -1, progress.part(0.5, 1), checking);
+		detail::reportedLoop(int(triangles.size()), progress.part(0.75, 1), checking, [&](int f) {
 			for (int k = 0; k < 3; ++k)
 				origins[3 * f + k] = triangles[f][k];
 		});
@@ -629,13 +634,14 @@ private:
 	{
 		const int n = int(position.size());
 		std::vector<int> start = detail::filledArray(size_t(n) + 1, 0, progress, checking);
-		std::vector<int> bucket = detail::filledArray(origins.size(), 0, progress, checking);
+		std::vector<int> bucket =
+			detail::filledArray(origins.size(), 0, progress.part(0.1, 1), checking);
 		const auto lower = [&](int h) { return std::min(origin(h), target(h)); };
-		detail::reportedLoop(halfEdgeSlots(), progress.part(0, 0.2), checking,
+		detail::reportedLoop(halfEdgeSlots(), progress.part(0.2, 0.3), checking,
 			[&](int h) { ++start[lower(h) + 1]; });
-		const Progress pairing = progress.part(0.2, 1);
 		detail::reportedLoop(
-			n, pairing.part(0, 0), checking, [&](int v) { start[v + 1] += start[v]; });
+			n, progress.part(0.3, 0.4), checking, [&](int v) { start[v + 1] += start[v]; });
+		const Progress pairing = progress.part(0.4, 1);
 		std::vector<int> end = detail::copiedArray(start, pairing, checking);
 		detail::reportedLoop(halfEdgeSlots(), pairing, checking, [&](int h) {
 			const int low = lower(h);
