@@ -42,7 +42,7 @@ public:
 	/// @pre the points are finite. @throws Cancelled. Complexity: O(n log n).
 	explicit PointTree(const std::vector<Point3d>& points, const Progress& progress = Progress()) :
 			ids(detail::filledArray(points.size(), 0, progress, sorting)),
-			sorted(detail::filledArray(points.size(), Point3d(), progress, sorting))
+			sorted(detail::filledArray(points.size(), Point3d(0, 0, 0), progress, sorting))
 	{
 		Box3d box;
 		std::vector<Sample> samples;
