@@ -31,7 +31,8 @@ struct CellGrid
 	/// @param box of all points; wanted: the size of the cells, larger if they would be too many.
 	CellGrid(const Box3d& box, double wanted) : low(box.min)
 	{
-		constexpr double most = (1 << bits) - 4; // one to spare at either end, and for rounding
+		// Whoever looks up to two cells away, past an end of a row too, comes to cells that no point is in.
+		constexpr double most = (1 << bits) - 4;
 		const double longest = std::max({box.DimX(), box.DimY(), box.DimZ()});
 		size = std::max(wanted, longest / most);
 		if (!(size > 0))

@@ -14,7 +14,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -40,8 +39,8 @@ inline std::vector<int> connectedComponents(
 	// Sets of vertices that grow face by face, each known by its lowest vertex: unlike a walk over
 	// the surface that reads the mesh in the order in which it lies in memory.
 	const char* const what = "Measuring the surface";
-	std::vector<int> lowest = detail::filledArray(size_t(mesh.vertexSlots()), 0, progress, what);
-	std::iota(lowest.begin(), lowest.end(), 0);
+	std::vector<int> lowest =
+		detail::numberedArray(size_t(mesh.vertexSlots()), progress.part(0, 0), what);
 	const auto find = [&](int v) {
 		while (lowest[v] != v)
 			v = lowest[v] = lowest[lowest[v]];
@@ -132,8 +131,7 @@ inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
 	std::vector<int>& vertexOfInput = soup.vertexOfInput;
 	const bool asGiven = ready && ready->vertexCount() == ready->vertexSlots();
 	if (ready) {
-		detail::fillReported(vertexOfInput, points.size(), 0, progress.part(0.3, 0.3), what);
-		std::iota(vertexOfInput.begin(), vertexOfInput.end(), 0);
+		vertexOfInput = detail::numberedArray(points.size(), progress.part(0.3, 0.3), what);
 		if (!asGiven)
 			soup.faces = triangles;
 	}

@@ -10,6 +10,7 @@
 #define VCG_MCF_LARGE_ARRAYS_H
 
 #include "progress.h"
+#include "ticker.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -59,6 +60,16 @@ std::vector<T> copiedArray(const std::vector<T>& array, const Progress& progress
 		copy.insert(copy.end(), array.begin() + long(copy.size()), array.begin() + long(end));
 	}
 	return copy;
+}
+
+/// 0, 1, 2, ..., count - 1, made in pieces between which the user can cancel.
+/// @throws Cancelled
+inline std::vector<int> numberedArray(size_t count, const Progress& progress, const char* what)
+{
+	std::vector<int> numbers;
+	numbers.reserve(count);
+	reportedLoop(int(count), progress, what, [&](int i) { numbers.push_back(i); });
+	return numbers;
 }
 
 } // namespace vcg::tri::mcf::detail

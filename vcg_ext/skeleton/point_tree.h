@@ -8,7 +8,6 @@
 
 #include "four_boxes.h"
 #include "four_slabs.h"
-#include "large_arrays.h"
 #include "progress.h"
 #include "ticker.h"
 
@@ -40,9 +39,7 @@ class PointTree
 {
 public:
 	/// @pre the points are finite. @throws Cancelled. Complexity: O(n log n).
-	explicit PointTree(const std::vector<Point3d>& points, const Progress& progress = Progress()) :
-			ids(detail::filledArray(points.size(), 0, progress, sorting)),
-			sorted(detail::filledArray(points.size(), Point3d(0, 0, 0), progress, sorting))
+	explicit PointTree(const std::vector<Point3d>& points, const Progress& progress = Progress())
 	{
 		Box3d box;
 		std::vector<Sample> samples;
@@ -63,15 +60,18 @@ public:
 		leafStart.reserve(width + 1);
 		build(samples, box, 0, 0, int(points.size()), progress.part(0, 0.9));
 		leafStart.push_back(int(points.size()));
+		ids.reserve(points.size());
+		sorted.reserve(points.size());
 		for (std::vector<float>& values : coordinate)
-			detail::fillReported(values, ids.size() + Lanes, std::numeric_limits<float>::infinity(),
-				progress.part(0.9, 0.9), sorting);
-		detail::reportedLoop(int(ids.size()), progress.part(0.9, 1), sorting, [&](int i) {
-			ids[i] = samples[i].id;
-			sorted[i] = samples[i].point;
+			values.reserve(points.size() + Lanes);
+		detail::reportedLoop(int(points.size()), progress.part(0.9, 1), sorting, [&](int i) {
+			ids.push_back(samples[i].id);
+			sorted.push_back(samples[i].point);
 			for (int axis = 0; axis < 3; ++axis)
-				coordinate[axis][i] = float(sorted[i][axis] - origin[axis]);
+				coordinate[axis].push_back(float(samples[i].point[axis] - origin[axis]));
 		});
+		for (std::vector<float>& values : coordinate)
+			values.resize(points.size() + Lanes, std::numeric_limits<float>::infinity());
 	}
 
 	int size() const { return int(ids.size()); }

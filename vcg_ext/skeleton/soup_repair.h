@@ -181,15 +181,6 @@ inline size_t removeDegenerateFaces(
 	return before - triangles.size();
 }
 
-/// 0, 1, 2, ...
-inline std::vector<int> numbered(size_t count, const Progress& progress)
-{
-	std::vector<int> numbers;
-	numbers.reserve(count);
-	reportedLoop(int(count), progress, repairing, [&](int i) { numbers.push_back(i); });
-	return numbers;
-}
-
 /**
  * Turns faces so that neighbours agree, each connected component (over edges) by itself.
  * @return the number of faces turned, or -1 if the surface is one-sided.
@@ -200,7 +191,7 @@ inline int orientCoherently(
 {
 	// Sets of faces, each known by its lowest one, and whether a face is turned against its parent.
 	const size_t count = triangles.size();
-	std::vector<int> parent = numbered(count, progress.part(0, 0.1));
+	std::vector<int> parent = numberedArray(count, progress.part(0, 0.1), repairing);
 	std::vector<char> against = filledArray(count, char(0), progress.part(0.1, 0.1), repairing);
 	const auto find = [&](int f) {
 		bool turned = false;
@@ -252,7 +243,7 @@ inline std::vector<int> nonManifoldVertices(size_t vertices, const std::vector<T
 	const SoupEdges& edges, const Progress& progress)
 {
 	// Corners around a vertex are joined over shared edges: one class for each fan.
-	std::vector<int> parent = numbered(3 * triangles.size(), progress.part(0, 0.1));
+	std::vector<int> parent = numberedArray(3 * triangles.size(), progress.part(0, 0.1), repairing);
 	const auto find = [&](int c) {
 		while (parent[c] != c)
 			c = parent[c] = parent[parent[c]];
@@ -324,7 +315,7 @@ inline RepairedSoup repairedSoup(const std::vector<Point3d>& points,
 		}
 	}
 	if (vertexOfInput.empty())
-		vertexOfInput = numbered(points.size(), progress.part(0.7, 0.72));
+		vertexOfInput = numberedArray(points.size(), progress.part(0.7, 0.72), repairing);
 	if (faces.empty())
 		throw InvalidInput("All faces are degenerate: a closed triangle mesh is needed.");
 	if (defects.nonManifold)

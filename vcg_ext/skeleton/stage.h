@@ -18,7 +18,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numeric>
 #include <vector>
 
 namespace vcg::tri::mcf {
@@ -168,8 +167,8 @@ inline Stage initialStage(
 	stage.initialArea = stage.area = measured.areas();
 	stage.initialVolume = stage.volume = surface.volume(progress.part(0, 0));
 	stage.surface = std::make_shared<const std::vector<Point3d>>(copied(surface.position));
-	stage.node = detail::filledArray(stage.pole.size(), 0, progress, "Copying the surface");
-	std::iota(stage.node.begin(), stage.node.end(), 0);
+	stage.node =
+		detail::numberedArray(stage.pole.size(), progress.part(0, 0), "Copying the surface");
 	return stage;
 }
 
