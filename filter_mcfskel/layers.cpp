@@ -8,7 +8,6 @@
 #include <skeleton/check_input.h>
 #include <skeleton/errors.h>
 #include <skeleton/ticker.h>
-#include <skeleton/vertex_kind.h>
 
 #include <QRegularExpression>
 
@@ -221,25 +220,41 @@ std::vector<int> liveSlots(const CMeshO& mesh)
 	return live;
 }
 
-void writeScalars(MeshModel& layer, const char* name, const std::vector<double>& values)
+constexpr char writing[] = "Writing the layer";
+
+/// Writes an attribute: one value for each vertex, made by toValue() from one of `values`.
+template <class T, class Values, class ToValue>
+void writeAttribute(MeshModel& layer, const char* name, const Values& values,
+	const mcf::Progress& progress, const ToValue& toValue)
 {
-	auto attribute = vertexAttribute<Scalarm>(layer, name);
-	for (size_t i = 0; i < values.size(); ++i)
-		attribute[i] = Scalarm(values[i]);
+	progress.report(0, writing);
+	auto attribute = vertexAttribute<T>(layer, name);
+	mcf::detail::reportedLoop(int(values.size()), progress, writing,
+		[&](int i) { attribute[size_t(i)] = toValue(values[size_t(i)]); });
 }
 
-void writePoints(MeshModel& layer, const char* name, const std::vector<vcg::Point3d>& values)
+template <class Values>
+void writeScalars(MeshModel& layer, const char* name, const Values& values,
+	const mcf::Progress& progress = mcf::Progress())
 {
-	auto attribute = vertexAttribute<Point3m>(layer, name);
-	for (size_t i = 0; i < values.size(); ++i)
-		attribute[i] = toHost(values[i]);
+	writeAttribute<Scalarm>(
+		layer, name, values, progress, [](auto value) { return Scalarm(value); });
 }
 
-void writeQuality(MeshModel& layer, const std::vector<double>& values)
+void writePoints(MeshModel& layer, const char* name, const std::vector<vcg::Point3d>& values,
+	const mcf::Progress& progress)
+{
+	writeAttribute<Point3m>(layer, name, values, progress, toHost);
+}
+
+void writeQuality(MeshModel& layer, const std::vector<double>& values,
+	const mcf::Progress& progress = mcf::Progress())
 {
 	layer.updateDataMask(MeshModel::MM_VERTQUALITY);
-	for (size_t i = 0; i < values.size(); ++i)
-		layer.cm.vert[i].Q() = decltype(layer.cm.vert[i].Q() + 0)(values[i]);
+	mcf::detail::reportedLoop(int(values.size()), progress, writing, [&](int i) {
+		auto& quality = layer.cm.vert[size_t(i)].Q();
+		quality = std::decay_t<decltype(quality)>(values[size_t(i)]);
+	});
 }
 
 void addVertices(MeshModel& layer, const std::vector<vcg::Point3d>& points)
@@ -464,8 +479,11 @@ bool hasStageAttributes(const MeshModel& layer)
 	return findAttribute(layer.cm.vert_attr, fixedAttribute) != nullptr;
 }
 
-std::shared_ptr<const mcf::PoleSet> readPoles(const MeshModel& layer, const SurfaceLayer& surface)
+std::shared_ptr<const mcf::PoleSet> readPoles(
+	const MeshModel& layer, const SurfaceLayer& surface, const mcf::Progress& progress)
 {
+	const char* const what = "Reading the layer";
+	progress.report(0, what);
 	const auto* centreFound = findAttribute(layer.cm.vert_attr, poleAttribute);
 	const auto* radiusFound = findAttribute(layer.cm.vert_attr, poleRadiusAttribute);
 	if (!centreFound || !radiusFound)
@@ -474,15 +492,18 @@ std::shared_ptr<const mcf::PoleSet> readPoles(const MeshModel& layer, const Surf
 	const auto* radius = valuesOf<Scalarm>(*radiusFound);
 
 	auto shown = std::make_shared<mcf::PoleSet>();
-	shown->centre.assign(size_t(surface.mesh->vertexSlots()), vcg::Point3d(0, 0, 0));
-	shown->radius.assign(size_t(surface.mesh->vertexSlots()), -1);
-	for (size_t slot = 0; slot < surface.vertexOfSlot->size(); ++slot) {
-		const int v = (*surface.vertexOfSlot)[slot];
+	const size_t count = size_t(surface.mesh->vertexSlots());
+	shown->centre = mcf::detail::filledArray(count, vcg::Point3d(0, 0, 0), progress, what);
+	shown->radius = mcf::detail::filledArray(count, -1.0, progress, what);
+	const std::vector<int>& vertexOfSlot = *surface.vertexOfSlot;
+	mcf::detail::reportedLoop(int(vertexOfSlot.size()), progress, what, [&](int slot) {
+		const int v = vertexOfSlot[size_t(slot)];
 		if (v < 0)
-			continue;
+			return;
 		shown->centre[size_t(v)] = toDouble(centre[slot]);
 		shown->radius[size_t(v)] = double(radius[slot]);
-	}
+	});
+	progress.report(1, what);
 	const StatePointer state = validState(layer);
 	if (state && state->poles && sameInHost(*state->poles, *shown))
 		return state->poles;
@@ -496,23 +517,31 @@ SurfaceLink linkTo(const MeshModel& layer, const SurfaceLayer& surface)
 
 namespace {
 
+/// With the normals of its faces, and of its vertices, means by area: those that MeshLab makes, means by
+/// angle, take longer than all the rest.
 /// @throws Cancelled
-void fillSurface(
-	MeshModel& layer, const mcf::SurfaceMesh& mesh, const mcf::Progress& progress = mcf::Progress())
+void fillSurface(MeshModel& layer, const mcf::SurfaceMesh& mesh, const mcf::Progress& progress)
 {
-	const char* const what = "Writing the layer";
-	progress.report(0, what);
-	addVertices(layer, mesh.position);
-	const std::vector<mcf::Triangle> triangles = mesh.triangles(progress.part(0.2, 0.4));
-	auto face = Allocator::AddFaces(layer.cm, triangles.size());
-	mcf::detail::reportedLoop(int(triangles.size()), progress.part(0.4, 0.8), what, [&](int f) {
+	const std::vector<vcg::Point3d> normals = mesh.vertexNormals(progress.part(0, 0.2));
+	auto vertex = Allocator::AddVertices(layer.cm, normals.size());
+	mcf::detail::reportedLoop(int(normals.size()), progress.part(0.2, 0.5), writing, [&](int v) {
+		vertex->P() = toHost(mesh.position[size_t(v)]);
+		vertex->N() = toHost(normals[size_t(v)]);
+		layer.cm.bbox.Add(vertex->cP());
+		++vertex;
+	});
+	auto face = Allocator::AddFaces(layer.cm, size_t(mesh.faceCount()));
+	mcf::detail::reportedLoop(mesh.faceSlots(), progress.part(0.5, 1), writing, [&](int f) {
+		if (!mesh.isFace(f))
+			return;
 		for (int k = 0; k < 3; ++k)
-			face->V(k) = &layer.cm.vert[size_t(triangles[size_t(f)][size_t(k)])];
+			face->V(k) = &layer.cm.vert[size_t(mesh.triangle(f)[size_t(k)])];
+		const vcg::Point3d normal = mesh.areaVector(f);
+		const double length = normal.Norm();
+		face->N() = toHost(length > 0 ? normal / length : normal);
 		++face;
 	});
-	progress.report(0.8, what);
-	host::updateBoxAndNormals(layer);
-	progress.report(1, what);
+	progress.report(1, writing);
 }
 
 void fillCurve(MeshModel& layer, const std::vector<vcg::Point3d>& nodes,
@@ -533,7 +562,8 @@ void fillCurve(MeshModel& layer, const std::vector<vcg::Point3d>& nodes,
 }
 
 /// Curves vermilion, sheets blue, volume grey: told apart by colour-blind eyes, too.
-void writeKinds(MeshModel& layer, const std::vector<mcf::VertexKind>& kinds)
+void writeKinds(MeshModel& layer, const std::vector<mcf::VertexKind>& kinds,
+	const mcf::Progress& progress = mcf::Progress())
 {
 	const auto colourOf = [](mcf::VertexKind kind) {
 		switch (kind) {
@@ -542,28 +572,25 @@ void writeKinds(MeshModel& layer, const std::vector<mcf::VertexKind>& kinds)
 		default: return vcg::Color4b(190, 190, 190, 255);
 		}
 	};
-	std::vector<double> numbers;
-	for (mcf::VertexKind kind : kinds)
-		numbers.push_back(double(kind));
-	writeScalars(layer, kindAttribute, numbers);
+	writeScalars(layer, kindAttribute, kinds, progress.part(0, 0.5));
 	layer.updateDataMask(MeshModel::MM_VERTCOLOR);
-	for (size_t i = 0; i < kinds.size(); ++i)
-		layer.cm.vert[i].C() = colourOf(kinds[i]);
+	mcf::detail::reportedLoop(int(kinds.size()), progress.part(0.5, 1), writing,
+		[&](int i) { layer.cm.vert[size_t(i)].C() = colourOf(kinds[size_t(i)]); });
 }
 
-void fillStage(
-	MeshModel& layer, std::shared_ptr<const mcf::Stage> stage, const SurfaceLink& surface)
+/// @throws Cancelled
+void fillStage(MeshModel& layer, std::shared_ptr<const mcf::Stage> stage, const StageFields& fields,
+	const SurfaceLink& surface, const mcf::Progress& progress)
 {
-	fillSurface(layer, stage->mesh);
-	const std::vector<double> radius = mcf::stageRadius(*stage);
-	writePoints(layer, poleAttribute, stage->pole);
-	writeScalars(layer, poleRadiusAttribute, stage->poleRadius);
-	writeScalars(layer, fixedAttribute, {stage->fixed.begin(), stage->fixed.end()});
+	fillSurface(layer, stage->mesh, progress.part(0, 0.4));
+	writePoints(layer, poleAttribute, stage->pole, progress.part(0.4, 0.5));
+	writeScalars(layer, poleRadiusAttribute, stage->poleRadius, progress.part(0.5, 0.6));
+	writeScalars(layer, fixedAttribute, stage->fixed, progress.part(0.6, 0.7));
 	if (stage->heldCount() > 0)
-		writeScalars(layer, heldAttribute, {stage->held.begin(), stage->held.end()});
-	writeScalars(layer, radiusAttribute, radius);
-	writeQuality(layer, radius);
-	writeKinds(layer, mcf::vertexKinds(*stage));
+		writeScalars(layer, heldAttribute, stage->held, progress.part(0.6, 0.7));
+	writeScalars(layer, radiusAttribute, fields.radius, progress.part(0.7, 0.8));
+	writeQuality(layer, fields.radius, progress.part(0.8, 0.9));
+	writeKinds(layer, fields.kind, progress.part(0.9, 1));
 	LayerState state;
 	state.stage = {std::move(stage), surface};
 	setState(layer, std::move(state));
@@ -708,19 +735,20 @@ MeshModel& DocumentEdit::addMesoSkeleton(
 }
 
 MeshModel& DocumentEdit::addStage(const MeshModel& source, const QString& label,
-	std::shared_ptr<const mcf::Stage> stage, const SurfaceLink& surface)
+	std::shared_ptr<const mcf::Stage> stage, const StageFields& fields, const SurfaceLink& surface,
+	const mcf::Progress& progress)
 {
 	MeshModel& layer = addLayer(source, label);
 	sources.push_back(surface.layerId);
-	fillStage(layer, std::move(stage), surface);
+	fillStage(layer, std::move(stage), fields, surface, progress);
 	return layer;
 }
 
-MeshModel& DocumentEdit::addStage(
-	const QString& label, std::shared_ptr<const mcf::Stage> stage, const SurfaceLink& surface)
+MeshModel& DocumentEdit::addStage(const QString& label, std::shared_ptr<const mcf::Stage> stage,
+	const StageFields& fields, const SurfaceLink& surface, const mcf::Progress& progress)
 {
 	MeshModel& layer = addLayer(surface, label);
-	fillStage(layer, std::move(stage), surface);
+	fillStage(layer, std::move(stage), fields, surface, progress);
 	return layer;
 }
 

@@ -13,6 +13,7 @@
 #define MCFSKEL_LAYERS_H
 
 #include "hosts/host_api.h"
+#include "stage_fields.h"
 
 #include <skeleton/curve_skeleton.h>
 #include <skeleton/meso_skeleton.h>
@@ -125,9 +126,10 @@ bool hasStageAttributes(const MeshModel& layer);
 /**
  * The poles that a surface layer carries, one for each vertex of `surface`; null if it has none, or
  * none that fit its vertices. Exact ones unless somebody has changed the visible ones.
+ * @throws Cancelled
  */
 std::shared_ptr<const vcg::tri::mcf::PoleSet> readPoles(
-	const MeshModel& layer, const SurfaceLayer& surface);
+	const MeshModel& layer, const SurfaceLayer& surface, const vcg::tri::mcf::Progress& progress);
 
 /**
  * Changes to a document, all or none: what was added is removed again unless commit() is reached.
@@ -162,14 +164,16 @@ public:
 	MeshModel& addMesoSkeleton(
 		const MeshModel& source, const QString& label, const vcg::tri::mcf::MesoSkeleton& skeleton);
 
-	/// A new layer of a stage, with all that the next step needs.
+	/// A new layer of a stage, with all that the next step needs. @throws Cancelled
 	MeshModel& addStage(const MeshModel& source, const QString& label,
-		std::shared_ptr<const vcg::tri::mcf::Stage> stage, const SurfaceLink& surface);
+		std::shared_ptr<const vcg::tri::mcf::Stage> stage, const StageFields& fields,
+		const SurfaceLink& surface, const vcg::tri::mcf::Progress& progress);
 
 	/// As above, read from files: in the frame of their surface's layer, if that is there.
 	MeshModel& addCurve(const QString& label, const CurveLayer& curve);
 	MeshModel& addStage(const QString& label, std::shared_ptr<const vcg::tri::mcf::Stage> stage,
-		const SurfaceLink& surface);
+		const StageFields& fields, const SurfaceLink& surface,
+		const vcg::tri::mcf::Progress& progress);
 
 	/// Gives a layer its surface in full precision.
 	void attachSurface(MeshModel& layer, const SurfaceLayer& surface);

@@ -247,7 +247,7 @@ PoledSurface surfaceWithPoles(FilterRun& run, mcf::PoleMethod method, const mcf:
 	PoledSurface result;
 	result.surface = readSurface(run.layer(), progress.part(0, 0.2));
 	logNotes(run, result.surface);
-	result.poles = readPoles(run.layer(), result.surface);
+	result.poles = readPoles(run.layer(), result.surface, progress.part(0.2, 0.2));
 	if (!result.poles) {
 		run.log("The surface has no medial poles yet: computing them.");
 		result.poles = std::make_shared<const mcf::PoleSet>(
@@ -260,6 +260,19 @@ PoledSurface surfaceWithPoles(FilterRun& run, mcf::PoleMethod method, const mcf:
 QString stageLabel(const QString& name, const mcf::Stage& stage)
 {
 	return QString("%1_meso_%2").arg(name).arg(stage.iteration);
+}
+
+void addStages(DocumentEdit& edit, const MeshModel& source, KeptStages& stages,
+	const SurfaceLink& surface, const mcf::Progress& progress)
+{
+	const QString name = baseName(source);
+	const double count = double(stages.size());
+	for (size_t i = 0; i < stages.size(); ++i) {
+		const mcf::Progress part = progress.part(double(i) / count, double(i + 1) / count);
+		const StageFields fields = stages.takeFields(i, part.part(0, 0.5));
+		edit.addStage(source, stageLabel(name, *stages.stage(i)), stages.stage(i), fields, surface,
+			part.part(0.5, 1));
+	}
 }
 
 } // namespace mcfskel

@@ -7,6 +7,7 @@
 #define MCFSKEL_FILTERS_COMMON_H
 
 #include "../filters.h"
+#include "../kept_stages.h"
 #include "../layers.h"
 
 #include <skeleton/curve_skeleton.h>
@@ -82,6 +83,10 @@ PoledSurface surfaceWithPoles(
 
 /// NAME_meso_K.
 QString stageLabel(const QString& name, const vcg::tri::mcf::Stage& stage);
+
+/// Layers of the stages of a run, NAME_meso_K, in the frame of the layer that they come from. @throws Cancelled
+void addStages(DocumentEdit& edit, const MeshModel& source, KeptStages& stages,
+	const SurfaceLink& surface, const vcg::tri::mcf::Progress& progress);
 
 /// Measures wall-clock time, seconds.
 class Stopwatch

@@ -9,6 +9,8 @@
 #include <skeleton/held_vertices.h>
 #include <skeleton/skeletonize.h>
 
+#include <optional>
+
 namespace mcfskel {
 
 namespace mcf = vcg::tri::mcf;
@@ -68,15 +70,19 @@ Results run(FilterRun& run)
 	parameters.check();
 	const Start start = startOf(run, parameters);
 
-	std::vector<std::shared_ptr<const mcf::Stage>> stages;
-	const mcf::Progress progress = run.progress.part(0.1, 1);
+	KeptStages stages;
+	std::optional<KeptStages::FlowShare> share;
+	if (steps > 1)
+		share.emplace();
+	const mcf::Progress progress = run.progress.part(0.1, 0.95);
 	std::shared_ptr<const mcf::Stage> last = start.stage;
 	for (int i = 0; i < steps && !last->converged; ++i) {
 		last = std::make_shared<const mcf::Stage>(
 			mcf::step(*last, parameters, progress.part(double(i) / steps, double(i + 1) / steps)));
 		run.log(stageLine(mcf::figuresOf(*last)));
-		stages.push_back(last);
+		stages.add(last);
 	}
+	share.reset();
 	if (int(stages.size()) < steps)
 		run.log(QString("The contraction has converged: %1 of %2 steps were made.")
 					.arg(stages.size())
@@ -84,9 +90,7 @@ Results run(FilterRun& run)
 
 	DocumentEdit edit(run.document);
 	MeshModel& source = run.layer();
-	const QString name = baseName(source);
-	for (const auto& stage : stages)
-		edit.addStage(source, stageLabel(name, *stage), stage, start.link);
+	addStages(edit, source, stages, start.link, run.progress.part(0.95, 1));
 	if (start.surface.computed)
 		edit.writePoles(source, start.surface.surface, start.surface.poles);
 	edit.writeNodes(start.link, last->node);

@@ -32,7 +32,7 @@ struct Pipeline
 	/// 1 for the vertices of `surface` that are held; empty if there are none.
 	std::vector<char> held;
 	/// The stages to keep as layers, the last one always among them.
-	std::vector<std::shared_ptr<const mcf::Stage>> kept;
+	KeptStages kept;
 	mcf::CurveSkeleton skeleton;
 	/// Instead of `skeleton` where sheets are kept.
 	std::optional<mcf::SheetCollapse> sheets;
@@ -47,11 +47,13 @@ void contractAll(FilterRun& run, const mcf::Parameters& parameters, const mcf::P
 {
 	const int keepStages = run.parameters.integer("keep_stages");
 	mcf::StageObserver observer;
+	std::optional<KeptStages::FlowShare> share;
 	observer.onFigures = [&](const mcf::StageFigures& figures) { run.log(stageLine(figures)); };
 	if (keepStages > 0) {
+		share.emplace();
 		observer.every = keepStages;
 		observer.onStage = [&](mcf::Stage stage) {
-			pipeline.kept.push_back(std::make_shared<const mcf::Stage>(std::move(stage)));
+			pipeline.kept.add(std::make_shared<const mcf::Stage>(std::move(stage)));
 		};
 	}
 	mcf::Stage start = startOfFlow(run, parameters, *pipeline.surface.mesh, *pipeline.poles,
@@ -61,13 +63,12 @@ void contractAll(FilterRun& run, const mcf::Parameters& parameters, const mcf::P
 	if (!end.converged)
 		run.log(
 			QString("The contraction has not converged after %1 iterations.").arg(end.iteration));
-	if (pipeline.kept.empty() || pipeline.kept.back()->iteration != end.iteration)
-		pipeline.kept.push_back(std::make_shared<const mcf::Stage>(std::move(end)));
+	if (pipeline.kept.empty() || pipeline.kept.last()->iteration != end.iteration)
+		pipeline.kept.add(std::make_shared<const mcf::Stage>(std::move(end)));
 }
 
-Pipeline skeletonize(FilterRun& run, const mcf::Parameters& parameters)
+void skeletonize(FilterRun& run, const mcf::Parameters& parameters, Pipeline& pipeline)
 {
-	Pipeline pipeline;
 	const auto note = [&](const char* what, double seconds) {
 		pipeline.seconds[std::string("seconds_") + what] = seconds;
 	};
@@ -85,7 +86,7 @@ Pipeline skeletonize(FilterRun& run, const mcf::Parameters& parameters)
 	note("resample", watch.lap());
 
 	if (!parameters.resample)
-		pipeline.poles = readPoles(run.layer(), pipeline.input);
+		pipeline.poles = readPoles(run.layer(), pipeline.input, run.progress.part(0.15, 0.15));
 	pipeline.newPoles = !pipeline.poles;
 	if (pipeline.newPoles)
 		pipeline.poles = std::make_shared<const mcf::PoleSet>(mcf::medialPoles(
@@ -98,12 +99,12 @@ Pipeline skeletonize(FilterRun& run, const mcf::Parameters& parameters)
 	note("contraction", watch.lap());
 
 	const mcf::Progress progress = run.progress.part(0.85, 0.9);
-	if (pipeline.kept.back()->hasSheets())
+	if (pipeline.kept.last()->hasSheets())
 		pipeline.sheets =
-			collapseWithSheets(run, *pipeline.kept.back(), parameters.epsilon, progress);
+			collapseWithSheets(run, *pipeline.kept.last(), parameters.epsilon, progress);
 	else
 		pipeline.skeleton =
-			mcf::collapseToCurve(*pipeline.kept.back(), parameters.epsilon, progress);
+			mcf::collapseToCurve(*pipeline.kept.last(), parameters.epsilon, progress);
 	note("collapse", watch.lap());
 	if (parameters.refine && pipeline.sheets)
 		run.log("The skeleton is not refined: that is for curves without sheets.");
@@ -113,7 +114,6 @@ Pipeline skeletonize(FilterRun& run, const mcf::Parameters& parameters)
 		pipeline.skeleton = mcf::refine(pipeline.skeleton, *pipeline.surface.mesh,
 			mcf::RefineParameters(), run.progress.part(0.9, 0.98));
 	note("refine", watch.lap());
-	return pipeline;
 }
 
 Results run(FilterRun& run)
@@ -129,11 +129,12 @@ Results run(FilterRun& run)
 	parameters.check();
 	if (run.parameters.integer("keep_stages") < 0)
 		throw mcf::InvalidParameter("Parameter keep_stages must be at least 0.");
-	const Pipeline pipeline = skeletonize(run, parameters);
+	Pipeline pipeline;
+	skeletonize(run, parameters, pipeline);
 
 	const std::vector<int> inputNodes = parameters.resample
 		? carriedOver(*pipeline.surface.mesh, pipeline.nodes(), *pipeline.input.mesh,
-			run.progress.part(0.98, 1))
+			run.progress.part(0.98, 0.99))
 		: std::vector<int>();
 
 	DocumentEdit edit(run.document);
@@ -142,10 +143,9 @@ Results run(FilterRun& run)
 	MeshModel* surface = &input;
 	if (parameters.resample)
 		surface = &edit.addSurface(
-			input, name + "_resampled", *pipeline.surface.mesh, run.progress.part(1, 1));
+			input, name + "_resampled", *pipeline.surface.mesh, run.progress.part(0.99, 0.99));
 	const SurfaceLink link = linkTo(*surface, pipeline.surface);
-	for (const auto& stage : pipeline.kept)
-		edit.addStage(input, stageLabel(name, *stage), stage, link);
+	addStages(edit, input, pipeline.kept, link, run.progress.part(0.99, 1));
 	if (pipeline.sheets)
 		edit.addMesoSkeleton(input, name + "_skeleton", pipeline.sheets->skeleton);
 	else
@@ -157,7 +157,7 @@ Results run(FilterRun& run)
 		edit.writeNodes(input, *pipeline.input.vertexOfSlot, inputNodes);
 	edit.commit();
 
-	Results results = stageResults(*pipeline.kept.back());
+	Results results = stageResults(*pipeline.kept.last());
 	if (pipeline.sheets)
 		results.merge(sheetResults(*pipeline.sheets));
 	else

@@ -29,8 +29,10 @@ Results loadStage(FilterRun& run, const mcf::PlyFile& ply, const QString& name)
 	if (link.layerId < 0)
 		run.log("The surface that the stage comes from is not among the layers: no layer gets its "
 				"correspondence.");
+	const StageFields fields = stageFields(*stage, run.progress.part(0, 0.5));
 	DocumentEdit edit(run.document);
-	edit.addStage(stageLabel(baseName(name), *stage), stage, link);
+	edit.addStage(
+		stageLabel(baseName(name), *stage), stage, fields, link, run.progress.part(0.5, 1));
 	edit.writeNodes(link, stage->node);
 	edit.commit();
 	return stageResults(*stage);

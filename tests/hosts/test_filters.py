@@ -3,6 +3,7 @@
 """What each filter leaves behind: layers, attributes, numbers, and what they mean."""
 
 import json
+import multiprocessing
 
 import numpy as np
 import pymeshlab
@@ -10,7 +11,7 @@ import pytest
 
 from conftest import (COLLAPSE, FULL, MESHES, POLES, REFINE, RESAMPLE, STEP, area, arrays,
                       attributes, components, diagonal, document, edges_of, euler, failing,
-                      labels, layer, opened, points, scalars, volume)
+                      fingerprint, labels, layer, opened, points, scalars, volume)
 
 COARSE = {"target_length": pymeshlab.PercentageValue(1.2)}
 STAGE_NUMBERS = {"iterations", "converged", "volume_fraction", "area_fraction", "fixed_fraction",
@@ -38,6 +39,43 @@ def torus_run():
     before = layers.mesh(0).vertex_matrix(), layers.mesh(0).face_matrix()
     results = layers.apply_filter(FULL, keep_stages=2, **COARSE)
     return layers, results, before
+
+
+def layers_of_a_run(plugin: str, mesh: str) -> list[tuple]:
+    """For a process of its own: how many threads there may be is read once in each."""
+    pymeshlab.load_plugin(plugin)
+    layers = opened(mesh)
+    layers.apply_filter(FULL, keep_stages=1, **COARSE)
+    return fingerprint(layers)
+
+
+@pytest.mark.parametrize("mesh", ["slab", "hand"])
+def test_same_bits_on_any_number_of_threads(mesh, plugin, monkeypatch):
+    runs = []
+    for threads in (1, 2, 5):
+        monkeypatch.setenv("OMP_NUM_THREADS", str(threads))
+        with multiprocessing.get_context("spawn").Pool(1) as process:
+            runs.append(process.apply(layers_of_a_run, (str(plugin), mesh)))
+    assert len(runs[0]) > 10, "there are stages"
+    assert runs[0] == runs[1] == runs[2]
+
+
+def test_surfaces_and_stages_have_normals():
+    layers = opened("capsule")
+    layers.apply_filter(RESAMPLE, **COARSE)
+    layers.apply_filter(STEP)
+    for label in ["capsule_resampled", "capsule_meso_1"]:
+        mesh = layer(layers, label)
+        faces, corners = mesh.face_matrix(), mesh.vertex_matrix()[mesh.face_matrix()]
+        of_faces = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        of_vertices = np.zeros_like(mesh.vertex_matrix())
+        for k in range(3):
+            np.add.at(of_vertices, faces[:, k], of_faces)
+        for found, expected in [(mesh.face_normal_matrix(), of_faces),
+                                (mesh.vertex_normal_matrix(), of_vertices)]:
+            expected = expected / np.linalg.norm(expected, axis=1)[:, None]
+            assert np.abs(found - expected).max() < 1e-3
+        assert np.allclose(mesh.bounding_box().max(), mesh.vertex_matrix().max(axis=0))
 
 
 class TestDefaults:

@@ -182,9 +182,10 @@ inline std::vector<double> meanSurfaceDistance(const std::vector<Point3d>& posit
 	const std::vector<Point3d>& surface, const std::vector<int>& node,
 	const Progress& progress = Progress())
 {
-	std::vector<double> sum(position.size(), 0);
-	std::vector<int> count(position.size(), 0);
-	detail::reportedLoop(int(node.size()), progress, "Measuring the thickness", [&](int s) {
+	const char* const what = "Measuring the thickness";
+	std::vector<double> sum = detail::filledArray(position.size(), 0.0, progress, what);
+	std::vector<int> count = detail::filledArray(position.size(), 0, progress, what);
+	detail::reportedLoop(int(node.size()), progress, what, [&](int s) {
 		if (node[s] < 0)
 			return;
 		sum[node[s]] += Distance(surface[s], position[node[s]]);
@@ -196,10 +197,12 @@ inline std::vector<double> meanSurfaceDistance(const std::vector<Point3d>& posit
 }
 
 /// Local thickness at each vertex of a stage; a vertex made by a split takes its neighbours' mean.
-inline std::vector<double> stageRadius(const Stage& stage)
+/// @throws Cancelled
+inline std::vector<double> stageRadius(const Stage& stage, const Progress& progress = Progress())
 {
 	const SurfaceMesh& mesh = stage.mesh;
-	std::vector<double> radius = meanSurfaceDistance(mesh.position, *stage.surface, stage.node);
+	std::vector<double> radius =
+		meanSurfaceDistance(mesh.position, *stage.surface, stage.node, progress);
 	std::vector<int> unknown;
 	for (int v = 0; v < mesh.vertexSlots(); ++v)
 		if (radius[v] < 0)

@@ -75,13 +75,16 @@ public:
 	/**
 	 * Each triangle is halved at its longest edge until none is longer than longestPiece, or 16 times.
 	 * @param box  of the grid; pieces whose middles are outside are left out.
+	 * @throws Cancelled
 	 */
-	PiecesByCell(const Stage& stage, const Box3d& box, const CellGrid& grid) : origin(box.Center())
+	PiecesByCell(
+		const Stage& stage, const Box3d& box, const CellGrid& grid, const Progress& progress) :
+			origin(box.Center())
 	{
 		const SurfaceMesh& mesh = stage.mesh;
 		std::vector<Piece> unsorted;
 		unsorted.reserve(size_t(mesh.faceSlots()));
-		for (int f = 0; f < mesh.faceSlots(); ++f) {
+		reportedLoop(mesh.faceSlots(), progress.part(0, 0.3), tellingKinds, [&](int f) {
 			const Triangle t = mesh.triangle(f);
 			const std::array<Point3d, 3> corners = {
 				mesh.position[t[0]], mesh.position[t[1]], mesh.position[t[2]]};
@@ -91,16 +94,16 @@ public:
 			if (length > 0)
 				whole.normal = Point3f::Construct(areaVector / length);
 			addPieces(unsorted, whole, corners, longestPiece * epsilonAt(stage, t[0]), box, 16);
-		}
+		});
 		const PointsByCell sorted(
 			int(unsorted.size()),
 			[&](int i) { return Point3d::Construct(unsorted[size_t(i)].middle) + origin; }, grid,
-			Progress(), tellingKinds);
+			progress.part(0.3, 0.8), tellingKinds);
 		pieces.reserve(unsorted.size());
-		for (size_t i = 0; i < unsorted.size(); ++i) {
-			const Piece& piece = unsorted[size_t(sorted.id[i])];
-			if (cells.empty() || cells.back().number != sorted.cell[i])
-				cells.push_back({sorted.cell[i], int(i), int(i), piece.middle, piece.middle,
+		reportedLoop(int(unsorted.size()), progress.part(0.8, 1), tellingKinds, [&](int i) {
+			const Piece& piece = unsorted[size_t(sorted.id[size_t(i)])];
+			if (cells.empty() || cells.back().number != sorted.cell[size_t(i)])
+				cells.push_back({sorted.cell[size_t(i)], i, i, piece.middle, piece.middle,
 					piece.normal, piece.normal, 0});
 			Cell& cell = cells.back();
 			++cell.last;
@@ -112,7 +115,7 @@ public:
 			}
 			cell.area += piece.area;
 			pieces.push_back(piece);
-		}
+		});
 	}
 
 private:
@@ -342,7 +345,7 @@ struct LikeSizes
 	std::vector<int> vertices;
 };
 
-inline std::vector<LikeSizes> verticesOfLikeSizes(const Stage& stage)
+inline std::vector<LikeSizes> verticesOfLikeSizes(const Stage& stage, const Progress& progress)
 {
 	const std::vector<double>& diagonal = stage.diagonal;
 	std::vector<int> order(diagonal.size());
@@ -360,26 +363,26 @@ inline std::vector<LikeSizes> verticesOfLikeSizes(const Stage& stage)
 		groups.back().epsilon = stage.epsilon * diagonal[size_t(c)];
 		groupOf[size_t(c)] = int(groups.size()) - 1;
 	}
-	for (int v = 0; v < stage.mesh.vertexSlots(); ++v)
-		groups[size_t(groupOf[size_t(stage.component[v])])].vertices.push_back(v);
+	reportedLoop(stage.mesh.vertexSlots(), progress, tellingKinds,
+		[&](int v) { groups[size_t(groupOf[size_t(stage.component[v])])].vertices.push_back(v); });
 	return groups;
 }
 
 /// The kind that most of a vertex and its neighbours have; its own if there is no such kind.
 inline std::vector<VertexKind> majority(
-	const SurfaceMesh& mesh, const std::vector<VertexKind>& kind)
+	const SurfaceMesh& mesh, const std::vector<VertexKind>& kind, const Progress& progress)
 {
 	// A vertex whose triangles are each of one kind keeps it.
 	std::vector<char> mixed(kind.size(), 0);
-	for (int f = 0; f < mesh.faceSlots(); ++f) {
+	reportedLoop(mesh.faceSlots(), progress.part(0, 0.7), tellingKinds, [&](int f) {
 		const Triangle t = mesh.triangle(f);
 		if (kind[t[0]] != kind[t[1]] || kind[t[1]] != kind[t[2]])
 			mixed[t[0]] = mixed[t[1]] = mixed[t[2]] = 1;
-	}
+	});
 	std::vector<VertexKind> result = kind;
-	for (int v = 0; v < mesh.vertexSlots(); ++v) {
+	reportedLoop(mesh.vertexSlots(), progress.part(0.7, 1), tellingKinds, [&](int v) {
 		if (!mixed[v])
-			continue;
+			return;
 		std::array<int, 3> votes = {0, 0, 0};
 		int all = 1;
 		++votes[size_t(kind[v])];
@@ -390,7 +393,7 @@ inline std::vector<VertexKind> majority(
 		for (size_t k = 0; k < votes.size(); ++k)
 			if (2 * votes[k] > all)
 				result[v] = VertexKind(k);
-	}
+	});
 	return result;
 }
 
@@ -412,28 +415,36 @@ inline std::vector<VertexKind> majority(
  * vertices within d of one of them all hold its ball of R - d and lie in that of R + d: if the first has
  * enough, all are sheets, if the second has not, all are curves.
  *
- * @return the kind of each vertex, #V. @pre stage.mesh is compact.
+ * @return the kind of each vertex, #V. @pre stage.mesh is compact. @throws Cancelled
  * Complexity: O(V) where no edge is much shorter than epsilon. Source: ours; the paper shows kinds, but does
  * not say how to tell them.
  */
-inline std::vector<VertexKind> vertexKinds(const Stage& stage)
+inline std::vector<VertexKind> vertexKinds(
+	const Stage& stage, const Progress& progress = Progress())
 {
 	constexpr int rounds = 3;
 	const SurfaceMesh& mesh = stage.mesh;
-	const std::vector<Point3d> normal = mesh.vertexNormals();
+	const std::vector<Point3d> normal = mesh.vertexNormals(progress.part(0, 0.1));
 	std::vector<VertexKind> kind(size_t(mesh.vertexSlots()), VertexKind::Volume);
-	for (const detail::LikeSizes& some : detail::verticesOfLikeSizes(stage)) {
+	int done = 0;
+	for (const detail::LikeSizes& some :
+		detail::verticesOfLikeSizes(stage, progress.part(0.1, 0.1))) {
+		const int count = int(some.vertices.size());
+		const auto bar = [&](int told) {
+			return 0.1 + 0.8 * told / std::max(mesh.vertexSlots(), 1);
+		};
+		const Progress part = progress.part(bar(done), bar(done + count));
+		done += count;
 		Box3d box;
-		for (int v : some.vertices)
-			box.Add(mesh.position[v]);
+		detail::reportedLoop(count, part.part(0, 0), detail::tellingKinds,
+			[&](int i) { box.Add(mesh.position[some.vertices[size_t(i)]]); });
 		const double cellSize = detail::kindCell * some.epsilon;
 		box.Offset(2 * cellSize);
 		const detail::CellGrid grid(box, cellSize);
 		const detail::PointsByCell sorted(
-			int(some.vertices.size()),
-			[&](int i) { return mesh.position[some.vertices[size_t(i)]]; }, grid, Progress(),
-			detail::tellingKinds);
-		const detail::PiecesByCell surface(stage, box, grid);
+			count, [&](int i) { return mesh.position[some.vertices[size_t(i)]]; }, grid,
+			part.part(0, 0.1), detail::tellingKinds);
+		const detail::PiecesByCell surface(stage, box, grid, part.part(0.1, 0.4));
 		const auto cells = [&](int begin, int end) {
 			detail::CellsAround around(surface.cells, sorted.cell[begin]);
 			std::vector<int> near, closed;
@@ -455,10 +466,10 @@ inline std::vector<VertexKind> vertexKinds(const Stage& stage)
 					detail::tellSomeKinds(stage, surface, near, closed, kind);
 			}
 		};
-		forEachBlock(int(some.vertices.size()), Progress(), detail::tellingKinds, cells);
+		forEachBlock(count, part.part(0.4, 1), detail::tellingKinds, cells);
 	}
 	for (int i = 0; i < rounds; ++i)
-		kind = detail::majority(mesh, kind);
+		kind = detail::majority(mesh, kind, progress.part(0.9, 1));
 	return kind;
 }
 

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "kept_stages.h"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+namespace mcfskel {
+
+namespace mcf = vcg::tri::mcf;
+
+KeptStages::KeptStages()
+{
+	if (omp_get_max_threads() > 1)
+		teller = std::thread([this] { tell(); });
+}
+
+KeptStages::~KeptStages()
+{
+	if (!teller.joinable())
+		return;
+	givenUp = true;
+	{
+		const std::lock_guard<std::mutex> lock(mutex);
+		finished = true;
+	}
+	changed.notify_one();
+	teller.join();
+}
+
+void KeptStages::add(StagePointer stage)
+{
+	Task task([this, stage] {
+		return stageFields(*stage, mcf::Progress([this](int, const char*) { return !givenUp; }));
+	});
+	{
+		const std::lock_guard<std::mutex> lock(mutex);
+		kept.push_back({std::move(stage), task.get_future(), std::move(task)});
+	}
+	changed.notify_one();
+}
+
+KeptStages::Task KeptStages::begin(size_t i)
+{
+	const std::lock_guard<std::mutex> lock(mutex);
+	return std::exchange(kept[i].telling, Task());
+}
+
+void KeptStages::tell()
+{
+	omp_set_num_threads(1);
+	for (size_t i = 0;; ++i) {
+		{
+			std::unique_lock<std::mutex> lock(mutex);
+			changed.wait(lock, [&] { return finished || i < kept.size(); });
+			if (finished)
+				return;
+		}
+		if (Task task = begin(i); task.valid())
+			task();
+	}
+}
+
+StageFields KeptStages::takeFields(size_t i, const mcf::Progress& progress)
+{
+	if (begin(i).valid())
+		return stageFields(*kept[i].stage, progress);
+	while (kept[i].fields.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready)
+		progress.report(0, "Telling curves from sheets");
+	return kept[i].fields.get();
+}
+
+KeptStages::FlowShare::FlowShare() : threads(omp_get_max_threads())
+{
+	omp_set_num_threads(std::max(threads - 1, 1));
+}
+
+KeptStages::FlowShare::~FlowShare()
+{
+	omp_set_num_threads(threads);
+}
+
+} // namespace mcfskel
