@@ -61,8 +61,8 @@ for argument in "$@"; do
 done
 host=()
 for argument in "$@"; do
-	# Also as in --only host.
-	if [ "$argument" = --host ] || [ "$argument" = host ]; then
+	# Also as in --only host and --only kept.
+	if [ "$argument" = --host ] || [ "$argument" = host ] || [ "$argument" = kept ]; then
 		# shellcheck source=lib/python_env.sh
 		. "$ROOT/scripts/lib/python_env.sh"
 		plugin="$("$ROOT/scripts/build.sh" pymeshlab | tail -n 1)"

@@ -26,11 +26,13 @@ from meshes import in_single_precision, meshes_in, subdivided
 from programs import Program, python_peers, run_interleaved
 from studies import STUDIES, study_table
 from tables import (
-    Rows, contraction_table, host_table, quality_table, stages_table, whole_table,
+    Rows, contraction_table, host_table, kept_table, quality_table, stages_table, whole_table,
 )
 
 ROOT = Path(__file__).resolve().parents[2]
-TIMES = {"contraction": contraction_table, "whole": whole_table, "host": host_table}
+TIMES = {"contraction": contraction_table, "whole": whole_table, "host": host_table,
+         "kept": kept_table}
+THROUGH_HOST = ("host", "kept")
 
 
 def parse_arguments() -> argparse.Namespace:
@@ -54,7 +56,7 @@ def parse_arguments() -> argparse.Namespace:
         help="edge length of the whole job's resampling, %% of the diagonal (default 0.5)",
     )
     parser.add_argument(
-        "--only", choices=["contraction", "whole", "host"], help="time this job alone"
+        "--only", choices=list(TIMES), help="time this job alone"
     )
     parser.add_argument("--quality", action="store_true", help="measure the skeletons as well")
     parser.add_argument(
@@ -62,7 +64,8 @@ def parse_arguments() -> argparse.Namespace:
     )
     parser.add_argument(
         "--host", action="store_true",
-        help="run the whole job through pymeshlab as well, beside the bare library (builds the plugin)",
+        help="run the whole job through pymeshlab as well, beside the bare library, and with its "
+             "stages kept (builds the plugin)",
     )
     parser.add_argument(
         "--host-runs", type=int, default=15, metavar="N", help="of either (default 15)"
@@ -88,7 +91,6 @@ def parse_arguments() -> argparse.Namespace:
     parser.add_argument("--plugin", type=Path, help=argparse.SUPPRESS)
     parser.add_argument("--host-python", help=argparse.SUPPRESS)
     arguments = parser.parse_args()
-    arguments.host = arguments.host or arguments.only == "host"
     missing = [str(mesh) for mesh in arguments.meshes if not mesh.is_file()]
     if missing:
         parser.error("no such mesh: " + ", ".join(missing))
@@ -144,14 +146,21 @@ def jobs(arguments: argparse.Namespace) -> dict[str, list[Program]]:
         if arguments.quality:
             options = ("--target-length", density, "--no-refine", *extra)
             result["whole"].append(Program("ours, unrefined", (own,), options, repeats=False))
-    if arguments.host:
+    job = str(Path(__file__).with_name("host_job.py"))
+    hosted = (arguments.host_python, job, str(arguments.plugin))
+    if arguments.only == "host" or arguments.host:
         # What the plugin asks the library for, so that both do the same work, to the last bit.
         same = ("--target-length", density, "--all-poles", "--shortest-edge", "0.2")
-        job = str(Path(__file__).with_name("host_job.py"))
-        command = (arguments.host_python, job, str(arguments.plugin))
         result["host"] = [
             Program("ours", (own,), same),
-            Program("pymeshlab", command, ("--target-length", density)),
+            Program("pymeshlab", hosted, ("--target-length", density)),
+        ]
+    if arguments.only == "kept" or arguments.host:
+        options = ("--target-length", density, "--keep-stages")
+        result["kept"] = [
+            Program(label, hosted, (*options, keep), threads=n)
+            for n in arguments.threads
+            for label, keep in (("pymeshlab", "0"), ("pymeshlab, stages kept", "1"))
         ]
     return result
 
@@ -197,7 +206,7 @@ def main() -> int:
             folder = work / job / mesh.stem
             # The plugin rounds what it reads; without, an iteration more or less would tell.
             read = in_single_precision(mesh, work / "meshes") if job == "host" else mesh
-            runs = arguments.host_runs if job == "host" else arguments.runs
+            runs = arguments.host_runs if job in THROUGH_HOST else arguments.runs
             outcomes = run_interleaved(programs, read, folder, runs, arguments.timeout)
             everything[job].append((mesh, outcomes))
             report["meshes"].append(
@@ -214,11 +223,11 @@ def main() -> int:
 
     for job, rows in everything.items():
         show(job, TIMES[job](rows))
-        if job != "host":
+        if job not in THROUGH_HOST:
             show(f"stages of {job}", stages_table(rows))
     if arguments.quality:
         for job, rows in everything.items():
-            if job == "host":
+            if job in THROUGH_HOST:
                 continue
             table, figures = quality_table(rows)
             report.setdefault("quality", {})[job] = figures

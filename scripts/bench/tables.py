@@ -136,6 +136,30 @@ def host_table(rows: Rows) -> str:
     return markdown(head, body)
 
 
+def kept_table(rows: Rows) -> str:
+    """What it costs to keep all stages, by wall clock, since a thread of its own has a share in it; and
+    what MeshLab's own copy of such a stage costs."""
+    head = ["mesh", "threads", "stages", "none kept s", "all kept s", "a stage ms", "quartiles",
+            "a copy of it ms"]
+    body = []
+    for mesh, outcomes in rows:
+        for none, kept in zip(outcomes[::2], outcomes[1::2]):
+            if none.error or kept.error:
+                body.append([mesh.stem, str(none.program.threads), none.error or kept.error, *["-"] * 5])
+                continue
+            without, with_stages = none.each(WHOLE, "wall"), kept.each(WHOLE, "wall")
+            more = kept.median("kept") - none.median("kept")
+            each = [1000 * (b - a) / more for a, b in zip(without, with_stages)]
+            low, high = np.percentile(each, [25, 75])
+            body.append([
+                mesh.stem, str(kept.program.threads), count(more),
+                number(np.median(without)), number(np.median(with_stages)),
+                f"{np.median(each):.1f}", f"{low:.1f} to {high:.1f}",
+                f"{1000 * kept.median('copy_seconds'):.1f}",
+            ])
+    return markdown(head, body)
+
+
 STAGES = {
     "check": "check", "resample": "resample", "poles": "poles", "contraction": "flow",
     "conversion": "collapse", "refine": "refine",
