@@ -3,9 +3,10 @@
 
 #include "fields.h"
 
+#include <skeleton/ticker.h>
+
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace mcfskel {
 
@@ -34,30 +35,18 @@ vcg::Color4b partColour(int part)
 	return fromHsv(turn - std::floor(turn), part % 2 ? 0.45 : 0.65, part % 3 == 2 ? 0.75 : 0.95);
 }
 
-/// For each face slot of the layer the face of the surface that it was read as; -1: left out.
-std::vector<int> facesOfSlots(const CMeshO& mesh, const SurfaceLayer& surface)
+/// The face of a surface with these corners, in any order; -1 if there is none.
+int faceOf(const mcf::SurfaceMesh& surface, const mcf::Triangle& corners)
 {
-	const auto sorted = [](mcf::Triangle t) {
-		std::sort(t.begin(), t.end());
-		return t;
-	};
-	std::map<mcf::Triangle, int> faces;
-	for (int f = 0; f < surface.mesh->faceSlots(); ++f)
-		if (surface.mesh->isFace(f))
-			faces.emplace(sorted(surface.mesh->triangle(f)), f);
-	std::vector<int> result(mesh.face.size(), -1);
-	for (size_t slot = 0; slot < mesh.face.size(); ++slot) {
-		if (mesh.face[slot].IsD())
-			continue;
-		mcf::Triangle corners;
-		for (int k = 0; k < 3; ++k)
-			corners[size_t(k)] =
-				(*surface.vertexOfSlot)[vcg::tri::Index(mesh, mesh.face[slot].cV(k))];
-		const auto found = faces.find(sorted(corners));
-		if (found != faces.end())
-			result[slot] = found->second;
-	}
-	return result;
+	const auto has = [&](int v) { return std::count(corners.begin(), corners.end(), v) == 1; };
+	int found = -1;
+	if (corners[0] >= 0)
+		surface.forEachOutgoing(corners[0], [&](int h) {
+			const mcf::Triangle t = surface.triangle(h / 3);
+			if (has(t[0]) && has(t[1]) && has(t[2]))
+				found = h / 3;
+		});
+	return found;
 }
 
 } // namespace
@@ -114,15 +103,33 @@ void setVertexColours(MeshModel& layer, const std::vector<double>& values, doubl
 		}
 }
 
-void setFaceParts(MeshModel& layer, const SurfaceLayer& surface, const std::vector<int>& ofFace)
+std::vector<int> facePartsOfSlots(const MeshModel& layer, const SurfaceLayer& surface,
+	const std::vector<int>& ofFace, const mcf::Progress& progress)
+{
+	const CMeshO& mesh = layer.cm;
+	std::vector<int> ofSlot;
+	ofSlot.reserve(mesh.face.size());
+	mcf::detail::reportedLoop(int(mesh.face.size()), progress, "Writing the layer", [&](int slot) {
+		const CFaceO& face = mesh.face[size_t(slot)];
+		int found = -1;
+		if (!face.IsD()) {
+			mcf::Triangle corners;
+			for (int k = 0; k < 3; ++k)
+				corners[size_t(k)] = (*surface.vertexOfSlot)[vcg::tri::Index(mesh, face.cV(k))];
+			found = faceOf(*surface.mesh, corners);
+		}
+		ofSlot.push_back(found < 0 ? -1 : ofFace[size_t(found)]);
+	});
+	return ofSlot;
+}
+
+void setFaceParts(MeshModel& layer, const std::vector<int>& ofSlot)
 {
 	layer.updateDataMask(MeshModel::MM_FACEQUALITY);
 	layer.updateDataMask(MeshModel::MM_FACECOLOR);
-	const std::vector<int> faces = facesOfSlots(layer.cm, surface);
-	for (size_t slot = 0; slot < faces.size(); ++slot) {
-		const int part = faces[slot] < 0 ? -1 : ofFace[size_t(faces[slot])];
-		layer.cm.face[slot].Q() = decltype(layer.cm.face[slot].Q() + 0)(part);
-		layer.cm.face[slot].C() = partColour(part);
+	for (size_t slot = 0; slot < ofSlot.size(); ++slot) {
+		layer.cm.face[slot].Q() = decltype(layer.cm.face[slot].Q() + 0)(ofSlot[slot]);
+		layer.cm.face[slot].C() = partColour(ofSlot[slot]);
 	}
 }
 

@@ -31,11 +31,16 @@ void setVertexQuality(
 void setVertexColours(MeshModel& layer, const std::vector<double>& values, double low, double high);
 
 /**
- * Sets the quality of each face to its part, and its colour to one for that part; what has no part,
- * -1, is grey.
+ * For each face slot of a layer its part; -1 where the face was left out.
  * @param ofFace  one for each face of `surface`, which the layer was read as.
+ * @throws Cancelled
  */
-void setFaceParts(MeshModel& layer, const SurfaceLayer& surface, const std::vector<int>& ofFace);
+std::vector<int> facePartsOfSlots(const MeshModel& layer, const SurfaceLayer& surface,
+	const std::vector<int>& ofFace, const vcg::tri::mcf::Progress& progress);
+
+/// Sets the quality of each face slot to its part, and its colour to one for that part; what has no
+/// part, -1, is grey.
+void setFaceParts(MeshModel& layer, const std::vector<int>& ofSlot);
 
 } // namespace mcfskel
 

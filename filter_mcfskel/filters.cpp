@@ -8,6 +8,7 @@
 
 #include <skeleton/errors.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <exception>
@@ -18,7 +19,8 @@ namespace mcfskel {
 
 namespace {
 
-/// Hands progress on to the host, but not more often than anyone can see: a GUI redraws each time.
+/// Hands progress on to the host, but not more often than anyone can see: a GUI redraws each time. What is
+/// tried again after it has failed, as a collapse with fewer sheets, does not take the bar back.
 vcg::tri::mcf::Progress hostProgress(vcg::CallBackPos* callback)
 {
 	using Clock = std::chrono::steady_clock;
@@ -32,6 +34,7 @@ vcg::tri::mcf::Progress hostProgress(vcg::CallBackPos* callback)
 	// Shared by all windows into the bar, which copy the function.
 	return vcg::tri::mcf::Progress(
 		[callback, last = std::make_shared<Last>()](int percent, const char* what) {
+			percent = std::max(percent, last->percent);
 			const auto now = Clock::now();
 			if (percent == last->percent && now < last->time + std::chrono::milliseconds(50))
 				return true;

@@ -19,8 +19,9 @@ namespace {
 /// The diagonal that distances are divided by: the surface's, else that around both skeletons.
 double sharedDiagonal(FilterRun& run, const CurveLayer& mine, const CurveLayer& other)
 {
-	if (const std::optional<SkeletonSurface> surface = findSurface(run, mine))
-		return surface->surface.mesh->bounds().Diag();
+	if (const std::optional<SkeletonSurface> surface =
+			findSurface(run, mine, run.progress.part(0, 0)))
+		return surface->surface.mesh->bounds(run.progress.part(0, 0)).Diag();
 	run.log(
 		"The surface is not known: distances are divided by the diagonal of the box around both "
 		"skeletons.");

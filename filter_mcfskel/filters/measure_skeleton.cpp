@@ -18,9 +18,9 @@ namespace {
 Results run(FilterRun& run)
 {
 	const CurveLayer curve = skeletonOn(run.layer());
-	const SkeletonSurface surface = requireSurface(run, curve);
+	const SkeletonSurface surface = requireSurface(run, curve, run.progress.part(0, 0.1));
 	const mcf::SkeletonMeasures m =
-		mcf::skeletonMeasures(curve.skeleton, *surface.surface.mesh, {}, run.progress);
+		mcf::skeletonMeasures(curve.skeleton, *surface.surface.mesh, {}, run.progress.part(0.1, 1));
 	const auto& distance = m.nodeMedialDistance;
 	setVertexQuality(run.layer(), distance);
 	setVertexColours(run.layer(), distance, 0, *std::max_element(distance.begin(), distance.end()));

@@ -36,15 +36,21 @@ Results run(FilterRun& run)
 	mcf::CurveSkeleton balls = voxel > 0
 		? mcf::resampledSkeleton(curve.skeleton, voxel / 2, 0, run.progress.part(0, 0.2))
 		: curve.skeleton;
-	const std::optional<SkeletonSurface> surface = findSurface(run, curve);
+	const std::optional<SkeletonSurface> surface =
+		findSurface(run, curve, run.progress.part(0.2, 0.2));
 	if (surface)
-		balls.radius = clearances(balls.position, *surface->surface.mesh);
+		balls.radius =
+			clearances(balls.position, *surface->surface.mesh, run.progress.part(0.2, 0.3));
 	else
 		run.log(
 			"The surface of the skeleton is not known: the balls have the skeleton's own radius, "
 			"which may reach outside.");
 	const mcf::TriangleSoup soup =
 		mcf::unionOfBalls(balls.position, balls.radius, voxel, run.progress.part(0.3, 1));
+
+	const double volume = volumeOf(soup);
+	const mcf::Progress end = run.progress.part(1, 1);
+	const double whole = surface ? surface->surface.mesh->volume(end) : 0;
 
 	MeshModel& source = run.layer();
 	DocumentEdit edit(run.document);
@@ -55,10 +61,10 @@ Results run(FilterRun& run)
 		{"balls", int(balls.position.size())},
 		{"vertices", int(soup.points.size())},
 		{"faces", int(soup.triangles.size())},
-		{"volume", volumeOf(soup)},
+		{"volume", volume},
 	};
 	if (surface)
-		results["volume_fraction"] = volumeOf(soup) / surface->surface.mesh->volume();
+		results["volume_fraction"] = volume / whole;
 	return results;
 }
 

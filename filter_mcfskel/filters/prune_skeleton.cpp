@@ -29,11 +29,13 @@ Results run(FilterRun& run)
 	mcf::CurveSkeleton tracked = curve.skeleton;
 	tracked.node.resize(tracked.position.size());
 	std::iota(tracked.node.begin(), tracked.node.end(), 0);
-	if (const std::optional<SkeletonSurface> surface = findSurface(run, curve))
-		tracked.radius = clearances(tracked.position, *surface->surface.mesh);
+	if (const std::optional<SkeletonSurface> surface =
+			findSurface(run, curve, run.progress.part(0, 0.2)))
+		tracked.radius =
+			clearances(tracked.position, *surface->surface.mesh, run.progress.part(0.2, 0.6));
 	else
 		run.log("The surface of the skeleton is not known: its own radius decides.");
-	mcf::CurveSkeleton pruned = mcf::prune(tracked, parameters, run.progress);
+	mcf::CurveSkeleton pruned = mcf::prune(tracked, parameters, run.progress.part(0.6, 0.9));
 
 	const std::vector<int> target = pruned.node;
 	pruned.node.clear();
@@ -48,7 +50,7 @@ Results run(FilterRun& run)
 	results["terminals_removed"] = before.terminals - after.terminals;
 	results["junctions_removed"] = before.junctions - after.junctions;
 	results["length_removed"] = before.length - after.length;
-	addDerivedSkeleton(run, curve, std::move(pruned), "pruned", true);
+	addDerivedSkeleton(run, curve, std::move(pruned), "pruned", true, run.progress.part(0.9, 1));
 	return results;
 }
 

@@ -15,17 +15,18 @@ namespace {
 Results run(FilterRun& run)
 {
 	const CurveLayer found = skeletonOn(run.layer());
-	const SkeletonSurface surface = requireSurface(run, found);
-	const CurveLayer curve = skeletonOf(run, found, surface);
+	const SkeletonSurface surface = requireSurface(run, found, run.progress.part(0, 0.1));
+	const CurveLayer curve = skeletonOf(run, found, surface, run.progress.part(0.1, 0.2));
 	mcf::RefineParameters parameters;
 	parameters.spurProminence = run.parameters.real("spur_prominence");
 	parameters.smoothing = run.parameters.real("smoothing");
 	parameters.check();
-	mcf::CurveSkeleton refined =
-		mcf::refine(curve.skeleton, *surface.surface.mesh, parameters, run.progress);
+	mcf::CurveSkeleton refined = mcf::refine(
+		curve.skeleton, *surface.surface.mesh, parameters, run.progress.part(0.2, 0.95));
 
 	const Results results = curveResults(refined);
-	addDerivedSkeleton(run, curve, std::move(refined), "refined", false);
+	addDerivedSkeleton(
+		run, curve, std::move(refined), "refined", false, run.progress.part(0.95, 1));
 	return results;
 }
 

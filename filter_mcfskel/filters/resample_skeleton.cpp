@@ -20,7 +20,7 @@ Results run(FilterRun& run)
 	const double diagonal = referenceDiagonal(run.layer());
 	mcf::CurveSkeleton resampled =
 		mcf::resampledSkeleton(curve.skeleton, run.parameters.fraction("longest_edge") * diagonal,
-			run.parameters.fraction("smoothing") * diagonal, run.progress);
+			run.parameters.fraction("smoothing") * diagonal, run.progress.part(0, 0.9));
 	double longest = 0, shortest = resampled.edges.empty() ? 0 : diagonal;
 	for (const auto& [a, b] : resampled.edges) {
 		const double length =
@@ -31,7 +31,8 @@ Results run(FilterRun& run)
 	Results results = curveResults(resampled);
 	results["edge_length_max"] = longest;
 	results["edge_length_min"] = shortest;
-	addDerivedSkeleton(run, curve, std::move(resampled), "smoothed", false);
+	addDerivedSkeleton(
+		run, curve, std::move(resampled), "smoothed", false, run.progress.part(0.9, 1));
 	return results;
 }
 

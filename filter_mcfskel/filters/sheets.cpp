@@ -49,7 +49,8 @@ mcf::Stage startOfFlow(FilterRun& run, const mcf::Parameters& parameters,
 	const mcf::Progress begin = progress.part(0, 0);
 	mcf::Stage stage = mcf::initialStage({surface, begin}, poles, begin);
 	if (parameters.keepSheets) {
-		mcf::markSheets(stage, mcf::sheetness(surface, poles, progress), parameters.sheetThreshold);
+		mcf::markSheets(stage, mcf::sheetness(surface, poles, progress.part(0, 0.4)),
+			parameters.sheetThreshold, progress.part(0.4, 0.5));
 		const auto marked = std::count(stage.sheet.begin(), stage.sheet.end(), 1);
 		run.log(stage.hasSheets()
 				? QString("Keeping sheets: %1 % of the vertices are flatter than %2.")
@@ -59,7 +60,7 @@ mcf::Stage startOfFlow(FilterRun& run, const mcf::Parameters& parameters,
 					  .arg(parameters.sheetThreshold));
 	}
 	if (held.empty() && !stage.hasSheets())
-		return mcf::firstStage(surface, parameters, &poles, progress);
+		return mcf::firstStage(surface, parameters, &poles, progress.part(0.5, 1));
 	if (!held.empty()) {
 		mcf::holdVertices(stage, held);
 		run.log(QString("Holding %1 vertices where they are.").arg(stage.heldCount()));
@@ -70,8 +71,8 @@ mcf::Stage startOfFlow(FilterRun& run, const mcf::Parameters& parameters,
 mcf::SheetCollapse collapseWithSheets(
 	FilterRun& run, const mcf::Stage& stage, double epsilon, const mcf::Progress& progress)
 {
-	mcf::SheetCollapse result =
-		mcf::collapseKeepingSheets(stage, mcf::sheetVertices(stage), epsilon, progress);
+	mcf::SheetCollapse result = mcf::collapseKeepingSheets(
+		stage, mcf::sheetVertices(stage, progress.part(0, 0.3)), epsilon, progress.part(0.3, 1));
 	const mcf::BettiNumbers b = result.skeleton.betti();
 	run.log(QString("%1 sheets of %2 faces; Betti numbers b0 = %3, b1 = %4, b2 = %5.")
 				.arg(result.sheets - result.givenUp)

@@ -7,10 +7,13 @@
 
 #include <skeleton/closest_surface.h>
 #include <skeleton/errors.h>
+#include <skeleton/large_arrays.h>
 #include <skeleton/nearest_points.h>
+#include <skeleton/parallel_blocks.h>
 #include <skeleton/point_tree.h>
 #include <skeleton/skeleton_radius.h>
 #include <skeleton/stage.h>
+#include <skeleton/ticker.h>
 
 #include <algorithm>
 #include <cmath>
@@ -22,6 +25,8 @@ namespace mcfskel {
 namespace mcf = vcg::tri::mcf;
 
 namespace {
+
+constexpr char reading[] = "Reading the layer";
 
 /// The layer of the surface that a skeleton remembers, if it is still there and unchanged.
 MeshModel* rememberedLayer(const FilterRun& run, const CurveLayer& curve)
@@ -86,19 +91,23 @@ ParameterSpec surfaceParameter(const QString& whatFor)
 			  "long as that is there and unchanged."};
 }
 
-std::optional<SkeletonSurface> findSurface(const FilterRun& run, const CurveLayer& curve)
+std::optional<SkeletonSurface> findSurface(
+	const FilterRun& run, const CurveLayer& curve, const mcf::Progress& progress)
 {
+	progress.report(0, reading);
 	const int id = run.parameters.integer("surface");
 	MeshModel* layer =
 		id == int(run.layer().id()) ? rememberedLayer(run, curve) : run.document.getMesh(id);
 	if (!layer)
 		return std::nullopt;
-	return SkeletonSurface {layer, readSurface(*layer)};
+	progress.report(0, reading);
+	return SkeletonSurface {layer, readSurface(*layer, progress)};
 }
 
-SkeletonSurface requireSurface(const FilterRun& run, const CurveLayer& curve)
+SkeletonSurface requireSurface(
+	const FilterRun& run, const CurveLayer& curve, const mcf::Progress& progress)
 {
-	std::optional<SkeletonSurface> surface = findSurface(run, curve);
+	std::optional<SkeletonSurface> surface = findSurface(run, curve, progress);
 	if (!surface)
 		throw mcf::InvalidInput("The skeleton '" + run.layer().label().toStdString()
 			+ "' remembers no surface that is still there: give the layer of its surface as the "
@@ -107,79 +116,103 @@ SkeletonSurface requireSurface(const FilterRun& run, const CurveLayer& curve)
 	return *std::move(surface);
 }
 
-std::vector<int> nodesOnSurface(
-	const FilterRun& run, const CurveLayer& curve, const SkeletonSurface& surface)
+std::vector<int> nodesOnSurface(const FilterRun& run, const CurveLayer& curve,
+	const SkeletonSurface& surface, const mcf::Progress& progress)
 {
+	progress.report(0, reading);
 	const std::vector<int>& node = curve.skeleton.node;
 	if (MeshModel* remembered = node.empty() ? nullptr : rememberedLayer(run, curve)) {
-		const SurfaceLayer own = readSurface(*remembered);
+		progress.report(0, reading);
+		const SurfaceLayer own = readSurface(*remembered, progress.part(0, 0.5));
 		if (own.mesh->position.size() == node.size())
 			return remembered == surface.layer
 				? node
-				: carriedOver(*own.mesh, node, *surface.surface.mesh);
+				: carriedOver(*own.mesh, node, *surface.surface.mesh, progress.part(0.5, 1));
 	}
 	return nodesFromAttribute(surface, curve.skeleton.position.size());
 }
 
-CurveLayer skeletonOf(const FilterRun& run, CurveLayer curve, const SkeletonSurface& surface)
+CurveLayer skeletonOf(const FilterRun& run, CurveLayer curve, const SkeletonSurface& surface,
+	const mcf::Progress& progress)
 {
-	std::vector<int> node = nodesOnSurface(run, curve, surface);
+	std::vector<int> node = nodesOnSurface(run, curve, surface, progress.part(0, 0.5));
 	if (node.empty()) {
 		run.log(
 			"The skeleton knows nothing of this surface: each of its vertices goes to the nearest "
 			"node.");
 		const mcf::PointTree nodes(curve.skeleton.position);
-		for (const vcg::Point3d& p : surface.surface.mesh->position)
-			node.push_back(nodes.nearest(p));
+		const std::vector<vcg::Point3d>& points = surface.surface.mesh->position;
+		mcf::detail::reportedLoop(int(points.size()), progress.part(0.5, 1), reading,
+			[&](int v) { node.push_back(nodes.nearest(points[size_t(v)])); });
 	}
 	curve.skeleton.node = std::move(node);
+	progress.report(1, reading);
 	curve.surface = linkTo(*surface.layer, surface.surface);
 	curve.surfaceName = surface.layer->label();
 	return curve;
 }
 
-std::vector<double> clearances(
-	const std::vector<vcg::Point3d>& nodes, const mcf::SurfaceMesh& surface)
+std::vector<double> clearances(const std::vector<vcg::Point3d>& nodes,
+	const mcf::SurfaceMesh& surface, const mcf::Progress& progress)
 {
 	constexpr double spacing = 0.01;
-	const vcg::Point3d middle = surface.bounds().Center();
-	const double diagonal = surface.bounds().Diag();
-	mcf::SurfaceMesh unit = surface;
-	for (vcg::Point3d& p : unit.position)
+	const char* const what = "Measuring the thickness";
+	const mcf::Progress begin = progress.part(0, 0);
+	const vcg::Box3d box = surface.bounds(begin);
+	const vcg::Point3d middle = box.Center();
+	const double diagonal = box.Diag();
+	mcf::SurfaceMesh unit = surface.copied(begin);
+	mcf::detail::reportedLoop(unit.vertexSlots(), begin, what, [&](int v) {
+		vcg::Point3d& p = unit.position[size_t(v)];
 		p = (p - middle) / diagonal;
-	std::vector<int> all(unit.position.size());
-	std::iota(all.begin(), all.end(), 0);
-	const mcf::ClosestSurface closest(unit, all, spacing);
-	std::vector<double> result;
-	for (const vcg::Point3d& p : nodes)
-		result.push_back(std::max(closest.clearance((p - middle) / diagonal), 0.0) * diagonal);
+	});
+	const std::vector<int> all = mcf::detail::numberedArray(unit.position.size(), begin, what);
+	const mcf::ClosestSurface closest(unit, all, spacing, progress.part(0, 0.8));
+	std::vector<double> result(nodes.size());
+	const auto measure = [&](int first, int end) {
+		for (int v = first; v < end; ++v)
+			result[size_t(v)] =
+				std::max(closest.clearance((nodes[size_t(v)] - middle) / diagonal), 0.0) * diagonal;
+	};
+	mcf::forEachBlock(int(nodes.size()), progress.part(0.8, 1), what, measure);
 	return result;
 }
 
 void addDerivedSkeleton(FilterRun& run, const CurveLayer& curve, mcf::CurveSkeleton skeleton,
-	const char* suffix, bool measureRadius)
+	const char* suffix, bool measureRadius, const mcf::Progress& progress)
 {
+	progress.report(0, reading);
 	MeshModel* remembered = skeleton.node.empty() ? nullptr : rememberedLayer(run, curve);
 	SurfaceLayer own;
 	if (remembered)
-		own = readSurface(*remembered);
+		own = readSurface(*remembered, progress.part(0, 0.3));
 	const bool fits = remembered && own.mesh->position.size() == skeleton.node.size();
 	if (fits && measureRadius) {
 		const std::vector<double> before = skeleton.radius;
-		skeleton.radius =
-			mcf::meanSurfaceDistance(skeleton.position, own.mesh->position, skeleton.node);
+		skeleton.radius = mcf::meanSurfaceDistance(
+			skeleton.position, own.mesh->position, skeleton.node, progress.part(0.3, 0.5));
 		mcf::fillUnknownRadii(skeleton.radius, skeleton.neighbours());
 		for (size_t v = 0; v < before.size(); ++v)
 			if (skeleton.radius[v] < 0)
 				skeleton.radius[v] = before[v];
 	}
 	// Surfaces of the same name have their correspondence from the one that was contracted.
-	std::vector<std::pair<MeshModel*, SurfaceLayer>> others;
+	struct Other
+	{
+		MeshModel* layer;
+		SurfaceLayer surface;
+		std::vector<int> node;
+	};
+	std::vector<Other> others;
 	if (fits)
 		for (const MeshModel* layer : host::layersOf(run.document))
 			if (layer != remembered && layer->cm.fn > 0 && !hasStageAttributes(*layer)
 				&& !readNodes(*layer).empty() && baseName(*layer) == baseName(*remembered))
-				others.emplace_back(run.document.getMesh(int(layer->id())), readSurface(*layer));
+				others.push_back({run.document.getMesh(int(layer->id())),
+					readSurface(*layer, progress.part(0.5, 0.7)), {}});
+	for (Other& other : others)
+		other.node =
+			carriedOver(*own.mesh, skeleton.node, *other.surface.mesh, progress.part(0.7, 1));
 
 	MeshModel& source = run.layer();
 	CurveLayer derived = curve;
@@ -188,9 +221,8 @@ void addDerivedSkeleton(FilterRun& run, const CurveLayer& curve, mcf::CurveSkele
 	edit.addCurve(source, baseName(source) + "_" + suffix, derived);
 	if (fits) {
 		edit.writeNodes(*remembered, *own.vertexOfSlot, derived.skeleton.node);
-		for (auto& [layer, surface] : others)
-			edit.writeNodes(*layer, *surface.vertexOfSlot,
-				carriedOver(*own.mesh, derived.skeleton.node, *surface.mesh));
+		for (const Other& other : others)
+			edit.writeNodes(*other.layer, *other.surface.vertexOfSlot, other.node);
 	}
 	edit.commit();
 }

@@ -17,10 +17,9 @@
 namespace mcfskel {
 
 /// For each vertex of a surface the node that the nearest vertex of another surface has.
-/// @throws Cancelled.
+/// @throws Cancelled
 std::vector<int> carriedOver(const vcg::tri::mcf::SurfaceMesh& from, const std::vector<int>& node,
-	const vcg::tri::mcf::SurfaceMesh& to,
-	const vcg::tri::mcf::Progress& progress = vcg::tri::mcf::Progress());
+	const vcg::tri::mcf::SurfaceMesh& to, const vcg::tri::mcf::Progress& progress);
 
 /// The skeleton on a layer with a radius for each node: from the attribute, else from the quality,
 /// else 0.
@@ -38,38 +37,45 @@ struct SkeletonSurface
 };
 
 /// The surface that the parameter names; none if it names none and the skeleton remembers none that
-/// is still there and unchanged. @throws InvalidInput as readSurface().
-std::optional<SkeletonSurface> findSurface(const FilterRun& run, const CurveLayer& curve);
+/// is still there and unchanged. @throws InvalidInput as readSurface(); Cancelled
+std::optional<SkeletonSurface> findSurface(
+	const FilterRun& run, const CurveLayer& curve, const vcg::tri::mcf::Progress& progress);
 
-/// The same where it cannot be done without. @throws InvalidInput saying what to choose.
-SkeletonSurface requireSurface(const FilterRun& run, const CurveLayer& curve);
+/// The same where it cannot be done without. @throws InvalidInput saying what to choose; Cancelled
+SkeletonSurface requireSurface(
+	const FilterRun& run, const CurveLayer& curve, const vcg::tri::mcf::Progress& progress);
 
 /**
  * For each vertex of a surface its node of the skeleton: what the skeleton remembers, carried over from
  * the nearest vertex if it remembers another surface; else what the attribute mcfskel_node tells; else
  * empty.
+ * @throws Cancelled
  */
-std::vector<int> nodesOnSurface(
-	const FilterRun& run, const CurveLayer& curve, const SkeletonSurface& surface);
+std::vector<int> nodesOnSurface(const FilterRun& run, const CurveLayer& curve,
+	const SkeletonSurface& surface, const vcg::tri::mcf::Progress& progress);
 
 /**
  * The skeleton with the correspondence of a surface, as if it had been made from it: nodesOnSurface(),
  * and where nothing is known the nearest node of each vertex.
+ * @throws Cancelled
  */
-CurveLayer skeletonOf(const FilterRun& run, CurveLayer curve, const SkeletonSurface& surface);
+CurveLayer skeletonOf(const FilterRun& run, CurveLayer curve, const SkeletonSurface& surface,
+	const vcg::tri::mcf::Progress& progress);
 
-/// The distance of each node to a surface, mesh units; 0 outside.
-std::vector<double> clearances(
-	const std::vector<vcg::Point3d>& nodes, const vcg::tri::mcf::SurfaceMesh& surface);
+/// The distance of each node to a surface, mesh units; 0 outside. @throws Cancelled
+std::vector<double> clearances(const std::vector<vcg::Point3d>& nodes,
+	const vcg::tri::mcf::SurfaceMesh& surface, const vcg::tri::mcf::Progress& progress);
 
 /**
  * Adds a layer NAME_suffix with a skeleton that was made from another one, and writes its
  * correspondence on the surfaces that tell that of the other one. The radius is measured anew where the
  * correspondence is known and `measureRadius` is set.
  * @param curve  the other one, of the current layer.
+ * @throws Cancelled
  */
 void addDerivedSkeleton(FilterRun& run, const CurveLayer& curve,
-	vcg::tri::mcf::CurveSkeleton skeleton, const char* suffix, bool measureRadius);
+	vcg::tri::mcf::CurveSkeleton skeleton, const char* suffix, bool measureRadius,
+	const vcg::tri::mcf::Progress& progress);
 
 } // namespace mcfskel
 

@@ -7,6 +7,7 @@
 
 #include <skeleton/branch_table.h>
 #include <skeleton/surface_parts.h>
+#include <skeleton/ticker.h>
 
 #include <Eigen/Core>
 
@@ -31,24 +32,28 @@ QVariant column(size_t rows, const Value& value)
 Results run(FilterRun& run)
 {
 	CurveLayer curve = skeletonOn(run.layer());
-	const SkeletonSurface target = requireSurface(run, curve);
+	const SkeletonSurface target = requireSurface(run, curve, run.progress.part(0, 0.1));
 	const mcf::SurfaceMesh& mesh = *target.surface.mesh;
 	mcf::CurveSkeleton& skeleton = curve.skeleton;
-	skeleton.node = nodesOnSurface(run, curve, target);
+	skeleton.node = nodesOnSurface(run, curve, target, run.progress.part(0.1, 0.15));
 	if (skeleton.node.empty()) {
 		run.log(
 			"The correspondence of the skeleton is not known: each vertex of the surface belongs to "
 			"the nearest node.");
-		skeleton.node = mcf::closestNodes(mesh.position, skeleton, run.progress.part(0, 0.2));
+		skeleton.node = mcf::closestNodes(mesh.position, skeleton, run.progress.part(0.15, 0.2));
 	}
-	const mcf::SurfaceParts parts = mcf::surfaceParts(mesh, skeleton, run.progress.part(0.2, 1));
+	const mcf::SurfaceParts parts = mcf::surfaceParts(mesh, skeleton, run.progress.part(0.2, 0.9));
 	const auto branches = mcf::branchTable(skeleton, mcf::skeletonBranches(skeleton));
 	std::vector<double> area(branches.size(), 0);
-	for (size_t f = 0; f < parts.ofFace.size(); ++f)
-		if (parts.ofFace[f] >= 0)
-			area[size_t(parts.ofFace[f])] += mesh.areaVector(int(f)).Norm() / 2;
+	mcf::detail::reportedLoop(
+		mesh.faceSlots(), run.progress.part(0.9, 0.9), "Measuring the parts", [&](int f) {
+			if (const int part = parts.ofFace[size_t(f)]; part >= 0)
+				area[size_t(part)] += mesh.areaVector(f).Norm() / 2;
+		});
+	const std::vector<int> ofSlot =
+		facePartsOfSlots(*target.layer, target.surface, parts.ofFace, run.progress.part(0.9, 1));
 
-	setFaceParts(*target.layer, target.surface, parts.ofFace);
+	setFaceParts(*target.layer, ofSlot);
 	setVertexQuality(*target.layer, target.surface, parts.distance);
 	const size_t n = branches.size();
 	return {

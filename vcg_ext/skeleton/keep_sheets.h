@@ -132,21 +132,22 @@ inline MesoSkeleton collapseAround(
  * The vertices of a stage that are sheets: those that the flow kept (see markSheets()), or if it was
  * not told to keep any, those of that kind (see vertexKinds()); parts of less than 0.5 % of the squared
  * diagonal, both walls counted, left out.
- * @return 1 for such vertices, #V.
+ * @return 1 for such vertices, #V. @throws Cancelled
  */
-inline std::vector<char> sheetVertices(const Stage& stage)
+inline std::vector<char> sheetVertices(const Stage& stage, const Progress& progress = Progress())
 {
 	constexpr double smallestSheet = 0.005;
 	std::vector<char> sheet = stage.sheet;
 	if (!stage.hasSheets()) {
-		const std::vector<VertexKind> kinds = vertexKinds(stage);
+		const std::vector<VertexKind> kinds = vertexKinds(stage, progress.part(0, 0.8));
 		for (size_t v = 0; v < kinds.size(); ++v)
 			sheet[v] = kinds[v] == VertexKind::Sheet;
 	}
 	std::vector<double> least;
 	for (double diagonal : stage.diagonal)
 		least.push_back(smallestSheet * diagonal * diagonal);
-	flipSmallParts(stage.mesh, vertexAreas(stage.mesh), stage.component, least, 1, sheet);
+	flipSmallParts(stage.mesh, vertexAreas(stage.mesh, progress.part(0.8, 0.9)), stage.component,
+		least, 1, sheet, progress.part(0.9, 1));
 	return sheet;
 }
 
@@ -171,8 +172,8 @@ inline SheetCollapse collapseKeepingSheets(const Stage& stage, const std::vector
 	const SurfaceMesh& mesh = stage.mesh;
 	const int components = int(stage.diagonal.size());
 	const BettiNumbers solid = {components, components - mesh.eulerCharacteristic() / 2, 0};
-	const std::vector<double> area = vertexAreas(mesh);
-	std::vector<std::vector<int>> parts = markedParts(mesh, sheet);
+	const std::vector<double> area = vertexAreas(mesh, progress.part(0, 0));
+	std::vector<std::vector<int>> parts = markedParts(mesh, sheet, 1, progress.part(0, 0));
 	std::stable_sort(parts.begin(), parts.end(),
 		[&](const auto& a, const auto& b) { return areaOf(a, area) < areaOf(b, area); });
 	SheetCollapse result;

@@ -131,14 +131,15 @@ inline MedialReference medialReference(const SurfaceMesh& surface, const Closest
 	constexpr double largest = 0.5;      // half the diagonal: no inner ball is larger
 	constexpr double margin = M_PI / 12; // that a first guess may be too narrow by
 	constexpr double leastRadius = 1e-4;
-	std::vector<SurfaceSample> samples = surfaceSamples(surface, count);
+	const Progress begin = progress.part(0, 0);
+	std::vector<SurfaceSample> samples = surfaceSamples(surface, count, begin);
 	std::vector<Point3d> outward;
 	for (const SurfaceSample& sample : samples) {
 		const Point3d n = surface.areaVector(sample.face);
 		outward.push_back(n / std::max(n.Norm(), 1e-300));
 	}
 	if (surface.vertexSlots() <= count) {
-		const std::vector<Point3d> normals = surface.vertexNormals();
+		const std::vector<Point3d> normals = surface.vertexNormals(begin);
 		for (int v = 0; v < surface.vertexSlots(); ++v)
 			if (normals[v].SquaredNorm() > 0) {
 				samples.push_back({surface.position[v], surface.outgoing(v) / 3});
@@ -146,9 +147,9 @@ inline MedialReference medialReference(const SurfaceMesh& surface, const Closest
 			}
 	}
 	std::vector<Point3d> few;
-	for (const SurfaceSample& sample : surfaceSamples(surface, std::min(count, firstGuess)))
+	for (const SurfaceSample& sample : surfaceSamples(surface, std::min(count, firstGuess), begin))
 		few.push_back(sample.position);
-	const PointTree tree(few);
+	const PointTree tree(few, begin);
 
 	std::vector<detail::TouchingBall> balls(samples.size());
 	std::vector<char> isMedial(samples.size(), 0);
@@ -170,7 +171,9 @@ inline MedialReference medialReference(const SurfaceMesh& surface, const Closest
 			balls[i] = ball;
 		}
 	};
-	forEachBlock(int(samples.size()), progress, "Finding the medial axis", shrinkAll);
+	constexpr int blocksPerReport = 8;
+	forEachBlock(
+		int(samples.size()), progress, "Finding the medial axis", shrinkAll, blocksPerReport);
 	MedialReference reference;
 	for (size_t i = 0; i < balls.size(); ++i)
 		if (isMedial[i]) {

@@ -17,13 +17,15 @@ namespace vcg::tri::mcf {
  *
  * The blocks do not depend on the number of threads, so that a body whose result depends on its
  * block alone gives the same bits on any machine. The calling thread reports in between.
+ * @param blocksPerReport  fewer where a round takes more than some 10 us.
  * @pre body throws nothing.
  * @throws Cancelled
  */
 template <class Body>
-void forEachBlock(int count, const Progress& progress, const char* what, const Body& body)
+void forEachBlock(int count, const Progress& progress, const char* what, const Body& body,
+	int blocksPerReport = 32)
 {
-	constexpr int blockSize = 256, blocksPerReport = 32;
+	constexpr int blockSize = 256;
 	progress.report(0, what);
 	const int blocks = (count + blockSize - 1) / blockSize;
 	for (int first = 0; first < blocks; first += blocksPerReport) {

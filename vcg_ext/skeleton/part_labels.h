@@ -6,8 +6,10 @@
 #ifndef VCG_MCF_PART_LABELS_H
 #define VCG_MCF_PART_LABELS_H
 
+#include "large_arrays.h"
 #include "progress.h"
 #include "surface_mesh.h"
+#include "ticker.h"
 
 #include <algorithm>
 #include <functional>
@@ -22,13 +24,15 @@ namespace vcg::tri::mcf::detail {
 class PartLabels
 {
 public:
-	/// @param surface kept by reference, compact.
-	PartLabels(const SurfaceMesh& surface, std::vector<int> label, int labels) :
-			surface(surface), label(std::move(label)), labels(labels),
-			vertexArea(size_t(surface.vertexSlots()), 0)
+	/// @param surface kept by reference, compact. @throws Cancelled
+	PartLabels(const SurfaceMesh& surface, std::vector<int> label, int labels,
+		const Progress& progress = Progress()) :
+			surface(surface),
+			label(std::move(label)), labels(labels)
 	{
-		for (int h = 0; h < surface.halfEdgeSlots(); ++h)
-			vertexArea[surface.origin(h)] += surface.areaVector(h / 3).Norm();
+		fillReported(vertexArea, size_t(surface.vertexSlots()), 0.0, progress, finding);
+		reportedLoop(surface.halfEdgeSlots(), progress, finding,
+			[&](int h) { vertexArea[surface.origin(h)] += surface.areaVector(h / 3).Norm(); });
 	}
 
 	int ofVertex(int v) const { return label[v]; }
@@ -36,12 +40,14 @@ public:
 	/**
 	 * Makes every part connected: it keeps its largest piece, and what is left over goes to the part
 	 * that is nearest over edges. A component of the surface without any label keeps none.
+	 * @throws Cancelled
 	 */
-	void connect()
+	void connect(const Progress& progress = Progress())
 	{
-		keepLargest(label, vertexArea, [&](int v, const auto& visit) {
+		const auto forEachNeighbour = [&](int v, const auto& visit) {
 			surface.forEachOutgoing(v, [&](int h) { visit(surface.target(h)); });
-		});
+		};
+		keepLargest(label, vertexArea, forEachNeighbour, progress.part(0, 0.5));
 		using Entry = std::tuple<double, int, int>; // distance, vertex, label
 		std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> front;
 		const auto spread = [&](int v, double distance) {
@@ -52,10 +58,13 @@ public:
 						distance + Distance(surface.position[v], surface.position[w]), w, label[v]);
 			});
 		};
-		for (int v = 0; v < int(label.size()); ++v)
+		reportedLoop(int(label.size()), progress.part(0.5, 0.7), finding, [&](int v) {
 			if (label[v] >= 0)
 				spread(v, 0);
+		});
+		Ticker ticker(progress.part(0.7, 1), finding, int(label.size()));
 		while (!front.empty()) {
+			ticker.tick();
 			const auto [distance, v, candidate] = front.top();
 			front.pop();
 			if (label[v] >= 0)
@@ -65,15 +74,15 @@ public:
 		}
 	}
 
-	/// Shortens the borders between parts; no part loses its last vertex.
+	/// Shortens the borders between parts; no part loses its last vertex. @throws Cancelled
 	void smooth(const Progress& progress)
 	{
 		constexpr int rounds = 12;
-		const std::vector<int> innermost = innermostVertices();
+		const std::vector<int> innermost = innermostVertices(progress.part(0, 0.05));
 		for (int round = 0; round < rounds; ++round) {
-			progress.report(double(round) / rounds, "Smoothing the borders");
-			const std::vector<int> band = bandAroundBorders();
-			diffuse(band);
+			const auto at = [&](double part) { return 0.05 + 0.95 * (round + part) / rounds; };
+			const std::vector<int> band = bandAroundBorders(progress.part(at(0), at(0.3)));
+			diffuse(band, progress.part(at(0.3), at(1)));
 			for (int v : band)
 				label[v] = largest(v);
 			for (int part = 0; part < labels; ++part)
@@ -85,37 +94,48 @@ public:
 	/**
 	 * The part of each face: that of most of its corners, then made connected over edges and rid of
 	 * faces that two neighbours of one other part have in between.
+	 * @throws Cancelled
 	 */
-	std::vector<int> ofFaces() const
+	std::vector<int> ofFaces(const Progress& progress = Progress()) const
 	{
-		std::vector<int> ofFace(surface.faceSlots());
-		std::vector<double> area(ofFace.size());
-		for (int f = 0; f < surface.faceSlots(); ++f) {
+		const size_t count = size_t(surface.faceSlots());
+		std::vector<int> ofFace;
+		std::vector<double> area;
+		ofFace.reserve(count);
+		area.reserve(count);
+		reportedLoop(surface.faceSlots(), progress.part(0, 0.2), finding, [&](int f) {
 			const Triangle t = surface.triangle(f);
-			ofFace[f] = label[t[1]] == label[t[2]] ? label[t[1]] : label[t[0]];
-			area[f] = surface.areaVector(f).Norm();
-		}
+			ofFace.push_back(label[t[1]] == label[t[2]] ? label[t[1]] : label[t[0]]);
+			area.push_back(surface.areaVector(f).Norm());
+		});
 		const auto forEachNeighbour = [&](int f, const auto& visit) {
 			for (int k = 0; k < 3; ++k)
 				visit(surface.twin(3 * f + k) / 3);
 		};
-		keepLargest(ofFace, area, forEachNeighbour);
+		keepLargest(ofFace, area, forEachNeighbour, progress.part(0.2, 0.5));
 		std::vector<int> front;
-		for (int f = 0; f < int(ofFace.size()); ++f)
+		front.reserve(count);
+		reportedLoop(surface.faceSlots(), progress.part(0.5, 0.6), finding, [&](int f) {
 			if (ofFace[f] >= 0)
 				front.push_back(f);
-		for (size_t i = 0; i < front.size(); ++i)
-			forEachNeighbour(front[i], [&](int g) {
+		});
+		Ticker spreading(progress.part(0.6, 0.8), finding, int(count));
+		for (size_t i = 0; i < front.size(); ++i) {
+			spreading.tick();
+			const int f = front[i]; // the array may move
+			forEachNeighbour(f, [&](int g) {
 				if (ofFace[g] < 0) {
-					ofFace[g] = ofFace[front[i]];
+					ofFace[g] = ofFace[f];
 					front.push_back(g);
 				}
 			});
+		}
 		// Such a face hangs on its own part by one edge: without it that stays connected.
-		std::vector<int> stack;
-		for (int f = int(ofFace.size()) - 1; f >= 0; --f)
-			stack.push_back(f);
+		std::vector<int> stack = numberedArray(count, progress.part(0.8, 0.8), finding);
+		std::reverse(stack.begin(), stack.end());
+		Ticker ticker(progress.part(0.8, 1), finding, int(count));
 		while (!stack.empty()) {
+			ticker.tick();
 			const int f = stack.back();
 			stack.pop_back();
 			int other[3];
@@ -137,6 +157,8 @@ private:
 	/// How much of which part there is at a vertex.
 	using Mixture = std::vector<std::pair<int, double>>;
 
+	static constexpr char finding[] = "Finding the parts", smoothing[] = "Smoothing the borders";
+
 	const SurfaceMesh& surface;
 	std::vector<int> label;
 	int labels;
@@ -147,9 +169,10 @@ private:
 	/// Takes the label from all elements but those of the largest connected piece of each label.
 	template <class ForEachNeighbour>
 	void keepLargest(std::vector<int>& of, const std::vector<double>& area,
-		const ForEachNeighbour& forEachNeighbour) const
+		const ForEachNeighbour& forEachNeighbour, const Progress& progress) const
 	{
-		std::vector<int> piece(of.size(), -1), stack;
+		std::vector<int> piece = filledArray(of.size(), -1, progress.part(0, 0), finding), stack;
+		Ticker ticker(progress.part(0, 0.8), finding, int(of.size()));
 		std::vector<double> pieceArea;
 		std::vector<int> largestPiece(size_t(labels), -1);
 		for (int seed = 0; seed < int(of.size()); ++seed) {
@@ -162,6 +185,7 @@ private:
 			while (!stack.empty()) {
 				const int v = stack.back();
 				stack.pop_back();
+				ticker.tick();
 				pieceArea[id] += area[v];
 				forEachNeighbour(v, [&](int w) {
 					if (piece[w] < 0 && of[w] == of[v]) {
@@ -174,9 +198,10 @@ private:
 			if (best < 0 || pieceArea[id] > pieceArea[best])
 				best = id;
 		}
-		for (size_t v = 0; v < of.size(); ++v)
+		reportedLoop(int(of.size()), progress.part(0.8, 1), finding, [&](int v) {
 			if (of[v] >= 0 && piece[v] != largestPiece[of[v]])
 				of[v] = -1;
+		});
 	}
 
 	bool isOnBorder(int v) const
@@ -188,47 +213,55 @@ private:
 	}
 
 	/// Rings of neighbours that each vertex is away from a border, up to `most`; -1: farther.
-	std::vector<int> ringsFromBorders(int most, std::vector<int>& order) const
+	std::vector<int> ringsFromBorders(
+		int most, std::vector<int>& order, const Progress& progress) const
 	{
-		std::vector<int> rings(label.size(), -1);
+		std::vector<int> rings = filledArray(label.size(), -1, progress.part(0, 0), smoothing);
 		order.clear();
-		for (int v = 0; v < int(label.size()); ++v)
+		reportedLoop(int(label.size()), progress.part(0, 0.6), smoothing, [&](int v) {
 			if (label[v] >= 0 && isOnBorder(v)) {
 				rings[v] = 0;
 				order.push_back(v);
 			}
-		for (size_t i = 0; i < order.size(); ++i)
-			if (rings[order[i]] < most)
-				surface.forEachOutgoing(order[i], [&](int h) {
+		});
+		Ticker ticker(progress.part(0.6, 1), smoothing, int(label.size()));
+		for (size_t i = 0; i < order.size(); ++i) {
+			ticker.tick();
+			const int v = order[i]; // the array may move
+			if (rings[v] < most)
+				surface.forEachOutgoing(v, [&](int h) {
 					const int w = surface.target(h);
 					if (rings[w] < 0) {
-						rings[w] = rings[order[i]] + 1;
+						rings[w] = rings[v] + 1;
 						order.push_back(w);
 					}
 				});
+		}
 		return rings;
 	}
 
 	/// Of each part a vertex that is as far from its borders as any; -1 if the part has none.
-	std::vector<int> innermostVertices() const
+	std::vector<int> innermostVertices(const Progress& progress) const
 	{
 		std::vector<int> order, innermost(size_t(labels), -1);
-		const std::vector<int> rings = ringsFromBorders(int(label.size()), order);
-		for (int v = 0; v < int(label.size()); ++v)
+		const std::vector<int> rings =
+			ringsFromBorders(int(label.size()), order, progress.part(0, 0.9));
+		reportedLoop(int(label.size()), progress.part(0.9, 1), smoothing, [&](int v) {
 			if (label[v] >= 0) {
 				int& best = innermost[label[v]];
 				if (best < 0 || rings[v] > rings[best])
 					best = v;
 			}
+		});
 		return innermost;
 	}
 
 	static constexpr int diffusionSteps = 12;
 
-	std::vector<int> bandAroundBorders() const
+	std::vector<int> bandAroundBorders(const Progress& progress) const
 	{
 		std::vector<int> band;
-		ringsFromBorders(diffusionSteps / 2, band);
+		ringsFromBorders(diffusionSteps / 2, band, progress);
 		return band;
 	}
 
@@ -243,14 +276,16 @@ private:
 	}
 
 	/// Each step takes half of every vertex's mixture to its neighbours.
-	void diffuse(const std::vector<int>& band)
+	void diffuse(const std::vector<int>& band, const Progress& progress)
 	{
-		mixture.assign(label.size(), {});
+		fillReported(mixture, label.size(), Mixture(), progress.part(0, 0), smoothing);
 		for (int v : band)
 			mixture[v] = {{label[v], 1}};
 		std::vector<Mixture> next(band.size());
+		Ticker ticker(progress, smoothing, diffusionSteps * int(band.size()));
 		for (int step = 0; step < diffusionSteps; ++step) {
 			for (size_t i = 0; i < band.size(); ++i) {
+				ticker.tick();
 				const int v = band[i];
 				Mixture sum;
 				int degree = 0;

@@ -7,6 +7,7 @@
 #define VCG_MCF_SHEET_MARKS_H
 
 #include "marked_parts.h"
+#include "progress.h"
 #include "stage.h"
 
 #include <algorithm>
@@ -21,20 +22,23 @@ namespace vcg::tri::mcf {
  * Holes in the marks of less than 0.1 % of the squared diagonal are filled, then marks of less than
  * 0.5 % are dropped: both walls of a sheet of 5 % of the diagonal squared.
  * @param sheetness  of each vertex, see sheetness(). @pre no iteration has been made.
+ * @throws Cancelled
  */
-inline void markSheets(Stage& stage, const std::vector<double>& sheetness, double threshold)
+inline void markSheets(Stage& stage, const std::vector<double>& sheetness, double threshold,
+	const Progress& progress = Progress())
 {
 	constexpr double smallestHole = 0.001, smallestSheet = 0.005;
 	for (size_t v = 0; v < sheetness.size(); ++v)
 		stage.sheet[v] = sheetness[v] > threshold && stage.poleRadius[v] >= 0;
-	const std::vector<double> area = vertexAreas(stage.mesh);
+	const std::vector<double> area = vertexAreas(stage.mesh, progress.part(0, 0.3));
 	std::vector<double> hole, sheet;
 	for (double diagonal : stage.diagonal) {
 		hole.push_back(smallestHole * diagonal * diagonal);
 		sheet.push_back(smallestSheet * diagonal * diagonal);
 	}
-	flipSmallParts(stage.mesh, area, stage.component, hole, 0, stage.sheet);
-	flipSmallParts(stage.mesh, area, stage.component, sheet, 1, stage.sheet);
+	flipSmallParts(
+		stage.mesh, area, stage.component, hole, 0, stage.sheet, progress.part(0.3, 0.7));
+	flipSmallParts(stage.mesh, area, stage.component, sheet, 1, stage.sheet, progress.part(0.7, 1));
 	for (size_t v = 0; v < stage.sheet.size(); ++v)
 		stage.sheet[v] &= stage.poleRadius[v] >= 0;
 }

@@ -6,12 +6,14 @@
 #ifndef VCG_MCF_SHEETNESS_H
 #define VCG_MCF_SHEETNESS_H
 
+#include "large_arrays.h"
 #include "marked_parts.h"
 #include "parallel_blocks.h"
 #include "point_tree.h"
 #include "pole_set.h"
 #include "progress.h"
 #include "surface_mesh.h"
+#include "ticker.h"
 
 #include <Eigen/Eigenvalues>
 
@@ -70,19 +72,22 @@ inline std::vector<double> sheetness(
 	// Large balls touch many vertices: an eighth of them will do.
 	constexpr double large = 0.03; // of the diagonal
 	constexpr int stride = 8;
-	const std::vector<double> area = vertexAreas(mesh);
-	const PointTree tree(mesh.position);
+	const char* const what = "Looking for sheets";
+	const Progress begin = progress.part(0, 0);
+	const std::vector<double> area = vertexAreas(mesh, begin);
+	const PointTree tree(mesh.position, progress.part(0, 0.2));
 	std::vector<Point3d> fewPoints;
 	std::vector<double> fewAreas;
 	for (int i = 0; i < tree.size(); i += stride) {
 		fewPoints.push_back(mesh.position[tree.order()[i]]);
 		fewAreas.push_back(area[tree.order()[i]]);
 	}
-	const PointTree fewTree(fewPoints);
-	const double limit = large * mesh.bounds().Diag();
+	const Progress searching = progress.part(0.2, 0.9);
+	const PointTree fewTree(fewPoints, searching.part(0, 0));
+	const double limit = large * mesh.bounds(searching.part(0, 0)).Diag();
 
-	std::vector<double> s(size_t(mesh.vertexSlots()), -1);
-	forEachBlock(mesh.vertexSlots(), progress, "Looking for sheets", [&](int begin, int end) {
+	std::vector<double> s = detail::filledArray(area.size(), -1.0, searching.part(0, 0), what);
+	forEachBlock(mesh.vertexSlots(), searching, what, [&](int begin, int end) {
 		Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
 		for (int v = begin; v < end; ++v) {
 			if (!poles.has(v))
@@ -99,8 +104,9 @@ inline std::vector<double> sheetness(
 		}
 	});
 	for (int i = 0; i < rounds; ++i) {
-		const std::vector<double> before = s;
-		for (int v = 0; v < mesh.vertexSlots(); ++v) {
+		const Progress part = progress.part(0.9 + 0.1 * i / rounds, 0.9 + 0.1 * (i + 1) / rounds);
+		const std::vector<double> before = detail::copiedArray(s, part.part(0, 0), what);
+		detail::reportedLoop(mesh.vertexSlots(), part, what, [&](int v) {
 			double sum = before[v] < 0 ? 0 : before[v];
 			int count = before[v] >= 0;
 			mesh.forEachOutgoing(v, [&](int h) {
@@ -110,7 +116,7 @@ inline std::vector<double> sheetness(
 				}
 			});
 			s[v] = count ? sum / count : -1;
-		}
+		});
 	}
 	for (double& value : s)
 		value = std::max(value, 0.0);

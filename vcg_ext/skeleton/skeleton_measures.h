@@ -10,12 +10,14 @@
 #include "closest_surface.h"
 #include "curve_skeleton.h"
 #include "errors.h"
+#include "large_arrays.h"
 #include "medial_reference.h"
 #include "parallel_blocks.h"
 #include "progress.h"
 #include "skeleton_branches.h"
 #include "surface_mesh.h"
 #include "surface_samples.h"
+#include "ticker.h"
 
 #include <algorithm>
 #include <cmath>
@@ -145,11 +147,13 @@ inline int countSpurs(const CurveSkeleton& skeleton, const std::vector<double>& 
 }
 
 /// Points inside a surface, evenly spread; fewer than `count` if the surface fills little of its box.
+/// @throws Cancelled
 inline std::vector<Point3d> interiorPoints(
-	const SurfaceMesh& surface, const ClosestSurface& closest, int count)
+	const SurfaceMesh& surface, const ClosestSurface& closest, int count, const Progress& progress)
 {
 	constexpr int mostTries = 50; // for each
-	const Box3d box = surface.bounds();
+	const char* const what = "Measuring the volume";
+	const Box3d box = surface.bounds(progress.part(0, 0));
 	std::vector<Point3d> inside;
 	const int blockSize = 4096;
 	std::vector<char> isInside(blockSize);
@@ -159,7 +163,8 @@ inline std::vector<Point3d> interiorPoints(
 			const auto u = evenPoint<3>(size_t(first + i));
 			return box.min + Point3d(u[0] * box.DimX(), u[1] * box.DimY(), u[2] * box.DimZ());
 		};
-		forEachBlock(blockSize, Progress(), "", [&](int begin, int end) {
+		const Progress found = progress.part(double(inside.size()) / count, 1).part(0, 0);
+		forEachBlock(blockSize, found, what, [&](int begin, int end) {
 			for (int i = begin; i < end; ++i)
 				isInside[i] = closest.clearance(point(i)) > 0;
 		});
@@ -187,8 +192,12 @@ inline SkeletonMeasures skeletonMeasures(const CurveSkeleton& skeleton, const Su
 	const MeasureSampling& sampling = MeasureSampling(), const Progress& progress = Progress())
 {
 	constexpr double sampleSpacing = 0.01; // of triangles with longer edges
-	const double diagonal = surface.bounds().Diag();
-	const Point3d corner = surface.bounds().min;
+	constexpr int blocksPerReport = 4;
+	const char* const what = "Finding the medial axis";
+	const Progress begin = progress.part(0, 0);
+	const Box3d box = surface.bounds(begin);
+	const double diagonal = box.Diag();
+	const Point3d corner = box.min;
 	CurveSkeleton curve = skeleton;
 	for (Point3d& p : curve.position)
 		p = (p - corner) / diagonal;
@@ -199,20 +208,19 @@ inline SkeletonMeasures skeletonMeasures(const CurveSkeleton& skeleton, const Su
 	if (length > 1e4)
 		throw InvalidInput("The skeleton is " + std::to_string(std::llround(length))
 			+ " times as long as the surface's bounding box diagonal: they do not belong together.");
-	SurfaceMesh unit = surface;
-	for (Point3d& p : unit.position)
-		p = (p - corner) / diagonal;
-	std::vector<int> all(unit.vertexSlots());
-	std::iota(all.begin(), all.end(), 0);
-	const ClosestSurface closest(unit, all, sampleSpacing);
+	SurfaceMesh unit = surface.copied(begin);
+	detail::reportedLoop(unit.vertexSlots(), begin, what,
+		[&](int v) { unit.position[v] = (unit.position[v] - corner) / diagonal; });
+	const ClosestSurface closest(unit, detail::numberedArray(unit.position.size(), begin, what),
+		sampleSpacing, progress.part(0, 0.2));
 	const MedialReference reference =
-		medialReference(unit, closest, sampling.medialPoints, progress.part(0, 0.6));
-	const PointTree centres(reference.centre);
+		medialReference(unit, closest, sampling.medialPoints, progress.part(0.2, 0.6));
+	const PointTree centres(reference.centre, progress.part(0.6, 0.6));
 
 	const CurveSamples x = curveSamples(curve, sampling.spacing);
 	const int n = int(x.position.size());
 	std::vector<double> clearance(n), offCentre(n), medial(n);
-	forEachBlock(n, progress.part(0.6, 0.8), "Measuring the skeleton", [&](int begin, int end) {
+	const auto measure = [&](int begin, int end) {
 		for (int i = begin; i < end; ++i) {
 			const ClosestSurface::Hit hit = closest.closest(x.position[i]);
 			const bool inside = closest.isInside(x.position[i], hit);
@@ -222,7 +230,8 @@ inline SkeletonMeasures skeletonMeasures(const CurveSkeleton& skeleton, const Su
 			medial[i] = place.distance;
 			offCentre[i] = std::clamp(1 - clearance[i] / std::max(place.radius, 1e-9), 0.0, 2.0);
 		}
-	});
+	};
+	forEachBlock(n, progress.part(0.6, 0.8), "Measuring the skeleton", measure, blocksPerReport);
 	SkeletonMeasures m;
 	double insideLength = 0, outsideLength = 0;
 	for (int i = 0; i < n; ++i) {
@@ -242,17 +251,19 @@ inline SkeletonMeasures skeletonMeasures(const CurveSkeleton& skeleton, const Su
 	std::vector<double> ball;
 	for (double r : clearance)
 		ball.push_back(std::max(r, 0.0));
-	const std::vector<SurfaceSample> samples = surfaceSamples(unit, sampling.surfacePoints);
+	const std::vector<SurfaceSample> samples =
+		surfaceSamples(unit, sampling.surfacePoints, progress.part(0.8, 0.8));
 	const ClosestCurve closestCurve(curve);
 	std::vector<double> cover(samples.size()), recon(samples.size());
+	const auto measureCoverage = [&](int begin, int end) {
+		for (int i = begin; i < end; ++i) {
+			const Point3d& q = samples[i].position;
+			cover[i] = closestCurve.closest(q).distance;
+			recon[i] = std::max(detail::distanceToBalls(q, x.position, ball), 0.0);
+		}
+	};
 	forEachBlock(int(samples.size()), progress.part(0.8, 0.9), "Measuring the coverage",
-		[&](int begin, int end) {
-			for (int i = begin; i < end; ++i) {
-				const Point3d& q = samples[i].position;
-				cover[i] = closestCurve.closest(q).distance;
-				recon[i] = std::max(detail::distanceToBalls(q, x.position, ball), 0.0);
-			}
-		});
+		measureCoverage, blocksPerReport);
 	const std::vector<double> even(samples.size(), 1);
 	for (size_t i = 0; i < samples.size(); ++i) {
 		m.coverMean += cover[i] / double(samples.size());
@@ -262,13 +273,15 @@ inline SkeletonMeasures skeletonMeasures(const CurveSkeleton& skeleton, const Su
 	m.reconMax = *std::max_element(recon.begin(), recon.end());
 	m.reconP95 = detail::quantile(recon, even, 0.95);
 
-	const std::vector<Point3d> inner = detail::interiorPoints(unit, closest, sampling.innerPoints);
+	const std::vector<Point3d> inner =
+		detail::interiorPoints(unit, closest, sampling.innerPoints, progress.part(0.9, 0.95));
 	std::vector<char> filled(inner.size());
-	forEachBlock(
-		int(inner.size()), progress.part(0.9, 1), "Measuring the volume", [&](int begin, int end) {
-			for (int i = begin; i < end; ++i)
-				filled[i] = detail::distanceToBalls(inner[i], x.position, ball) <= 0;
-		});
+	const auto measureVolume = [&](int begin, int end) {
+		for (int i = begin; i < end; ++i)
+			filled[i] = detail::distanceToBalls(inner[i], x.position, ball) <= 0;
+	};
+	forEachBlock(int(inner.size()), progress.part(0.95, 1), "Measuring the volume", measureVolume,
+		blocksPerReport);
 	if (!inner.empty())
 		m.volumeFraction =
 			double(std::count(filled.begin(), filled.end(), 1)) / double(inner.size());

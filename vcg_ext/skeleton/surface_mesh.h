@@ -191,12 +191,14 @@ public:
 		return SquaredDistance(position[origin(h)], position[target(h)]);
 	}
 
-	double area() const
+	/// @throws Cancelled
+	double area(const Progress& progress = Progress()) const
 	{
 		double sum = 0;
-		for (int f = 0; f < faceSlots(); ++f)
+		detail::reportedLoop(faceSlots(), progress, measuring, [&](int f) {
 			if (isFace(f))
 				sum += areaVector(f).Norm();
+		});
 		return sum / 2;
 	}
 

@@ -9,11 +9,13 @@
 #include "closest_curve.h"
 #include "curve_skeleton.h"
 #include "errors.h"
+#include "large_arrays.h"
 #include "parallel_blocks.h"
 #include "part_labels.h"
 #include "progress.h"
 #include "skeleton_branches.h"
 #include "surface_mesh.h"
+#include "ticker.h"
 
 #include <algorithm>
 #include <array>
@@ -140,20 +142,23 @@ inline SurfaceParts surfaceParts(const SurfaceMesh& surface, const CurveSkeleton
 			throw InvalidInput("The skeleton's correspondence names nodes that it does not have.");
 	const std::vector<Branch> branches = skeletonBranches(skeleton);
 	const std::vector<int> branchOfNode = detail::branchOfNodes(skeleton, branches);
-	std::vector<int> label(n, -1);
-	for (int v = 0; v < n; ++v)
+	const char* const what = "Finding the parts";
+	std::vector<int> label = detail::filledArray(size_t(n), -1, progress.part(0, 0), what);
+	detail::reportedLoop(n, progress.part(0, 0), what, [&](int v) {
 		if (skeleton.node[v] >= 0)
 			label[v] = branchOfNode[skeleton.node[v]];
+	});
 
-	detail::PartLabels labels(surface, std::move(label), int(branches.size()));
-	labels.connect();
-	labels.smooth(progress.part(0, 0.5));
-	labels.connect();
+	detail::PartLabels labels(
+		surface, std::move(label), int(branches.size()), progress.part(0, 0.05));
+	labels.connect(progress.part(0.05, 0.15));
+	labels.smooth(progress.part(0.15, 0.5));
+	labels.connect(progress.part(0.5, 0.6));
 	SurfaceParts parts;
-	parts.ofFace = labels.ofFaces();
+	parts.ofFace = labels.ofFaces(progress.part(0.6, 0.7));
 
 	const auto edges = detail::edgesAround(skeleton, branches);
-	parts.distance.assign(n, 0);
+	parts.distance = detail::filledArray(size_t(n), 0.0, progress.part(0.7, 0.7), what);
 	if (skeleton.position.empty())
 		return parts;
 	const ClosestCurve curve(skeleton);
@@ -170,7 +175,7 @@ inline SurfaceParts surfaceParts(const SurfaceMesh& surface, const CurveSkeleton
 			parts.distance[v] = b >= 0 ? std::sqrt(best) : curve.closest(p).distance;
 		}
 	};
-	forEachBlock(n, progress.part(0.5, 1), "Measuring the thickness", measure);
+	forEachBlock(n, progress.part(0.7, 1), "Measuring the thickness", measure);
 	return parts;
 }
 

@@ -6,7 +6,9 @@
 #ifndef VCG_MCF_SURFACE_SAMPLES_H
 #define VCG_MCF_SURFACE_SAMPLES_H
 
+#include "progress.h"
 #include "surface_mesh.h"
+#include "ticker.h"
 
 #include <array>
 #include <cmath>
@@ -47,19 +49,25 @@ struct SurfaceSample
 
 /**
  * `count` points of a surface, as many on any piece as its area asks for, within one.
- * @pre surface is compact and has an area. Complexity: O(F + count).
+ * @pre surface is compact and has an area. @throws Cancelled. Complexity: O(F + count).
  */
-inline std::vector<SurfaceSample> surfaceSamples(const SurfaceMesh& surface, int count)
+inline std::vector<SurfaceSample> surfaceSamples(
+	const SurfaceMesh& surface, int count, const Progress& progress = Progress())
 {
-	const double total = surface.area();
+	const double total = surface.area(progress.part(0, 0.5));
 	std::vector<SurfaceSample> samples;
 	samples.reserve(count);
 	int face = -1;
 	double upToHere = 0;
+	detail::Ticker ticker(
+		progress.part(0.5, 1), "Sampling the surface", surface.faceSlots() + count);
 	for (int i = 0; i < count; ++i) {
+		ticker.tick();
 		const double at = (i + 0.5) / count * total;
-		while (upToHere <= at && face + 1 < surface.faceSlots())
+		while (upToHere <= at && face + 1 < surface.faceSlots()) {
+			ticker.tick();
 			upToHere += surface.areaVector(++face).Norm() / 2;
+		}
 		const auto [x, y] = detail::evenPoint<2>(size_t(i));
 		const double u = std::sqrt(x);
 		const Triangle t = surface.triangle(face);
