@@ -3,6 +3,9 @@
 
 /// @file Runs an .mlx script on a mesh with the library of a built MeshLab, as its window does, and
 /// saves the layer that is current in the end: run_script IO_BASE PLUGIN SCRIPT MESH OUTPUT...
+/// With --cancel in place of the outputs each filter is first cancelled at its first report of progress,
+/// then at its second, and so on, until it comes to its end; a document that a cancelled filter has changed
+/// is an error. The number of cancellings is printed.
 
 #include <common/filterscript.h>
 #include <common/globals.h>
@@ -14,12 +17,58 @@
 
 #include <QApplication>
 
+#include <cstdint>
 #include <cstdio>
+#include <string>
+#include <string_view>
 
 namespace {
 
-void runScript(const QString& file, MeshDocument& document, GLLogStream& log)
+/// All that a cancelled filter must leave as it was.
+std::string contents(const MeshDocument& document)
 {
+	std::string text = "current " + std::to_string(document.mm()->id());
+	for (const MeshModel& layer : document.meshIterator()) {
+		const CMeshO& mesh = layer.cm;
+		std::uint64_t hash = 0;
+		const auto add = [&](const void* begin, size_t size) {
+			const std::string_view bytes(static_cast<const char*>(begin), size);
+			hash = hash * 31 + std::hash<std::string_view>()(bytes);
+		};
+		for (const CVertexO& v : mesh.vert) {
+			add(&v.cP(), sizeof v.cP());
+			add(&v.cN(), sizeof v.cN());
+			if (layer.hasDataMask(MeshModel::MM_VERTQUALITY))
+				add(&v.cQ(), sizeof v.cQ());
+			if (layer.hasDataMask(MeshModel::MM_VERTCOLOR))
+				add(&v.cC(), sizeof v.cC());
+		}
+		for (const CFaceO& f : mesh.face)
+			if (layer.hasDataMask(MeshModel::MM_FACEQUALITY))
+				add(&f.cQ(), sizeof f.cQ());
+		text += "; " + layer.label().toStdString() + ' ' + std::to_string(mesh.vn) + ' '
+			+ std::to_string(mesh.en) + ' ' + std::to_string(mesh.fn) + " visible "
+			+ std::to_string(layer.isVisible());
+		for (const vcg::PointerToAttribute& attribute : mesh.vert_attr) {
+			add(attribute._handle->DataBegin(), mesh.vert.size() * size_t(attribute._sizeof));
+			text += ' ' + attribute._name;
+		}
+		text += ' ' + std::to_string(hash);
+	}
+	return text;
+}
+
+/// The reports that are left until a filter is cancelled; none: it is not.
+int reportsLeft = 0;
+
+bool report(const int, const char*)
+{
+	return reportsLeft == 0 || --reportsLeft > 0;
+}
+
+void runScript(const QString& file, MeshDocument& document, GLLogStream& log, bool cancelling)
+{
+	int cancelled = 0;
 	PluginManager& plugins = meshlab::pluginManagerInstance();
 	FilterScript script;
 	if (!script.open(file))
@@ -34,7 +83,27 @@ void runScript(const QString& file, MeshDocument& document, GLLogStream& log)
 		for (const RichParameter& given : step.second)
 			parameters.setValue(given.name(), given.value());
 		unsigned int changed = 0;
-		filter->applyFilter(action, parameters, document, changed, nullptr);
+		const std::string before = contents(document);
+		const int first = cancelled;
+		for (bool done = false; !done;) {
+			reportsLeft = cancelling ? cancelled - first + 1 : 0;
+			try {
+				filter->applyFilter(action, parameters, document, changed, report);
+				done = true;
+			}
+			catch (const MLException& error) {
+				if (reportsLeft > 0 || !QString(error.what()).startsWith("Cancelled"))
+					throw;
+				if (contents(document) != before)
+					throw MLException(
+						QString("%1, cancelled at its report %2, has changed the document")
+							.arg(step.filterName())
+							.arg(cancelled - first + 1));
+				++cancelled;
+			}
+		}
+		if (cancelling)
+			std::printf("%s: %d\n", qPrintable(step.filterName()), cancelled - first);
 	}
 }
 
@@ -53,8 +122,9 @@ int main(int argc, char** argv)
 		for (int i : {1, 2})
 			meshlab::pluginManagerInstance().loadPlugin(arguments[i]);
 		meshlab::loadMeshWithStandardParameters(arguments[4], document);
-		runScript(arguments[3], document, log);
-		for (const QString& output : arguments.mid(5))
+		const bool cancelling = arguments[5] == "--cancel";
+		runScript(arguments[3], document, log, cancelling);
+		for (const QString& output : cancelling ? QStringList() : arguments.mid(5))
 			meshlab::saveMeshWithStandardParameters(output, *document.mm(), &log);
 	}
 	catch (const MLException& error) {

@@ -1,0 +1,50 @@
+# SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Cancel: at whatever report of progress it comes, the document stays as it was."""
+
+import subprocess
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+from conftest import MESHES
+from host_programs import host
+
+PREFIX = "Mean Curvature Skeleton: "
+STEPS = {
+    "stage by stage": ("bent_tube", [
+        ("Resample", {"target_length": ("RichFloat", 0.08)}), ("Medial Poles", {}),
+        ("Contraction Step", {"steps": ("RichInt", 2)}),
+        ("Contraction Step", {"steps": ("RichInt", 40)}), ("Collapse to Curve", {}),
+        ("Refine Skeleton", {}), ("Prune Skeleton", {}), ("Parts of the Surface", {}),
+        ("Medial Balls", {})]),
+    "stages kept": ("bent_tube", [("Full Skeletonize", {"keep_stages": ("RichInt", 1)})]),
+    "sheets": ("slab", [("Full Skeletonize", {"keep_sheets": ("RichBool", "true")})]),
+}
+
+
+def script(filters: list[tuple[str, dict]], path: Path) -> Path:
+    tree = ElementTree.Element("FilterScript")
+    for name, parameters in filters:
+        step = ElementTree.SubElement(tree, "filter", name=PREFIX + name)
+        for parameter, (kind, value) in parameters.items():
+            ElementTree.SubElement(step, "Param", name=parameter, value=str(value), type=kind)
+    path.write_text("<!DOCTYPE FilterScript>\n" + ElementTree.tostring(tree, encoding="unicode"))
+    return path
+
+
+@pytest.mark.parametrize("name", STEPS)
+def test_nothing_is_changed(name, tmp_path):
+    meshlab = host("meshlab-2025.07")
+    mesh, filters = STEPS[name]
+    run = subprocess.run(
+        [meshlab.plugin.parents[1] / "tests/hosts/run_script",
+         meshlab.folder / "bin/plugins/libio_base.so", meshlab.plugin,
+         script(filters, tmp_path / "script.mlx"), MESHES / f"{mesh}.off", "--cancel"],
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=300)
+    assert run.returncode == 0, run.stdout[-2000:]
+    cancelled = [line.removeprefix(PREFIX).rpartition(": ")
+                 for line in run.stdout.splitlines() if line.startswith(PREFIX)]
+    assert [step for step, _, _ in cancelled] == [step for step, _ in filters]
+    assert all(int(count) > 0 for _, _, count in cancelled)
