@@ -47,10 +47,8 @@ void contractAll(FilterRun& run, const mcf::Parameters& parameters, const mcf::P
 {
 	const int keepStages = run.parameters.integer("keep_stages");
 	mcf::StageObserver observer;
-	std::optional<KeptStages::FlowShare> share;
 	observer.onFigures = [&](const mcf::StageFigures& figures) { run.log(stageLine(figures)); };
 	if (keepStages > 0) {
-		share.emplace();
 		observer.every = keepStages;
 		observer.onStage = [&](mcf::Stage stage) {
 			pipeline.kept.add(std::make_shared<const mcf::Stage>(std::move(stage)));
@@ -58,6 +56,9 @@ void contractAll(FilterRun& run, const mcf::Parameters& parameters, const mcf::P
 	}
 	mcf::Stage start = startOfFlow(run, parameters, *pipeline.surface.mesh, *pipeline.poles,
 		pipeline.held, progress.part(0, 0.03));
+	std::optional<KeptStages::FlowShare> share;
+	if (keepStages > 0)
+		share.emplace();
 	mcf::Stage end =
 		mcf::contractToSkeleton(std::move(start), parameters, progress.part(0.03, 1), observer);
 	if (!end.converged)

@@ -12,7 +12,6 @@
 #include <QFileInfo>
 
 #include <numeric>
-#include <sstream>
 
 namespace mcfskel {
 
@@ -22,17 +21,17 @@ namespace {
 
 Results loadStage(FilterRun& run, const mcf::PlyFile& ply, const QString& name)
 {
-	mcf::StageFile file = mcf::readStagePly(ply);
+	mcf::StageFile file = mcf::readStagePly(ply, run.progress.part(0.3, 0.5));
 	const auto stage = std::make_shared<const mcf::Stage>(std::move(file.stage));
 	const SurfaceLink link =
 		linkTo(run.document, file.surfaceFingerprint, std::move(file.vertexOfSlot));
 	if (link.layerId < 0)
 		run.log("The surface that the stage comes from is not among the layers: no layer gets its "
 				"correspondence.");
-	const StageFields fields = stageFields(*stage, run.progress.part(0, 0.5));
+	const StageFields fields = stageFields(*stage, run.progress.part(0.5, 0.75));
 	DocumentEdit edit(run.document);
 	edit.addStage(
-		stageLabel(baseName(name), *stage), stage, fields, link, run.progress.part(0.5, 1));
+		stageLabel(baseName(name), *stage), stage, fields, link, run.progress.part(0.75, 1));
 	edit.writeNodes(link, stage->node);
 	edit.commit();
 	return stageResults(*stage);
@@ -63,8 +62,8 @@ Results run(FilterRun& run)
 {
 	const QString name = requiredName(run.parameters.text("file"), "to read");
 	try {
-		std::istringstream in(readFile(name));
-		const mcf::PlyFile ply = mcf::readBinaryPly(in);
+		InputFile file(name);
+		const mcf::PlyFile ply = mcf::readBinaryPly(file.stream(), run.progress.part(0, 0.3));
 		const QString label = QFileInfo(name).completeBaseName();
 		return !mcf::isStagePly(ply) && ply.find("edge") ? loadSkeleton(run, ply, label)
 														 : loadStage(run, ply, label);

@@ -9,7 +9,7 @@
 #include <io_skeleton/stage_ply.h>
 #include <skeleton/errors.h>
 
-#include <sstream>
+#include <ostream>
 
 namespace mcfskel {
 
@@ -27,20 +27,19 @@ Results run(FilterRun& run)
 					? "' was a stage of the contraction, but its state is gone or its geometry was changed"
 					: "' is neither a stage of the contraction nor a skeleton")
 			+ ": make a layer NAME_meso_K or NAME_skeleton current.");
-	std::ostringstream out;
 	Results results;
 	if (found) {
-		mcf::writeStagePly(
-			out, {*found.stage, found.surface.fingerprint, *found.surface.vertexOfSlot});
+		const mcf::StageFile stage = {
+			*found.stage, found.surface.fingerprint, *found.surface.vertexOfSlot};
+		writeFile(file, [&](std::ostream& out) { mcf::writeStagePly(out, stage, run.progress); });
 		results = stageResults(*found.stage);
 	}
 	else {
 		CurveLayer curve = readCurve(run.layer());
 		curve.skeleton.node = curve.nodeOfLayerVertex();
-		mcf::writeSkeletonPly(out, curve.skeleton);
+		writeFile(file, [&](std::ostream& out) { mcf::writeSkeletonPly(out, curve.skeleton); });
 		results = curveResults(curve.skeleton);
 	}
-	writeFile(file, out.str());
 	run.log(QString("Wrote '%1'.").arg(file));
 	return results;
 }

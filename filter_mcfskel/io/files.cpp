@@ -6,6 +6,12 @@
 #include <QFile>
 #include <QSaveFile>
 
+#include <istream>
+#include <ostream>
+#include <streambuf>
+#include <string>
+#include <vector>
+
 namespace mcfskel {
 
 namespace {
@@ -15,6 +21,51 @@ FileError fileError(const char* what, const QString& name, const QFileDevice& fi
 	return FileError(
 		QString("Cannot %1 '%2': %3").arg(what, name, file.errorString()).toStdString());
 }
+
+/// A file of Qt's behind a stream of the standard's.
+class FileBuffer : public std::streambuf
+{
+public:
+	FileBuffer(QFileDevice& file, const QString& name) : file(file), name(name) {}
+
+protected:
+	int_type underflow() override
+	{
+		consumed += egptr() - eback();
+		block.resize(size_t(1) << 20);
+		const qint64 count = file.read(block.data(), qint64(block.size()));
+		if (count < 0)
+			throw fileError("read", name, file);
+		setg(block.data(), block.data(), block.data() + count);
+		return count > 0 ? traits_type::to_int_type(*gptr()) : traits_type::eof();
+	}
+
+	/// Tells how much has been read; cannot go elsewhere.
+	pos_type seekoff(off_type offset, std::ios_base::seekdir from, std::ios_base::openmode) override
+	{
+		const bool tells = offset == 0 && from == std::ios_base::cur;
+		return tells ? pos_type(consumed + (gptr() - eback())) : pos_type(off_type(-1));
+	}
+
+	std::streamsize xsputn(const char* bytes, std::streamsize count) override
+	{
+		if (file.write(bytes, count) != count)
+			throw fileError("write", name, file);
+		return count;
+	}
+
+	int_type overflow(int_type c) override
+	{
+		const char byte = traits_type::to_char_type(c);
+		return xsputn(&byte, 1) == 1 ? c : traits_type::eof();
+	}
+
+private:
+	QFileDevice& file;
+	QString name;
+	std::vector<char> block;
+	off_type consumed = 0; ///< before the block
+};
 
 } // namespace
 
@@ -26,25 +77,43 @@ QString requiredName(const QString& name, const char* purpose)
 	return name;
 }
 
-std::string readFile(const QString& name)
+struct InputFile::Opened
 {
-	QFile file(name);
-	if (!file.open(QIODevice::ReadOnly))
-		throw fileError("read", name, file);
-	const QByteArray content = file.readAll();
-	if (file.error() != QFileDevice::NoError)
-		throw fileError("read", name, file);
-	return content.toStdString();
+	QFile file;
+	FileBuffer buffer;
+	std::istream stream;
+
+	explicit Opened(const QString& name) : file(name), buffer(file, name), stream(&buffer)
+	{
+		if (!file.open(QIODevice::ReadOnly))
+			throw fileError("read", name, file);
+		stream.exceptions(std::ios_base::badbit); // hands on what the buffer throws
+	}
+};
+
+InputFile::InputFile(const QString& name) : opened(std::make_unique<Opened>(name))
+{
 }
 
-void writeFile(const QString& name, const std::string& content)
+InputFile::~InputFile() = default;
+
+std::istream& InputFile::stream()
+{
+	return opened->stream;
+}
+
+void writeFile(const QString& name, const std::function<void(std::ostream&)>& write)
 {
 	QSaveFile file(name);
 	// A device or a folder that takes no new files can still be written to.
 	file.setDirectWriteFallback(true);
-	if (!file.open(QIODevice::WriteOnly)
-		|| file.write(content.data(), qint64(content.size())) != qint64(content.size())
-		|| !file.commit())
+	if (!file.open(QIODevice::WriteOnly))
+		throw fileError("write", name, file);
+	FileBuffer buffer(file, name);
+	std::ostream out(&buffer);
+	out.exceptions(std::ios_base::badbit);
+	write(out);
+	if (!file.commit())
 		throw fileError("write", name, file);
 }
 

@@ -10,7 +10,9 @@
 
 #include <QString>
 
-#include <string>
+#include <functional>
+#include <iosfwd>
+#include <memory>
 
 namespace mcfskel {
 
@@ -25,11 +27,24 @@ public:
 /// @throws InvalidParameter if it was given none.
 QString requiredName(const QString& name, const char* purpose);
 
-/// @throws FileError
-std::string readFile(const QString& name);
+/// A file to read from: the stream throws FileError where the system cannot read on.
+class InputFile
+{
+public:
+	/// @throws FileError
+	explicit InputFile(const QString& name);
+	~InputFile();
 
-/// Replaces a file, or leaves it as it was. @throws FileError
-void writeFile(const QString& name, const std::string& content);
+	std::istream& stream();
+
+private:
+	struct Opened;
+	std::unique_ptr<Opened> opened;
+};
+
+/// Replaces a file by what `write` writes, or leaves it as it was: also if `write` throws.
+/// @throws FileError
+void writeFile(const QString& name, const std::function<void(std::ostream&)>& write);
 
 } // namespace mcfskel
 

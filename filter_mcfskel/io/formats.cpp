@@ -15,7 +15,7 @@
 
 #include <exception>
 #include <new>
-#include <sstream>
+#include <ostream>
 
 namespace mcfskel {
 
@@ -123,10 +123,11 @@ QStringList writeSkeleton(const QString& file, const mcf::CurveSkeleton& skeleto
 	}
 	mcf::CurveSkeleton copy = skeleton;
 	copy.node = sources;
-	std::ostringstream out;
-	const QStringList warnings =
-		format->write(out, copy, sources.empty() ? std::string() : surfaceName.toStdString());
-	writeFile(file, out.str());
+	QStringList warnings;
+	writeFile(file, [&](std::ostream& out) {
+		warnings =
+			format->write(out, copy, sources.empty() ? std::string() : surfaceName.toStdString());
+	});
 	return warnings;
 }
 
@@ -146,8 +147,8 @@ FileOutcome openSkeleton(const QString& file, MeshModel& layer)
 		if (!format || !format->read)
 			throw FileError(
 				QString("'%1' is of a format that is not read.").arg(file).toStdString());
-		std::istringstream in(readFile(file));
-		mcf::SkeletonFile content = format->read(in);
+		InputFile in(file);
+		mcf::SkeletonFile content = format->read(in.stream());
 		if (content.skeleton.position.empty())
 			throw FileError(QString("'%1' has no nodes.").arg(file).toStdString());
 		outcome.warnings = toLines(content.warnings);

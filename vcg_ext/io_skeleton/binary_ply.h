@@ -14,12 +14,14 @@
 #include "format_error.h"
 #include "text_fields.h"
 
+#include "../skeleton/progress.h"
+#include "../skeleton/ticker.h"
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
 #include <istream>
-#include <iterator>
 #include <limits>
 #include <ostream>
 #include <string>
@@ -139,9 +141,12 @@ inline double numberAt(const char* bytes, PlyType type)
 
 } // namespace detail
 
-/// Writes tables as binary little endian PLY. @pre every column has its element's rows
-inline void writeBinaryPly(std::ostream& out, const PlyFile& file)
+/// Writes tables as binary little endian PLY. @pre every column has its element's rows. @throws Cancelled
+inline void writeBinaryPly(
+	std::ostream& out, const PlyFile& file, const Progress& progress = Progress())
 {
+	constexpr size_t pieceSize = size_t(1) << 20;
+	const char* const what = "Writing the file";
 	std::string bytes = "ply\nformat binary_little_endian 1.0\n";
 	for (const std::string& comment : file.comments)
 		bytes += "comment " + comment + "\n";
@@ -152,8 +157,16 @@ inline void writeBinaryPly(std::ostream& out, const PlyFile& file)
 				+ detail::infoOf(column.type).name + " " + column.name + "\n";
 	}
 	bytes += "end_header\n";
-	for (const PlyElement& element : file.elements)
-		for (size_t row = 0; row < element.rows; ++row)
+	const auto flush = [&] {
+		out.write(bytes.data(), std::streamsize(bytes.size()));
+		bytes.clear();
+	};
+	for (size_t e = 0; e < file.elements.size(); ++e) {
+		const PlyElement& element = file.elements[e];
+		const double count = double(file.elements.size());
+		const Progress part = progress.part(double(e) / count, double(e + 1) / count);
+		detail::reportedLoop(int(element.rows), part, what, [&](int r) {
+			const size_t row = size_t(r);
 			for (const PlyColumn& column : element.columns) {
 				if (!column.listLength) {
 					detail::appendNumber(bytes, column.type, column.values[row]);
@@ -164,7 +177,11 @@ inline void writeBinaryPly(std::ostream& out, const PlyFile& file)
 					detail::appendNumber(
 						bytes, column.type, column.values[row * column.listLength + i]);
 			}
-	out.write(bytes.data(), std::streamsize(bytes.size()));
+			if (bytes.size() > pieceSize)
+				flush();
+		});
+	}
+	flush();
 }
 
 namespace detail {
@@ -257,20 +274,31 @@ inline PlyHeader readPlyHeader(std::istream& stream)
 /**
  * Reads binary little endian PLY whose lists have one length throughout a column.
  * @throws FormatError with the line (header) or the byte (data): anything malformed, a file that ends
- *         too early, bytes after the end.
+ *         too early, bytes after the end; Cancelled.
  * Memory is taken as data arrive, so that a wrong count cannot exhaust it.
  */
-inline PlyFile readBinaryPly(std::istream& stream)
+inline PlyFile readBinaryPly(std::istream& stream, const Progress& progress = Progress())
 {
+	constexpr size_t rowsPerReport = 1 << 15;
+	const char* const what = "Reading the file";
 	detail::PlyHeader header = detail::readPlyHeader(stream);
 	const std::streamoff start = std::max<std::streamoff>(0, stream.tellg());
-	const std::string data {std::istreambuf_iterator<char>(stream), {}};
-	size_t at = 0;
+	std::string data;
+	std::vector<char> piece(size_t(1) << 20);
+	do {
+		progress.report(0, what);
+		stream.read(piece.data(), std::streamsize(piece.size()));
+		data.append(piece.data(), size_t(stream.gcount()));
+	} while (stream);
+	size_t at = 0, rowsDone = 0;
+	const auto bar = [&] { return double(at) / double(std::max<size_t>(data.size(), 1)); };
 	for (size_t e = 0; e < header.file.elements.size(); ++e) {
 		PlyElement& element = header.file.elements[e];
 		if (element.columns.empty() && element.rows > 0)
 			throw FormatError::atRow(element.name, 0, "the element has rows but no properties.");
 		for (size_t row = 0; row < element.rows; ++row) {
+			if (++rowsDone % rowsPerReport == 0)
+				progress.report(bar(), what);
 			const auto fail = [&](const std::string& what) {
 				return FormatError::atByte(size_t(start) + at,
 					"element '" + element.name + "', row " + std::to_string(row) + " of "

@@ -58,12 +58,15 @@ inline PlyElement stageRow(const StageFile& file)
 
 } // namespace detail
 
-/// Writes a stage. @pre its mesh is compact, as between steps. Complexity: O(V + surface).
-inline void writeStagePly(std::ostream& out, const StageFile& file)
+/// Writes a stage. @pre its mesh is compact, as between steps. @throws Cancelled
+/// Complexity: O(V + surface).
+inline void writeStagePly(
+	std::ostream& out, const StageFile& file, const Progress& progress = Progress())
 {
+	const char* const what = "Writing the file";
 	const Stage& stage = file.stage;
-	const std::vector<Triangle> triangles = stage.mesh.triangles();
-	const std::vector<double> radius = stageRadius(stage);
+	const std::vector<Triangle> triangles = stage.mesh.triangles(progress.part(0, 0.1));
+	const std::vector<double> radius = stageRadius(stage, progress.part(0.1, 0.3));
 	const size_t n = size_t(stage.mesh.vertexSlots());
 
 	PlyElement vertex {"vertex", n, {}};
@@ -77,6 +80,7 @@ inline void writeStagePly(std::ostream& out, const StageFile& file)
 	vertex.add("mcfskel_sheet", PlyType::UInt8, stage.sheet);
 	vertex.add("mcfskel_component", PlyType::Int32, stage.component);
 
+	progress.report(0.3, what);
 	PlyElement face {"face", triangles.size(), {}};
 	addTuples(face, "vertex_indices", triangles);
 
@@ -85,22 +89,27 @@ inline void writeStagePly(std::ostream& out, const StageFile& file)
 	component.add("initial_area", PlyType::Double, stage.initialArea);
 	component.add("area", PlyType::Double, stage.area);
 
+	progress.report(0.3, what);
 	PlyElement surface {"mcfskel_surface", stage.node.size(), {}};
 	addPoints(surface, "", *stage.surface);
+	progress.report(0.3, what);
 	surface.add("node", PlyType::Int32, stage.node);
 
 	PlyElement slot {"mcfskel_slot", file.vertexOfSlot.size(), {}};
 	slot.add("vertex", PlyType::Int32, file.vertexOfSlot);
 
-	writeBinaryPly(out,
-		{{detail::stageComment}, {vertex, face, component, surface, slot, detail::stageRow(file)}});
+	PlyFile ply {{detail::stageComment}, {}};
+	for (PlyElement* element : {&vertex, &face, &component, &surface, &slot})
+		ply.elements.push_back(std::move(*element));
+	ply.elements.push_back(detail::stageRow(file));
+	writeBinaryPly(out, ply, progress.part(0.3, 1));
 }
 
 namespace detail {
 
-/// @throws FormatError unless the triangles are a closed two-manifold without double edges.
+/// @throws FormatError unless the triangles are a closed two-manifold without double edges; Cancelled.
 inline SurfaceMesh checkedStageMesh(
-	std::vector<Point3d> points, const std::vector<Triangle>& triangles)
+	std::vector<Point3d> points, const std::vector<Triangle>& triangles, const Progress& progress)
 {
 	const int n = int(points.size());
 	std::vector<int> corners(size_t(n), 0);
@@ -115,7 +124,7 @@ inline SurfaceMesh checkedStageMesh(
 		if (!corners[size_t(v)])
 			throw FormatError::atRow("vertex", size_t(v), "no face has this vertex.");
 	try {
-		SurfaceMesh mesh(std::move(points), triangles);
+		SurfaceMesh mesh(std::move(points), triangles, progress);
 		std::vector<int> seenFrom(size_t(n), -1);
 		for (int v = 0; v < n; ++v) {
 			if (mesh.valence(v) != corners[size_t(v)])
@@ -191,10 +200,11 @@ inline bool isStagePly(const PlyFile& ply)
 /**
  * Reads a stage that writeStagePly() wrote. Further properties and elements are ignored.
  * @throws FormatError: see readBinaryPly(); also for an element or property that is missing, a value
- *         out of its range, a mesh that is no closed two-manifold.
+ *         out of its range, a mesh that is no closed two-manifold. Cancelled.
  */
-inline StageFile readStagePly(const PlyFile& ply)
+inline StageFile readStagePly(const PlyFile& ply, const Progress& progress = Progress())
 {
+	const char* const what = "Reading the file";
 	constexpr int most = std::numeric_limits<int>::max();
 	if (!isStagePly(ply))
 		throw FormatError::atLine(1,
@@ -217,18 +227,24 @@ inline StageFile readStagePly(const PlyFile& ply)
 		| detail::fingerprintHalf(row, "fingerprint_high") << 32;
 
 	detail::readComponents(component, stage);
+	progress.report(0, what);
 	detail::readVertices(vertex, int(component.rows()), stage);
+	progress.report(0.2, what);
 	const std::vector<Triangle> triangles =
 		face.tuples<3>("vertex_indices", 0, int(vertex.rows()) - 1);
 	for (size_t f = 0; f < triangles.size(); ++f)
 		for (int v : triangles[f])
 			if (stage.component[size_t(v)] != stage.component[size_t(triangles[f][0])])
 				throw face.error(f, "the corners are in different components.");
-	stage.mesh = detail::checkedStageMesh(vertex.points(""), triangles);
+	stage.mesh = detail::checkedStageMesh(vertex.points(""), triangles, progress.part(0.3, 0.7));
 
+	progress.report(0.7, what);
 	stage.surface = std::make_shared<const std::vector<Point3d>>(surface.points(""));
+	progress.report(0.8, what);
 	stage.node = surface.integers("node", -1, int(vertex.rows()) - 1);
+	progress.report(0.9, what);
 	file.vertexOfSlot = slot.integers("vertex", -1, int(surface.rows()) - 1);
+	progress.report(1, what);
 	return file;
 }
 
