@@ -101,8 +101,11 @@ TEST(IncompleteFactor, RefusesWhatIsNotPositive)
 {
 	SymmetricRows M; // eigenvalues 1 and -3
 	M.diagonal = {-1, -1};
-	M.start = {0, 1, 2};
-	M.entries = {{1, 2}, {0, 2}};
+	M.start = {0};
+	for (int other : {1, 0}) {
+		M.entries.push_back({other, 2});
+		M.endRow();
+	}
 	EXPECT_THROW(IncompleteFactor(M, {0, 0}, 0), SolverError);
 	M.diagonal = {std::nanf(""), 1};
 	EXPECT_THROW(IncompleteFactor(M, {0, 0}, 0), SolverError);

@@ -92,28 +92,31 @@ inline std::vector<Point3d> solveBiharmonic(const SymmetricRows& M, const std::v
 	// slivers have nearly all of the residual, one may reach the target and leave a vertex between soft
 	// triangles far from its place.
 	double fall = 0.1;
+	FloatQuad alpha; // the step along p, which y has not made yet
 	constexpr int mostIterations = 200;
-	for (int iteration = 0; iteration < mostIterations; ++iteration) {
+	for (int iteration = 0;; ++iteration) {
 		progress.report(0.5 + 0.5 * iteration / mostIterations, "Contracting");
-		const FloatQuad alpha = quotient(rz, apply());
-		for (int i = 0; i < n; ++i) {
-			y[i] += alpha * p[i];
-			z[i] = r[i] -= alpha * Ap[i];
-		}
-		if (fall * rz.sum() <= target)
+		alpha = quotient(rz, apply());
+		if (fall * rz.sum() <= target || iteration + 1 == mostIterations)
 			break;
+		for (int i = 0; i < n; ++i)
+			z[i] = r[i] -= alpha * Ap[i];
 		const Sum rzNew = precondition();
 		if (iteration > 0 && !(rzNew.sum() > target))
 			break;
 		if (iteration > 0)
 			fall = std::max(fall, rzNew.sum() / rz.sum());
 		const FloatQuad beta = quotient(rzNew, rz);
-		for (int i = 0; i < n; ++i)
+		for (int i = 0; i < n; ++i) {
+			y[i] += alpha * p[i];
 			p[i] = z[i] + beta * p[i];
+		}
 		rz = rzNew;
 	}
-	for (int i = 0; i < n; ++i)
-		x[i] = Point3d(y[i][0], y[i][1], y[i][2]) * largest;
+	for (int i = 0; i < n; ++i) {
+		const FloatQuad last = y[i] + alpha * p[i];
+		x[i] = Point3d(last[0], last[1], last[2]) * largest;
+	}
 	return x;
 }
 

@@ -17,7 +17,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <vector>
 
 namespace vcg::tri::mcf {
@@ -99,7 +98,8 @@ inline void contract(
 				++M.start[row[k] + 1];
 		}
 	});
-	std::partial_sum(M.start.begin(), M.start.end(), M.start.begin());
+	for (int i = 0; i < n; ++i)
+		M.start[i + 1] = M.start[i] + SymmetricRows::filledUp(M.start[i + 1]);
 	progress.report(0.1, "Contracting");
 
 	// M is w_L L restricted to the unknowns. With x = v + y, y the unknown move, Eq. 6 becomes

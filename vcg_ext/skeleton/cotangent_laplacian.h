@@ -88,7 +88,7 @@ inline SymmetricRows cotangentLaplacian(const SurfaceMesh& mesh)
 		});
 		L.excess.push_back(0);
 		L.diagonal.push_back(float(sum));
-		L.start.push_back(int(L.entries.size()));
+		L.endRow();
 	}
 	return L;
 }

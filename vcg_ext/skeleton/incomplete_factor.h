@@ -194,7 +194,7 @@ private:
 
 	/// A column's entries are filled up to groups of so many, with zeros in its own row: loops of few
 	/// different lengths are foretold more often.
-	static constexpr int Group = 3;
+	static constexpr int Group = 4;
 
 	/// How much of a dropped entry goes to the diagonal.
 	static constexpr float Compensation = 0.97f;

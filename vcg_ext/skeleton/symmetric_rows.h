@@ -19,8 +19,8 @@ using FloatQuads = std::vector<FloatQuad, Eigen::aligned_allocator<FloatQuad>>;
 /// An entry of a sparse row or column: where, and what.
 struct SparseEntry
 {
-	int index;
-	float value;
+	int index = 0;
+	float value = 0;
 };
 
 /**
@@ -36,8 +36,23 @@ struct SymmetricRows
 	std::vector<float> excess;
 	/// excess_i - sum_k value_k.
 	std::vector<float> diagonal;
+	/// Multiples of Group.
 	std::vector<int> start;
 	std::vector<SparseEntry> entries;
+
+	/// Rows are filled up to groups of so many entries, with zeros in column 0: loops of few different
+	/// lengths are foretold more often.
+	static constexpr int Group = 3;
+
+	/// How many entries a row of `count` takes up.
+	static int filledUp(int count) { return (count + Group - 1) / Group * Group; }
+
+	/// Fills up the row that the last entries belong to.
+	void endRow()
+	{
+		entries.resize(size_t(filledUp(int(entries.size()))));
+		start.push_back(int(entries.size()));
+	}
 
 	int size() const { return int(diagonal.size()); }
 
@@ -48,8 +63,9 @@ struct SymmetricRows
 		for (int i = 0; i < size(); ++i) {
 			const FloatQuad own = x[i];
 			FloatQuad sum = own * excess[i];
-			for (int k = start[i]; k < start[i + 1]; ++k)
-				sum += (x[entries[k].index] - own) * entries[k].value;
+			for (int first = start[i]; first < start[i + 1]; first += Group)
+				for (int k = first; k < first + Group; ++k)
+					sum += (x[entries[k].index] - own) * entries[k].value;
 			visit(i, sum);
 		}
 	}
