@@ -50,7 +50,7 @@ TEST(EliminationOrder, HasEachFreeVertexOnceTheLastOnesFirst)
 				expected.insert(expected.begin(), v);
 		std::vector<int> order = eliminationOrder(stage);
 		ASSERT_EQ(order.size(), expected.size());
-		constexpr size_t turn = 32; // within so many, two halves take turns
+		constexpr size_t turn = 40; // within so many, two halves take turns
 		for (size_t first = 0; first < order.size(); first += turn)
 			std::sort(order.begin() + long(first),
 				order.begin() + long(std::min(first + turn, order.size())), std::greater<int>());

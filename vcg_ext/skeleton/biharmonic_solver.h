@@ -49,7 +49,7 @@ inline std::vector<Point3d> solveBiharmonic(const SymmetricRows& M, const std::v
 			largest = std::max(largest, std::abs(bi[k]));
 	if (largest == 0)
 		return x;
-	constexpr float dropTolerance = 5e-3f;
+	constexpr float dropTolerance = 5.28e-3f;
 	std::vector<float> rootD(n);
 	for (int i = 0; i < n; ++i)
 		rootD[i] = std::sqrt(D[i]);

@@ -16,7 +16,7 @@ namespace vcg::tri::mcf {
 
 /**
  * The free vertices of a stage in the order in which to eliminate them: from the last to the first, but of
- * 32 at a time the first and the second half by turns.
+ * 40 at a time the first and the second half by turns.
  *
  * Where the mesh is numbered breadth first, from the last to the first is the order of Cuthill and McKee,
  * reversed (George and Liu, "Computer Solution of Large Sparse Positive Definite Systems", 1981). A full
@@ -36,7 +36,7 @@ inline std::vector<int> eliminationOrder(const Stage& stage)
 	for (int v = stage.mesh.vertexSlots() - 1; v >= 0; --v)
 		if (!stage.fixed[v])
 			lastFirst.push_back(v);
-	constexpr size_t half = 16;
+	constexpr size_t half = 20;
 	std::vector<int> order;
 	order.reserve(lastFirst.size());
 	for (size_t first = 0; first < lastFirst.size(); first += 2 * half) {
