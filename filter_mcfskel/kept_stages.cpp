@@ -23,10 +23,10 @@ KeptStages::~KeptStages()
 {
 	if (!teller.joinable())
 		return;
-	givenUp = true;
 	{
-		const std::lock_guard<std::mutex> lock(mutex);
-		finished = true;
+		const std::lock_guard<std::mutex> lock(
+			mutex); // or the thread might miss it before it waits
+		givenUp = true;
 	}
 	changed.notify_one();
 	teller.join();
@@ -56,8 +56,8 @@ void KeptStages::tell()
 	for (size_t i = 0;; ++i) {
 		{
 			std::unique_lock<std::mutex> lock(mutex);
-			changed.wait(lock, [&] { return finished || i < kept.size(); });
-			if (finished)
+			changed.wait(lock, [&] { return givenUp || i < kept.size(); });
+			if (givenUp)
 				return;
 		}
 		if (Task task = begin(i); task.valid())

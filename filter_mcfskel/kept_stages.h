@@ -71,9 +71,8 @@ private:
 	};
 
 	std::deque<Kept> kept; ///< a deque: what is in it stays in its place
-	std::mutex mutex;      ///< of the tasks, of the number of stages, and of `finished`
+	std::mutex mutex; ///< of the tasks and of the number of stages; held where `givenUp` is set
 	std::condition_variable changed;
-	bool finished = false;
 	std::atomic<bool> givenUp {false};
 	std::thread teller;
 

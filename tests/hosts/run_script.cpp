@@ -68,7 +68,6 @@ bool report(const int, const char*)
 
 void runScript(const QString& file, MeshDocument& document, GLLogStream& log, bool cancelling)
 {
-	int cancelled = 0;
 	PluginManager& plugins = meshlab::pluginManagerInstance();
 	FilterScript script;
 	if (!script.open(file))
@@ -84,9 +83,9 @@ void runScript(const QString& file, MeshDocument& document, GLLogStream& log, bo
 			parameters.setValue(given.name(), given.value());
 		unsigned int changed = 0;
 		const std::string before = contents(document);
-		const int first = cancelled;
+		int cancelled = 0;
 		for (bool done = false; !done;) {
-			reportsLeft = cancelling ? cancelled - first + 1 : 0;
+			reportsLeft = cancelling ? cancelled + 1 : 0;
 			try {
 				filter->applyFilter(action, parameters, document, changed, report);
 				done = true;
@@ -98,12 +97,12 @@ void runScript(const QString& file, MeshDocument& document, GLLogStream& log, bo
 					throw MLException(
 						QString("%1, cancelled at its report %2, has changed the document")
 							.arg(step.filterName())
-							.arg(cancelled - first + 1));
+							.arg(cancelled + 1));
 				++cancelled;
 			}
 		}
 		if (cancelling)
-			std::printf("%s: %d\n", qPrintable(step.filterName()), cancelled - first);
+			std::printf("%s: %d\n", qPrintable(step.filterName()), cancelled);
 	}
 }
 

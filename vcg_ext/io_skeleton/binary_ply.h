@@ -279,7 +279,6 @@ inline PlyHeader readPlyHeader(std::istream& stream)
  */
 inline PlyFile readBinaryPly(std::istream& stream, const Progress& progress = Progress())
 {
-	constexpr size_t rowsPerReport = 1 << 15;
 	const char* const what = "Reading the file";
 	detail::PlyHeader header = detail::readPlyHeader(stream);
 	const std::streamoff start = std::max<std::streamoff>(0, stream.tellg());
@@ -290,15 +289,17 @@ inline PlyFile readBinaryPly(std::istream& stream, const Progress& progress = Pr
 		stream.read(piece.data(), std::streamsize(piece.size()));
 		data.append(piece.data(), size_t(stream.gcount()));
 	} while (stream);
-	size_t at = 0, rowsDone = 0;
-	const auto bar = [&] { return double(at) / double(std::max<size_t>(data.size(), 1)); };
+	double rows = 0;
+	for (const PlyElement& element : header.file.elements)
+		rows += double(element.rows);
+	detail::Ticker ticker(progress, what, rows);
+	size_t at = 0;
 	for (size_t e = 0; e < header.file.elements.size(); ++e) {
 		PlyElement& element = header.file.elements[e];
 		if (element.columns.empty() && element.rows > 0)
 			throw FormatError::atRow(element.name, 0, "the element has rows but no properties.");
 		for (size_t row = 0; row < element.rows; ++row) {
-			if (++rowsDone % rowsPerReport == 0)
-				progress.report(bar(), what);
+			ticker.tick();
 			const auto fail = [&](const std::string& what) {
 				return FormatError::atByte(size_t(start) + at,
 					"element '" + element.name + "', row " + std::to_string(row) + " of "

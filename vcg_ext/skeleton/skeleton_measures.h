@@ -163,7 +163,8 @@ inline std::vector<Point3d> interiorPoints(
 			const auto u = evenPoint<3>(size_t(first + i));
 			return box.min + Point3d(u[0] * box.DimX(), u[1] * box.DimY(), u[2] * box.DimZ());
 		};
-		const Progress found = progress.part(double(inside.size()) / count, 1).part(0, 0);
+		const double part = double(inside.size()) / count;
+		const Progress found = progress.part(part, part);
 		forEachBlock(blockSize, found, what, [&](int begin, int end) {
 			for (int i = begin; i < end; ++i)
 				isInside[i] = closest.clearance(point(i)) > 0;

@@ -18,8 +18,8 @@ class Ticker
 {
 public:
 	/// @param expected how many elements there will be, as far as it is known.
-	Ticker(const Progress& progress, const char* what, int expected) :
-			progress(progress), what(what), expected(std::max(expected, 1))
+	Ticker(const Progress& progress, const char* what, double expected) :
+			progress(progress), what(what), expected(std::max(expected, 1.0))
 	{
 		progress.report(0, what);
 	}
@@ -30,11 +30,11 @@ public:
 	}
 
 private:
-	static constexpr std::uint32_t reportEvery = 1 << 15;
+	static constexpr std::uint64_t reportEvery = 1 << 15;
 	const Progress progress;
 	const char* what;
-	int expected;
-	std::uint32_t count = 0;
+	double expected;
+	std::uint64_t count = 0;
 };
 
 /**
