@@ -165,6 +165,9 @@ inline Stage firstStage(const SurfaceMesh& surface, const Parameters& parameters
 	FlowSurface start =
 		surfaceForFlow(surface, parameters.epsilon, polesOfSurface, progress.part(0, polesFrom));
 	Stage stage;
+	stage.component = std::move(start.component);
+	stage.node = std::move(start.node);
+	stage.diagonal = std::move(start.diagonal);
 	const size_t count = start.survivor.size();
 	stage.pole.resize(count);
 	stage.poleRadius.resize(count);
@@ -184,9 +187,17 @@ inline Stage firstStage(const SurfaceMesh& surface, const Parameters& parameters
 			take(own[i], *poles, size_t(ownOf[i]));
 	else {
 		const Progress part = progress.part(polesFrom, 1);
-		const bool dense = double(count) < leftOfDenseSurface * surface.vertexSlots();
-		found = dense ? polesAt(start.mesh, own, parameters.poleMethod, part)
-					  : polesAt(surface, ownOf, parameters.poleMethod, part);
+		if (double(count) < leftOfDenseSurface * surface.vertexSlots())
+			found = polesAt(start.mesh, own, parameters.poleMethod, part);
+		else {
+			const std::vector<int> component =
+				componentOfSurfaceVertices(stage, part.part(0, 0.01));
+			stage.frames =
+				std::make_shared<const std::vector<PrincipalFrame>>(PrincipalFrame::ofPoints(
+					surface.position, component, stage.diagonal.size(), part.part(0.01, 0.02)));
+			found = polesAt(surface, component, *stage.frames, ownOf, parameters.poleMethod,
+				part.part(0.02, 1));
+		}
 		for (size_t i = 0; i < own.size(); ++i)
 			take(own[i], found, i);
 	}
@@ -198,15 +209,12 @@ inline Stage firstStage(const SurfaceMesh& surface, const Parameters& parameters
 	stage.fixed.assign(count, 0);
 	stage.held.assign(count, 0);
 	stage.sheet.assign(count, 0);
-	stage.component = std::move(start.component);
-	stage.diagonal = std::move(start.diagonal);
 	stage.initialArea = std::move(start.area);
 	const Progress end = progress.part(1, 1);
 	stage.initialVolume = surface.volume(end);
 	stage.surface = std::make_shared<const std::vector<Point3d>>(
 		detail::copiedArray(surface.position, end, "Copying the surface"));
 	stage.mesh = std::move(start.mesh);
-	stage.node = std::move(start.node);
 	const Extent extent =
 		measuredExtent(stage.mesh, stage.component, std::vector<double>(stage.diagonal.size(), 1));
 	stage.area = extent.area;

@@ -38,38 +38,35 @@ namespace detail {
  * Poles found in the shape's own coordinates: where several balls are as good, which one is found
  * depends on the order of the searches, and that on the coordinates. They are rounded, as contract()
  * does it.
+ * @param component of each vertex, and `frames` of the vertices of each component.
  * @param find makes the poles of `vertices` of a mesh, given how deep a vertex may lie in the ball of each,
  *             with a progress window of its own.
  */
 template <class Find>
-PoleSet polesInShapeFrame(const SurfaceMesh& mesh, const std::vector<int>& vertices,
+PoleSet polesInShapeFrame(const SurfaceMesh& mesh, const std::vector<int>& component,
+	const std::vector<PrincipalFrame>& frames, const std::vector<int>& vertices,
 	const Progress& progress, Find&& find)
 {
-	int components = 0;
-	const std::vector<int> component =
-		connectedComponents(mesh, &components, progress.part(0, 0.02));
-	const std::vector<PrincipalFrame> frames = PrincipalFrame::ofPoints(
-		mesh.position, component, size_t(components), progress.part(0.02, 0.04));
 	// Components may lie within each other: they have one frame for all, as fine as it needs to be.
-	const bool single = components == 1;
+	const bool single = frames.size() == 1;
 	const PrincipalFrame frame = single
 		? frames.front()
 		: PrincipalFrame::ofPoints(
-			mesh.position, std::vector<int>(component.size(), 0), 1, progress.part(0.04, 0.04))
+			mesh.position, std::vector<int>(component.size(), 0), 1, progress.part(0, 0))
 			  .front();
-	SurfaceMesh own = mesh.copied(progress.part(0.04, 0.04));
-	reportedLoop(own.vertexSlots(), progress.part(0.04, 0.05), "Measuring the surface", [&](int v) {
+	SurfaceMesh own = mesh.copied(progress.part(0, 0));
+	reportedLoop(own.vertexSlots(), progress.part(0, 0.01), "Measuring the surface", [&](int v) {
 		Point3d& p = own.position[v];
 		p = single ? frame.onGrid(p) : frame.in(p);
 	});
 	std::vector<double> delta;
 	delta.reserve(vertices.size());
 	const int count = int(vertices.size());
-	reportedLoop(count, progress.part(0.05, 0.05), "Measuring the surface", [&](int i) {
+	reportedLoop(count, progress.part(0.01, 0.01), "Measuring the surface", [&](int i) {
 		const PrincipalFrame& ofComponent = frames[component[vertices[i]]];
 		delta.push_back(poleTolerance * frame.lengthOnGrid(ofComponent.size()));
 	});
-	PoleSet poles = find(own, delta, progress.part(0.05, 1));
+	PoleSet poles = find(own, delta, progress.part(0.01, 1));
 	reportedLoop(count, progress.part(1, 1), "Measuring the surface", [&](int i) {
 		Point3d& centre = poles.centre[i];
 		centre = single ? frame.out(PrincipalFrame::rounded(centre))
@@ -85,8 +82,11 @@ PoleSet polesInShapeFrame(const SurfaceMesh& mesh, const std::vector<int>& verti
 /**
  * medialPoles() of some vertices: against all vertices of the mesh, in the order of `vertices`.
  * Shrinking balls are searched for these vertices only; the Voronoi diagram is always that of all.
+ * @param component of each vertex of the mesh, see connectedComponents().
+ * @param frames    of the vertices of each component, see PrincipalFrame::ofPoints().
  */
-inline PoleSet polesAt(const SurfaceMesh& mesh, const std::vector<int>& vertices, PoleMethod method,
+inline PoleSet polesAt(const SurfaceMesh& mesh, const std::vector<int>& component,
+	const std::vector<PrincipalFrame>& frames, const std::vector<int>& vertices, PoleMethod method,
 	const Progress& progress = Progress())
 {
 	const auto find = [&](const SurfaceMesh& own, const std::vector<double>& delta,
@@ -101,7 +101,19 @@ inline PoleSet polesAt(const SurfaceMesh& mesh, const std::vector<int>& vertices
 		}
 		return poles;
 	};
-	return detail::polesInShapeFrame(mesh, vertices, progress, find);
+	return detail::polesInShapeFrame(mesh, component, frames, vertices, progress, find);
+}
+
+/// The same where components and frames are not known yet.
+inline PoleSet polesAt(const SurfaceMesh& mesh, const std::vector<int>& vertices, PoleMethod method,
+	const Progress& progress = Progress())
+{
+	int components = 0;
+	const std::vector<int> component =
+		connectedComponents(mesh, &components, progress.part(0, 0.02));
+	const std::vector<PrincipalFrame> frames = PrincipalFrame::ofPoints(
+		mesh.position, component, size_t(components), progress.part(0.02, 0.04));
+	return polesAt(mesh, component, frames, vertices, method, progress.part(0.04, 1));
 }
 
 /**

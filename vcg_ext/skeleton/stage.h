@@ -53,7 +53,7 @@ struct Stage
 
 	/// The surface's vertices, shared by all stages.
 	std::shared_ptr<const std::vector<Point3d>> surface;
-	/// The frames of the surface's components once StageFrames has found them, shared likewise.
+	/// The frames of the surface's components once they are known, shared likewise: see StageFrames.
 	std::shared_ptr<const std::vector<PrincipalFrame>> frames;
 	/// The correspondence: for each surface vertex the vertex of this stage it has merged into.
 	std::vector<int> node;
