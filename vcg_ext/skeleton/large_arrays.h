@@ -14,40 +14,22 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdint>
 #include <cstdlib>
 #include <vector>
-
-#ifdef __linux__
-#include <sys/mman.h>
-#endif
 
 namespace vcg::tri::mcf::detail {
 
 /**
  * Lets the allocator keep what is freed between two steps for the next one, which needs as much, rather than
- * give it back to the system and fault it in anew, page by page; and asks for large pages there, of which
- * there are few to fault in.
+ * give it back to the system and fault it in anew, page by page.
  *
  * glibc's malloc keeps twice the largest block that was freed so far, up to 64 MB; so a block of nearly half of
- * that is taken and freed, of which nothing is touched. The next one like it is at the end of the heap, where
- * what follows will be. Elsewhere it has no effect.
+ * that is taken and freed, of which nothing is touched. Elsewhere it has no effect.
  */
 inline void keepFreedMemory()
 {
-	constexpr size_t size = 31 << 20;
-	void* volatile block = std::malloc(size); // volatile: else compilers leave both calls out
+	void* volatile block = std::malloc(31 << 20); // volatile: else compilers leave both calls out
 	std::free(block);
-#ifdef __linux__
-	block = std::malloc(size);
-	if (block) {
-		constexpr std::uintptr_t page = 4096; // where there are larger ones the advice is refused
-		const std::uintptr_t start = std::uintptr_t(static_cast<void*>(block));
-		const std::uintptr_t first = (start + page - 1) / page * page;
-		madvise(reinterpret_cast<void*>(first), start + size - first, MADV_HUGEPAGE);
-	}
-	std::free(block);
-#endif
 }
 
 /// How many elements of a large array are made between two reports: 4 MB.
