@@ -24,8 +24,8 @@ KeptStages::~KeptStages()
 	if (!teller.joinable())
 		return;
 	{
-		const std::lock_guard<std::mutex> lock(
-			mutex); // or the thread might miss it before it waits
+		// Without the lock the thread might miss it just before it waits.
+		const std::lock_guard<std::mutex> lock(mutex);
 		givenUp = true;
 	}
 	changed.notify_one();
