@@ -49,8 +49,8 @@ inline std::vector<Point3d> solveBiharmonic(const SymmetricRows& M, const std::v
 			largest = std::max(largest, std::abs(bi[k]));
 	if (largest == 0)
 		return x;
-	// From 4e-3 to 7e-3 all take about as long and are as good on average, but single tips of large bodies come
-	// and go with the last bits: see docs/quality.md.
+	// From 4e-3 to 5.7e-3 all are as good on average, but single tips of large bodies come and go with the last
+	// bits: see docs/quality.md.
 	constexpr float dropTolerance = 5.28e-3f;
 	std::vector<float> rootD(n);
 	for (int i = 0; i < n; ++i)

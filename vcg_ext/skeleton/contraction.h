@@ -99,7 +99,7 @@ inline void contract(
 		}
 	});
 	for (int i = 0; i < n; ++i)
-		M.start[i + 1] = M.start[i] + SymmetricRows::filledUp(M.start[i + 1]);
+		M.start[i + 1] = M.start[i] + filledUp(M.start[i + 1], SymmetricRows::Group);
 	progress.report(0.1, "Contracting");
 
 	// M is w_L L restricted to the unknowns. With x = v + y, y the unknown move, Eq. 6 becomes

@@ -192,9 +192,7 @@ inline Stage firstStage(const SurfaceMesh& surface, const Parameters& parameters
 		else {
 			const std::vector<int> component =
 				componentOfSurfaceVertices(stage, part.part(0, 0.01));
-			stage.frames =
-				std::make_shared<const std::vector<PrincipalFrame>>(PrincipalFrame::ofPoints(
-					surface.position, component, stage.diagonal.size(), part.part(0.01, 0.02)));
+			stage.findFrames(surface.position, component, part.part(0.01, 0.02));
 			found = polesAt(surface, component, *stage.frames, ownOf, parameters.poleMethod,
 				part.part(0.02, 1));
 		}

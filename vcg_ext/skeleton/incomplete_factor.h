@@ -132,7 +132,7 @@ public:
 				entries[e].value *= inverseDiagonal[k];
 				rows[entries[e].index].pivot -= value * entries[e].value;
 			}
-			start[k + 1] = first + (end - first + Group - 1) / Group * Group;
+			start[k + 1] = first + filledUp(end - first, Group);
 			for (int e = end; e < start[k + 1]; ++e)
 				entries[e] = {k, 0};
 			columns[k] = {first, end, -1, compensated};

@@ -65,6 +65,15 @@ struct Stage
 	/// Whether the area has stopped changing: no volume is left.
 	bool converged = false;
 
+	/// Finds the frames. @param points the surface's. @param component of each of them.
+	/// @throws Cancelled. Complexity: O(#points).
+	void findFrames(const std::vector<Point3d>& points, const std::vector<int>& component,
+		const Progress& progress)
+	{
+		frames = std::make_shared<const std::vector<PrincipalFrame>>(
+			PrincipalFrame::ofPoints(points, component, diagonal.size(), progress));
+	}
+
 	double areaFraction() const { return sum(area) / sum(initialArea); }
 	double volumeFraction() const { return volume / initialVolume; }
 	double fixedFraction() const

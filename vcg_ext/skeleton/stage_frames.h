@@ -32,12 +32,9 @@ public:
 	/// @throws Cancelled. Complexity: O(V), V the vertices of the surface, the first time.
 	explicit StageFrames(Stage& stage, const Progress& progress = Progress())
 	{
-		if (!stage.frames) {
-			stage.frames =
-				std::make_shared<const std::vector<PrincipalFrame>>(PrincipalFrame::ofPoints(
-					*stage.surface, componentOfSurfaceVertices(stage, progress.part(0, 0.2)),
-					stage.diagonal.size(), progress.part(0.2, 1)));
-		}
+		if (!stage.frames)
+			stage.findFrames(*stage.surface,
+				componentOfSurfaceVertices(stage, progress.part(0, 0.2)), progress.part(0.2, 1));
 		frames = stage.frames;
 	}
 

@@ -23,6 +23,12 @@ struct SparseEntry
 	float value = 0;
 };
 
+/// How many entries a row or column of `count` takes up if it is filled up to groups.
+constexpr int filledUp(int count, int group)
+{
+	return (count + group - 1) / group * group;
+}
+
 /**
  * A symmetric sparse matrix by rows, as the flow's solver wants it: a Laplacian, and something on its diagonal,
  *
@@ -44,13 +50,10 @@ struct SymmetricRows
 	/// lengths are foretold more often.
 	static constexpr int Group = 3;
 
-	/// How many entries a row of `count` takes up.
-	static int filledUp(int count) { return (count + Group - 1) / Group * Group; }
-
 	/// Fills up the row that the last entries belong to.
 	void endRow()
 	{
-		entries.resize(size_t(filledUp(int(entries.size()))));
+		entries.resize(size_t(filledUp(int(entries.size()), Group)));
 		start.push_back(int(entries.size()));
 	}
 
