@@ -219,6 +219,33 @@ TEST(SurfaceMesh, CollapsibleMeansLinkCondition)
 	}
 }
 
+TEST(SurfaceMesh, CollapsesWhatIsCollapsibleAndShowsTheMergedRing)
+{
+	std::mt19937 random(4);
+	SurfaceMesh mesh = shapes::withTunnels(shapes::sphere(2), 3, random).mesh();
+	int collapsed = 0, blocked = 0;
+	for (int i = 0; i < 2000; ++i) {
+		shapes::changeAtRandom(mesh, 1, random);
+		const int h = int(random() % size_t(mesh.halfEdgeSlots()));
+		if (!mesh.isHalfEdge(h))
+			continue;
+		const bool isCollapsible = mesh.isCollapsible(h);
+		const int a = mesh.origin(h), b = mesh.target(h), vertices = mesh.vertexCount();
+		std::multiset<int> visited, ring;
+		ASSERT_EQ(mesh.collapseIfPossible(h, [&](int e) { visited.insert(e); }), isCollapsible);
+		ASSERT_EQ(mesh.vertexCount(), vertices - isCollapsible);
+		ASSERT_EQ(mesh.isVertex(a), !isCollapsible);
+		ASSERT_EQ(structureError(mesh), "");
+		if (isCollapsible)
+			mesh.forEachOutgoing(b, [&](int e) { ring.insert(e); });
+		ASSERT_EQ(visited, ring);
+		++(isCollapsible ? collapsed : blocked);
+	}
+	EXPECT_GT(collapsed, 100);
+	EXPECT_GT(blocked, 20);
+	EXPECT_EQ(mesh.eulerCharacteristic(), 2 - 2 * 3);
+}
+
 TEST(SurfaceMesh, PinchVertexClosesALoopWithoutATriangle)
 {
 	const SurfaceMesh mesh = shapes::torus(1, 0.3, 8, 3).mesh(); // the tube is a prism
@@ -231,19 +258,17 @@ TEST(SurfaceMesh, PinchVertexClosesALoopWithoutATriangle)
 TEST(SurfaceMesh, TheSmallestMeshesCannotBeCollapsed)
 {
 	const SurfaceMesh tetrahedron = shapes::tetrahedron().mesh();
-	for (int h = 0; h < tetrahedron.halfEdgeSlots(); ++h) {
-		EXPECT_TRUE(tetrahedron.isTetrahedron(h));
+	for (int h = 0; h < tetrahedron.halfEdgeSlots(); ++h)
 		EXPECT_FALSE(tetrahedron.isCollapsible(h));
-	}
 	// Two triangles back to back.
 	const SurfaceMesh pillow({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 1}});
 	for (int h = 0; h < pillow.halfEdgeSlots(); ++h) {
-		EXPECT_TRUE(pillow.isTetrahedron(h));
+		EXPECT_FALSE(pillow.isCollapsible(h));
 		EXPECT_FALSE(pillow.isFlippable(h));
 	}
 	const SurfaceMesh octahedron = shapes::octahedron().mesh();
 	for (int h = 0; h < octahedron.halfEdgeSlots(); ++h)
-		EXPECT_FALSE(octahedron.isTetrahedron(h));
+		EXPECT_TRUE(octahedron.isCollapsible(h));
 }
 
 TEST(SurfaceMesh, CollapsingAllOfASphereEndsAtATetrahedron)
@@ -334,7 +359,7 @@ TEST(SurfaceMesh, RandomCutsRaiseTheEulerCharacteristicEach)
 	for (int i = 0; i < 20000 && cuts < 200; ++i) {
 		shapes::changeAtRandom(mesh, 3, random);
 		const int h = int(random() % size_t(mesh.halfEdgeSlots()));
-		if (!mesh.isHalfEdge(h) || mesh.isTetrahedron(h))
+		if (!mesh.isHalfEdge(h))
 			continue;
 		const int c = mesh.pinchVertex(h);
 		if (c < 0)
@@ -398,7 +423,7 @@ TEST(SurfaceMesh, APillowIsAComponentOfItsOwn)
 	for (int k = 0; k < 3; ++k) {
 		EXPECT_EQ(mesh.position[made[k]], corners[k]);
 		EXPECT_EQ(mesh.valence(made[k]), 2);
-		EXPECT_TRUE(mesh.isTetrahedron(mesh.findHalfEdge(made[k], made[(k + 1) % 3])));
+		EXPECT_FALSE(mesh.isCollapsible(mesh.findHalfEdge(made[k], made[(k + 1) % 3])));
 	}
 	int components = 0;
 	connectedComponents(mesh, &components);

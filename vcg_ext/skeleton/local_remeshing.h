@@ -192,27 +192,26 @@ inline std::vector<int> collapseShortEdges(
 			const int a = mesh.origin(h), b = mesh.target(h);
 			if (stage.fixed[a] && stage.fixed[b])
 				continue;
-			if (!mesh.isCollapsible(h)) {
-				blocked.push_back(h);
-				continue;
-			}
 			const Point3d merged = stage.fixed[a] ? mesh.position[a]
 				: stage.fixed[b]                  ? mesh.position[b]
 								 : Point3d((mesh.position[a] + mesh.position[b]) / 2.0);
-			mesh.collapse(h);
-			mesh.position[b] = merged;
-			forest.merge(a, b);
-			detail::mergeVertexState(stage, a, b);
-			changed[b] = 1;
 			const double limit = squaredLimit[stage.component[b]];
-			const bool isFixed = stage.fixed[b];
-			mesh.forEachOutgoing(b, [&](int e) {
+			const bool isFixed = stage.fixed[a] || stage.fixed[b];
+			const bool isCollapsed = mesh.collapseIfPossible(h, [&](int e) {
 				const int c = mesh.target(e);
 				changed[c] = 1;
 				const double newSquaredLength = SquaredDistance(merged, mesh.position[c]);
 				if (newSquaredLength < limit && !(isFixed && stage.fixed[c]))
 					fresh.emplace(newSquaredLength, std::min(e, mesh.twin(e)));
 			});
+			if (!isCollapsed) {
+				blocked.push_back(h);
+				continue;
+			}
+			mesh.position[b] = merged;
+			forest.merge(a, b);
+			detail::mergeVertexState(stage, a, b);
+			changed[b] = 1;
 		}
 		sorted.clear();
 	};

@@ -265,9 +265,7 @@ public:
 
 	/**
 	 * A vertex c that is a neighbour of both ends of h though neither triangle at h has it, so that
-	 * collapsing h would pinch the surface; -1 if there is none and collapse(h) keeps the topology
-	 * (link condition: lk(a) n lk(b) = lk(ab)). Of several, the first in the ring of target(h).
-	 * A tetrahedron has none but cannot be collapsed either: see isTetrahedron().
+	 * collapsing h would pinch the surface; -1 if there is none (link condition: lk(a) n lk(b) = lk(ab)). Of several, the first in the ring of target(h).
 	 */
 	int pinchVertex(int h) const
 	{
@@ -284,14 +282,39 @@ public:
 		return pinch;
 	}
 
-	/// Whether h belongs to a tetrahedron, or to two triangles back to back: the smallest closed meshes.
-	bool isTetrahedron(int h) const
+	/**
+	 * Whether collapse(h) keeps the topology: there is no pinchVertex(), and h is of none of the smallest closed
+	 * meshes, a tetrahedron or two triangles back to back.
+	 */
+	bool isCollapsible(int h) const
 	{
-		const int c = apex(h), d = apex(twins[h]);
-		return c == d || (hasValenceThree(h) && hasValenceThree(twins[h]));
+		const int t = twins[h];
+		if (apex(h) == apex(t))
+			return false;
+		// Of either ring, clockwise, the first two half-edges go with the triangles; the last one leads to an
+		// apex. Both at a time: each step of a walk waits for the one before.
+		int ofOrigin = rotated(rotated(h)), ofTarget = rotated(rotated(t));
+		ringOfOrigin.clear();
+		ringOfTarget.clear();
+		for (; ofOrigin != h && ofTarget != t;
+			 ofOrigin = rotated(ofOrigin), ofTarget = rotated(ofTarget)) {
+			ringOfOrigin.push_back(ofOrigin);
+			ringOfTarget.push_back(ofTarget);
+		}
+		for (; ofOrigin != h; ofOrigin = rotated(ofOrigin))
+			ringOfOrigin.push_back(ofOrigin);
+		for (; ofTarget != t; ofTarget = rotated(ofTarget))
+			ringOfTarget.push_back(ofTarget);
+		if (ringOfOrigin.size() == 1 && ringOfTarget.size() == 1)
+			return false; // a tetrahedron
+		const int stamp = nextStamp();
+		for (size_t i = 0; i + 1 < ringOfOrigin.size(); ++i)
+			stamps[target(ringOfOrigin[i])] = stamp;
+		bool isAnyShared = false;
+		for (size_t i = 0; i + 1 < ringOfTarget.size(); ++i)
+			isAnyShared |= stamps[target(ringOfTarget[i])] == stamp;
+		return !isAnyShared;
 	}
-
-	bool isCollapsible(int h) const { return !isTetrahedron(h) && pinchVertex(h) < 0; }
 
 	/**
 	 * Merges origin(h) into target(h): two triangles and origin(h) disappear.
@@ -299,21 +322,31 @@ public:
 	 */
 	void collapse(int h)
 	{
-		const int t = twins[h];
 		const int a = origin(h), b = target(h);
-		const int c = apex(h), d = apex(t);
 		forEachOutgoing(a, [&](int e) { origins[e] = b; });
-		const int cb = twins[next(h)], bc = twins[previous(h)];
-		const int da = twins[next(t)], bd = twins[previous(t)];
-		join(cb, bc);
-		join(da, bd);
-		removeFace(h / 3);
-		removeFace(t / 3);
-		outgoings[a] = -1;
-		--liveVertices;
-		outgoings[b] = bc;
-		outgoings[c] = cb;
-		outgoings[d] = da;
+		closeGap(h, a, b);
+	}
+
+	/**
+	 * collapse(h) if isCollapsible(h), which saves walks round both ends.
+	 * @param visit (half-edge): called for each half-edge out of the merged vertex, in no particular order;
+	 *              must not change the mesh.
+	 * @return whether h was collapsed.
+	 */
+	template <class Visitor>
+	bool collapseIfPossible(int h, Visitor&& visit)
+	{
+		if (!isCollapsible(h))
+			return false;
+		const int a = origin(h), b = target(h);
+		for (int e : ringOfOrigin)
+			origins[e] = b;
+		closeGap(h, a, b);
+		for (int e : ringOfOrigin)
+			visit(e);
+		for (int e : ringOfTarget)
+			visit(e);
+		return true;
 	}
 
 	/**
@@ -589,14 +622,31 @@ private:
 	mutable std::vector<int> stamps;
 	mutable int stampClock = 0;
 	std::vector<int> ringScratch;
-
-	/// Whether its origin has three neighbours. @pre it has two at least.
-	bool hasValenceThree(int h) const { return rotated(rotated(rotated(h))) == h; }
+	/// Of the last edge that was tested: the half-edges out of both ends that a collapse would leave.
+	mutable std::vector<int> ringOfOrigin, ringOfTarget;
 
 	void join(int h, int t)
 	{
 		twins[h] = t;
 		twins[t] = h;
+	}
+
+	/// Ends a collapse of h, which merged a into b: takes its triangles out and joins their neighbours.
+	void closeGap(int h, int a, int b)
+	{
+		const int t = twins[h];
+		const int c = apex(h), d = apex(t);
+		const int cb = twins[next(h)], bc = twins[previous(h)];
+		const int da = twins[next(t)], bd = twins[previous(t)];
+		join(cb, bc);
+		join(da, bd);
+		removeFace(h / 3);
+		removeFace(t / 3);
+		outgoings[a] = -1;
+		--liveVertices;
+		outgoings[b] = bc;
+		outgoings[c] = cb;
+		outgoings[d] = da;
 	}
 
 	int addFace(int a, int b, int c)
