@@ -4,6 +4,7 @@
 #include "linear_systems.h"
 #include "mesh_checks.h"
 #include "shapes.h"
+#include "threads.h"
 
 #include "skeleton/contraction.h"
 #include "skeleton/shrinking_balls.h"
@@ -111,6 +112,33 @@ double largestMove(const std::vector<Point3d>& a, const std::vector<Point3d>& b)
 }
 
 } // namespace
+
+TEST(Contraction, MovesAComponentAsItWouldAlone)
+{
+	const std::vector<shapes::Soup> soups = {shapes::torus(1, 0.3, 90, 30), shapes::tetrahedron(),
+		shapes::moved(shapes::torus(1, 0.4, 80, 40), {5, 0, 0}),
+		shapes::moved(shapes::capsule(), {0, 5, 0})};
+	shapes::Soup soup;
+	PoleSet poles;
+	std::vector<Point3d> expected;
+	for (const shapes::Soup& alone : soups) {
+		const SurfaceMesh mesh = alone.mesh();
+		const PoleSet own = shrinkingBallPoles(mesh);
+		soup = shapes::joined({soup, alone});
+		poles.centre.insert(poles.centre.end(), own.centre.begin(), own.centre.end());
+		poles.radius.insert(poles.radius.end(), own.radius.begin(), own.radius.end());
+		Stage stage = initialStage(mesh, own);
+		contract(stage, Parameters());
+		expected.insert(expected.end(), stage.mesh.position.begin(), stage.mesh.position.end());
+	}
+	const Stage start = initialStage(soup.mesh(), poles);
+	for (int threads : {1, 2, 5}) {
+		const ThreadCount limit(threads);
+		Stage stage = start;
+		contract(stage, Parameters());
+		EXPECT_EQ(stage.mesh.position, expected) << threads; // to the last bit
+	}
+}
 
 TEST(Contraction, MinimisesEquationSix)
 {

@@ -58,6 +58,19 @@ TEST(EliminationOrder, HasEachFreeVertexOnceTheLastOnesFirst)
 	}
 }
 
+TEST(EliminationOrder, HasTheComponentsOneAfterTheOther)
+{
+	const shapes::Soup torus = shapes::torus(1, 0.3, 20, 10);
+	shapes::Soup both = shapes::joined({torus, shapes::moved(torus, {5, 0, 0})});
+	const Stage stage = plainStage(shapes::shuffled(both).mesh());
+	ASSERT_EQ(stage.diagonal.size(), 2u);
+	std::vector<int> component;
+	for (int v : eliminationOrder(stage))
+		component.push_back(stage.component[v]);
+	EXPECT_EQ(component.size(), stage.fixed.size());
+	EXPECT_TRUE(std::is_sorted(component.begin(), component.end()));
+}
+
 TEST(EliminationOrder, WhatFollowsInItIsSeldomNextOnTheMesh)
 {
 	SurfaceMesh mesh = shapes::torus(1, 0.3, 60, 20).mesh();

@@ -3,6 +3,7 @@
 
 #include "mesh_checks.h"
 #include "shapes.h"
+#include "threads.h"
 
 #include "kept_stages.h"
 
@@ -16,14 +17,6 @@ using namespace mcfskel;
 using namespace vcg::tri::mcf;
 
 namespace {
-
-/// What sets the number of threads of this program's loops back.
-struct Threads
-{
-	const int before = omp_get_max_threads();
-	explicit Threads(int count) { omp_set_num_threads(count); }
-	~Threads() { omp_set_num_threads(before); }
-};
 
 KeptStages::StagePointer stageOf(const shapes::Soup& soup)
 {
@@ -40,7 +33,7 @@ std::vector<KeptStages::StagePointer> someStages()
 TEST(KeptStages, FieldsAreThoseOfTheStageOnAnyNumberOfThreads)
 {
 	for (const int count : {1, 2, 5}) {
-		const Threads threads(count);
+		const ThreadCount threads(count);
 		KeptStages kept;
 		for (const KeptStages::StagePointer& stage : someStages())
 			kept.add(stage);
@@ -57,7 +50,7 @@ TEST(KeptStages, FieldsAreThoseOfTheStageOnAnyNumberOfThreads)
 
 TEST(KeptStages, GoesWithFieldsThatNobodyHasTaken)
 {
-	const Threads threads(2);
+	const ThreadCount threads(2);
 	for (int i = 0; i < 20; ++i) {
 		KeptStages kept;
 		for (const KeptStages::StagePointer& stage : someStages())
@@ -67,7 +60,7 @@ TEST(KeptStages, GoesWithFieldsThatNobodyHasTaken)
 
 TEST(KeptStages, OnOneThreadTheUserCanCancel)
 {
-	const Threads threads(1);
+	const ThreadCount threads(1);
 	KeptStages kept;
 	kept.add(stageOf(shapes::sphere(3)));
 	EXPECT_THROW(kept.takeFields(0, Progress([](int, const char*) { return false; })), Cancelled);
@@ -76,7 +69,7 @@ TEST(KeptStages, OnOneThreadTheUserCanCancel)
 TEST(KeptStages, TheFlowLeavesACoreAndTakesItBack)
 {
 	for (const auto& [all, left] : {std::pair {1, 1}, {2, 1}, {5, 4}}) {
-		const Threads threads(all);
+		const ThreadCount threads(all);
 		{
 			const KeptStages::FlowShare share;
 			EXPECT_EQ(omp_get_max_threads(), left);

@@ -7,29 +7,17 @@
 #define VCG_MCF_CONTRACTION_H
 
 #include "biharmonic_solver.h"
-#include "cotangent_laplacian.h"
-#include "elimination_order.h"
+#include "flow_system.h"
+#include "parallel_blocks.h"
 #include "parameters.h"
 #include "progress.h"
 #include "stage.h"
-#include "symmetric_rows.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
 namespace vcg::tri::mcf {
-
-/**
- * The paper's weights belong to another normalisation of L than the dimensionless cotangents used
- * here: its (w_L, w_H, w_M) = (1, 20, 40) is (1, 0.1, 0.2) for them.
- */
-constexpr double publishedWeightUnit = 1.0 / 200;
-
-/// The medial weight, squared, of vertices that are to become sheets: strong enough to bring both walls
-/// together before the smoothing has pulled the rim in.
-constexpr double sheetWeight2 = 4;
 
 namespace detail {
 
@@ -54,6 +42,8 @@ inline double solverTolerance(const Parameters& parameters)
  * blow the surface up again. Vertices of sheets (Stage::sheet) have a weight of their own and keep it.
  *
  * Weights are squared (Eq. 5 does, Eq. 6 does not; the published values belong to the square).
+ * Components are solved by themselves, several at once where there are threads: each moves as it would alone,
+ * to the last bit.
  * @pre stage.mesh is compact.
  * @throws SolverError if the system breaks down or a position stops being finite; Cancelled.
  * Complexity: that of one sparse factorisation, about O(V log V) on a surface mesh.
@@ -62,98 +52,31 @@ inline void contract(
 	Stage& stage, const Parameters& parameters, const Progress& progress = Progress())
 {
 	SurfaceMesh& mesh = stage.mesh;
-	const double wL = parameters.wL;
-	const double wH2 = std::pow(parameters.wH * publishedWeightUnit, 2);
-	const double wM2 = std::pow(parameters.wM * publishedWeightUnit, 2);
-
-	progress.report(0, "Contracting");
-	const std::vector<int> vertexOfUnknown = eliminationOrder(stage);
-	const int n = int(vertexOfUnknown.size());
-	std::vector<int> unknown(mesh.vertexSlots(), -1);
-	for (int i = 0; i < n; ++i)
-		unknown[vertexOfUnknown[i]] = i;
-	progress.report(0, "Contracting");
-	// Of triangles that can still move: the cotangents, the area-weighted normals of the vertices, and
-	// how many entries the rows of M will have.
-	SymmetricRows M;
-	M.excess.resize(n);
-	M.diagonal.resize(n);
-	M.start.assign(n + 1, 0);
-	std::vector<float> cotangent(mesh.halfEdgeSlots());
-	std::vector<Point3d> normal(mesh.vertexSlots(), Point3d(0, 0, 0));
-	const auto forEachMoving = [&](auto&& visit) {
-		for (int f = 0; f < mesh.faceSlots(); ++f) {
-			const Triangle t = mesh.triangle(f);
-			const std::array<int, 3> row = {unknown[t[0]], unknown[t[1]], unknown[t[2]]};
-			if (std::max({row[0], row[1], row[2]}) >= 0)
-				visit(f, t, row);
+	const FlowSystem all = flowSystem(stage, parameters, progress.part(0, 0.2));
+	const auto solve = [&](const FlowSystem& system, const Progress& part) {
+		const std::vector<Point3d> move = solveBiharmonic(
+			system.M, system.D, system.b, detail::solverTolerance(parameters), part);
+		for (size_t i = 0; i < move.size(); ++i) {
+			const Point3d p = mesh.position[system.vertex[i]] + move[i];
+			if (!(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])))
+				throw SolverError(
+					"The contraction left the range of numbers: the mesh has degenerate "
+					"triangles. Resample it first.");
+			mesh.position[system.vertex[i]] = p;
 		}
 	};
-	forEachMoving([&](int f, const Triangle& t, const std::array<int, 3>& row) {
-		const TriangleMeasures measures = measureTriangle(mesh, f);
-		for (int k = 0; k < 3; ++k) {
-			cotangent[3 * f + k] = float(measures.cotangent[k]);
-			normal[t[k]] += measures.areaVector;
-			if (row[k] >= 0 && row[(k + 1) % 3] >= 0)
-				++M.start[row[k] + 1];
-		}
-	});
-	for (int i = 0; i < n; ++i)
-		M.start[i + 1] = M.start[i] + filledUp(M.start[i + 1], SymmetricRows::Group);
-	progress.report(0.1, "Contracting");
-
-	// M is w_L L restricted to the unknowns. With x = v + y, y the unknown move, Eq. 6 becomes
-	//     (M^2 + D) y = w_M^2 (mu - v) - M (w_L L v),
-	// where fixed neighbours count in L v: differences only, so that far from the origin no digits are
-	// lost. Triangle by triangle, since a walk round each vertex waits for every step.
-	M.entries.resize(M.start[n]);
-	std::vector<int> end(M.start.begin(), M.start.end() - 1);
-	std::vector<double> toFree(n, 0), toFixed(n, 0); // sums of the weights of a row
-	std::vector<Point3d> curvature(mesh.vertexSlots(), Point3d(0, 0, 0)); // w_L L v
-	forEachMoving([&](int f, const Triangle& t, const std::array<int, 3>& row) {
-		for (int k = 0; k < 3; ++k) {
-			const int i = row[k], j = row[(k + 1) % 3], h = 3 * f + k;
-			if (i < 0)
-				continue;
-			const int v = t[k], to = t[(k + 1) % 3];
-			const double w = wL * cotangentWeight(cotangent[h], cotangent[mesh.twin(h)]);
-			(j >= 0 ? toFree : toFixed)[i] += w;
-			curvature[v] += (mesh.position[v] - mesh.position[to]) * w;
-			if (j >= 0)
-				M.entries[end[i]++] = {j, float(-w)};
-		}
-	});
-	std::vector<float> D(n);
-	FloatQuads Lv(n);
-	std::vector<Point3d> b(n);
-	for (int i = 0; i < n; ++i) {
-		const int v = vertexOfUnknown[i];
-		M.excess[i] = float(toFixed[i]);
-		M.diagonal[i] = float(toFixed[i] + toFree[i]);
-		Lv[i] =
-			FloatQuad(float(curvature[v][0]), float(curvature[v][1]), float(curvature[v][2]), 0.f);
-		D[i] = float(wH2);
-		b[i] = Point3d(0, 0, 0);
-		const bool sheet = stage.sheet[v];
-		const Point3d toPole = stage.pole[v] - mesh.position[v];
-		if (stage.poleRadius[v] >= 0 && (sheet || toPole * normal[v] <= 0)) {
-			const double weight2 = sheet ? sheetWeight2 : wM2;
-			D[i] = float(wH2 + weight2);
-			b[i] = toPole * weight2;
-		}
-	}
-	M.forEachProduct(
-		Lv, [&](int i, const FloatQuad& sum) { b[i] -= Point3d(sum[0], sum[1], sum[2]); });
-	progress.report(0.2, "Contracting");
-	const std::vector<Point3d> move =
-		solveBiharmonic(M, D, b, detail::solverTolerance(parameters), progress.part(0.2, 1));
-	for (int i = 0; i < n; ++i) {
-		const Point3d p = mesh.position[vertexOfUnknown[i]] + move[i];
-		if (!(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])))
-			throw SolverError("The contraction left the range of numbers: the mesh has degenerate "
-							  "triangles. Resample it first.");
-		mesh.position[vertexOfUnknown[i]] = p;
-	}
+	std::vector<int> start = {0};
+	const int n = int(all.vertex.size());
+	for (int i = 1; i < n; ++i)
+		if (stage.component[all.vertex[i]] != stage.component[all.vertex[i - 1]])
+			start.push_back(i);
+	start.push_back(n);
+	const Progress solving = progress.part(0.2, 1);
+	if (start.size() == 2)
+		solve(all, solving);
+	else
+		forEachPart(start, solving, "Contracting",
+			[&](int begin, int end, const Progress& part) { solve(all.part(begin, end), part); });
 	progress.report(1, "Contracting");
 }
 

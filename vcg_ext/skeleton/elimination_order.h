@@ -15,8 +15,8 @@
 namespace vcg::tri::mcf {
 
 /**
- * The free vertices of a stage in the order in which to eliminate them: from the last to the first, but of
- * 40 at a time the first and the second half by turns.
+ * The free vertices of a stage in the order in which to eliminate them: component by component, from the last
+ * to the first, but of 40 at a time the first and the second half by turns.
  *
  * Where the mesh is numbered breadth first, from the last to the first is the order of Cuthill and McKee,
  * reversed (George and Liu, "Computer Solution of Large Sparse Positive Definite Systems", 1981). A full
@@ -31,23 +31,26 @@ namespace vcg::tri::mcf {
  */
 inline std::vector<int> eliminationOrder(const Stage& stage)
 {
-	std::vector<int> lastFirst;
-	lastFirst.reserve(stage.mesh.vertexSlots());
+	std::vector<std::vector<int>> ofComponent(stage.diagonal.size());
+	size_t count = 0;
 	for (int v = stage.mesh.vertexSlots() - 1; v >= 0; --v)
-		if (!stage.fixed[v])
-			lastFirst.push_back(v);
+		if (!stage.fixed[v]) {
+			ofComponent[stage.component[v]].push_back(v);
+			++count;
+		}
 	constexpr size_t half = 20;
 	std::vector<int> order;
-	order.reserve(lastFirst.size());
-	for (size_t first = 0; first < lastFirst.size(); first += 2 * half) {
-		const size_t end = std::min(first + 2 * half, lastFirst.size());
-		const size_t middle = std::min(first + half, end);
-		for (size_t i = first; i < middle; ++i) {
-			order.push_back(lastFirst[i]);
-			if (i + half < end)
-				order.push_back(lastFirst[i + half]);
+	order.reserve(count);
+	for (const std::vector<int>& lastFirst : ofComponent)
+		for (size_t first = 0; first < lastFirst.size(); first += 2 * half) {
+			const size_t end = std::min(first + 2 * half, lastFirst.size());
+			const size_t middle = std::min(first + half, end);
+			for (size_t i = first; i < middle; ++i) {
+				order.push_back(lastFirst[i]);
+				if (i + half < end)
+					order.push_back(lastFirst[i + half]);
+			}
 		}
-	}
 	return order;
 }
 

@@ -9,6 +9,15 @@
 #include "progress.h"
 
 #include <algorithm>
+#include <atomic>
+#include <exception>
+#include <numeric>
+#include <thread>
+#include <vector>
+
+#ifdef _OPENMP
+#include <omp.h>
+#endif
 
 namespace vcg::tri::mcf {
 
@@ -37,6 +46,74 @@ void forEachBlock(int count, const Progress& progress, const char* what, const B
 			body(block * blockSize, std::min((block + 1) * blockSize, count));
 		progress.report(double(last) / blocks, what);
 	}
+}
+
+/**
+ * Calls body(begin, end, progress) for the parts [start[i], start[i + 1]) of a range, the largest ones first,
+ * several at once.
+ *
+ * The calling thread reports: in its own parts, and while it waits for the last ones of others, whose progress
+ * only tells them that the job is cancelled.
+ * @param start of each part, rising, and the end of the last one.
+ * @throws what body throws for one of the parts; Cancelled.
+ */
+template <class Body>
+void forEachPart(
+	const std::vector<int>& start, const Progress& progress, const char* what, const Body& body)
+{
+	constexpr double leastForTeam = 1 << 12; // in less, the others hardly wake up
+	const int count = int(start.size()) - 1;
+	const auto size = [&](int part) { return start[part + 1] - start[part]; };
+	std::vector<int> order(count);
+	std::iota(order.begin(), order.end(), 0);
+	std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return size(a) > size(b); });
+	std::vector<double> before(1, 0); // how much of the range is done by then, in this order
+	for (int part : order)
+		before.push_back(before.back() + size(part));
+	std::atomic<int> next = 0, done = 0;
+	std::atomic<bool> stop = false;
+	std::vector<std::exception_ptr> errors(count + 1);
+	const auto guarded = [&](std::exception_ptr& error, const auto& call) {
+		try {
+			call();
+		}
+		catch (...) {
+			error = std::current_exception();
+			stop = true;
+		}
+	};
+	const auto work = [&](bool reports) {
+		const Progress silent([&](int, const char*) { return !stop; });
+		for (int i; !stop && (i = next++) < count; ++done)
+			guarded(errors[i], [&] {
+				const Progress window =
+					progress.part(before[i] / before.back(), before[i + 1] / before.back());
+				body(start[order[i]], start[order[i] + 1], reports ? window : silent);
+			});
+		constexpr int reportEvery = 1 << 10; // some hundred us
+		for (int i = 0; reports && !stop && done < count; ++i) {
+			if (i % reportEvery == 0)
+				guarded(errors[count], [&] { progress.report(1, what); });
+			std::this_thread::yield();
+		}
+	};
+#ifdef _OPENMP
+#pragma omp parallel if (before.back() >= leastForTeam)
+	work(omp_get_thread_num() == 0);
+#else
+	work(true);
+#endif
+	std::exception_ptr cancelled;
+	for (const std::exception_ptr& error : errors)
+		if (error)
+			try {
+				std::rethrow_exception(error);
+			}
+			catch (const Cancelled&) {
+				cancelled = error; // perhaps by an error in another part
+			}
+	if (cancelled)
+		std::rethrow_exception(cancelled);
 }
 
 } // namespace vcg::tri::mcf

@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <vector>
 
 namespace vcg::tri::mcf {
@@ -58,6 +59,19 @@ struct SymmetricRows
 	}
 
 	int size() const { return int(diagonal.size()); }
+
+	/// The rows from begin to end. @pre their entries are in these columns, but for those filled up.
+	SymmetricRows part(int begin, int end) const
+	{
+		SymmetricRows rows;
+		rows.excess.assign(excess.begin() + begin, excess.begin() + end);
+		rows.diagonal.assign(diagonal.begin() + begin, diagonal.begin() + end);
+		for (int i = begin; i <= end; ++i)
+			rows.start.push_back(start[i] - start[begin]);
+		for (int k = start[begin]; k < start[end]; ++k)
+			rows.entries.push_back({std::max(entries[k].index - begin, 0), entries[k].value});
+		return rows;
+	}
 
 	/// Calls visit(i, (A x)_i) for each row. Complexity: O(entries).
 	template <class Visitor>
