@@ -62,7 +62,7 @@ public:
 
 	/// How far [from, to] is from each box along the axis on which it is farthest; 0 or less where they
 	/// share a point.
-	void gaps(const float (&from)[3], const float (&to)[3], float (&result)[4]) const
+	Eigen::Array4f gaps(const float (&from)[3], const float (&to)[3]) const
 	{
 		using Four = Eigen::Array4f;
 		Four gap = Four::Constant(-std::numeric_limits<float>::infinity());
@@ -71,8 +71,7 @@ public:
 			const Four above = from[axis] - Eigen::Map<const Four>(high[axis]);
 			gap = gap.max(below.max(above));
 		}
-		Eigen::Map<Four> out(result);
-		out = gap;
+		return gap;
 	}
 
 private:

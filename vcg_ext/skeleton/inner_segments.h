@@ -7,6 +7,7 @@
 #define VCG_MCF_INNER_SEGMENTS_H
 
 #include "four_boxes.h"
+#include "four_values.h"
 #include "large_arrays.h"
 #include "point_tree.h"
 #include "progress.h"
@@ -191,12 +192,8 @@ private:
 		std::array<int, 4 * together> inside;
 		int found = 0;
 		for (int i = 0; i < count; ++i) {
-			float gaps[4];
-			levels[level][nodes[i]].gaps(query.from, query.to, gaps);
-			for (int k = 0; k < 4; ++k) { // without a branch, which could not be foretold
-				inside[found] = 4 * nodes[i] + k;
-				found += gaps[k] <= 0;
-			}
+			const Eigen::Array4f gaps = levels[level][nodes[i]].gaps(query.from, query.to);
+			found += writeWithin(gaps, 0, 4 * nodes[i], &inside[found]);
 		}
 		if (level == 0)
 			return std::any_of(inside.begin(), inside.begin() + found,

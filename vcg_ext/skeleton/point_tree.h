@@ -8,6 +8,7 @@
 
 #include "four_boxes.h"
 #include "four_slabs.h"
+#include "four_values.h"
 #include "progress.h"
 #include "ticker.h"
 
@@ -122,10 +123,9 @@ private:
 		FourSlabs slabs;
 
 		/// At most the squared distances from x to the points of each child.
-		void squaredDistances(const float (&x)[3], float (&result)[4]) const
+		Eigen::Array4f squaredDistances(const float (&x)[3]) const
 		{
-			Eigen::Map<Eigen::Array4f> out(result);
-			out = boxes.squaredDistances(x).max(slabs.distances(x).square());
+			return boxes.squaredDistances(x).max(slabs.distances(x).square());
 		}
 	};
 
@@ -192,12 +192,8 @@ private:
 		std::array<int, 4 * together> inside;
 		int found = 0;
 		for (int i = 0; i < count; ++i) {
-			float squaredDistance[4];
-			nodes[some[i]].squaredDistances(single.centre, squaredDistance);
-			for (int k = 3; k >= 0; --k) { // without a branch, which could not be foretold
-				inside[found] = 4 * some[i] + 1 + k;
-				found += squaredDistance[k] <= single.squaredReach;
-			}
+			const Eigen::Array4f distances = nodes[some[i]].squaredDistances(single.centre);
+			found += writeWithin(distances, single.squaredReach, 4 * some[i] + 1, &inside[found]);
 		}
 		for (int first = 0; first < found; first += together)
 			searchTogether(&inside[first], std::min(found - first, together), single, ball);
@@ -224,8 +220,8 @@ private:
 					single = toSingle(ball.centre(), ball.reach());
 				continue;
 			}
-			float squaredDistance[4];
-			nodes[place.node].squaredDistances(single.centre, squaredDistance);
+			const Eigen::Array4f squaredDistance =
+				nodes[place.node].squaredDistances(single.centre);
 			const int first = top;
 			for (int k = 0; k < 4; ++k) {
 				stack[top] = {4 * place.node + 1 + k, squaredDistance[k]};
@@ -244,28 +240,23 @@ private:
 	{
 		const int begin = leafStart[leaf - nodes.size()], end = leafStart[leaf - nodes.size() + 1];
 		using Four = Eigen::Array4f;
-		constexpr size_t groups = LeafSize / Lanes;
-		// The last group may hold points of the next leaf, which has its own turn.
-		Four squaredDistance[groups];
-		Four least = Four::Constant(std::numeric_limits<float>::infinity());
-		int count = 0;
-		for (int first = begin; first < end; first += Lanes, ++count) {
+		std::array<int, LeafSize + Lanes> inside; // from the last to the first
+		int found = 0;
+		for (int first = begin + (end - begin - 1) / Lanes * Lanes; first >= begin;
+			 first -= Lanes) {
 			Four sum = Four::Zero();
 			for (int axis = 0; axis < 3; ++axis)
 				sum += (Eigen::Map<const Four>(&coordinate[axis][first]) - single.centre[axis])
 						   .square();
-			squaredDistance[count] = sum;
-			least = least.min(sum);
+			found += writeWithin(sum, single.squaredReach, first, &inside[found]);
 		}
-		if (least.minCoeff() > single.squaredReach)
-			return false;
-		for (int group = 0; group < count; ++group) {
-			const int first = begin + Lanes * group, lanes = std::min(int(Lanes), end - first);
-			for (int k = 0; k < lanes; ++k)
-				if (squaredDistance[group][k] <= single.squaredReach)
-					ball.visit(first + k, sorted[first + k]);
-		}
-		return true;
+		// The last group may hold points of the next leaf, which has its own turn.
+		int beyond = 0;
+		while (beyond < found && inside[beyond] >= end)
+			++beyond;
+		for (int i = found - 1; i >= beyond; --i)
+			ball.visit(inside[i], sorted[inside[i]]);
+		return found > beyond;
 	}
 
 	/// A point on its way to its leaf, beside its id: fetched by the id, points would be far apart.
