@@ -54,7 +54,7 @@ void forEachBlock(int count, const Progress& progress, const char* what, const B
  *
  * The calling thread reports: in its own parts, and while it waits for the last ones of others, whose progress
  * only tells them that the job is cancelled.
- * @param start of each part, rising, and the end of the last one.
+ * @param start of each part, rising, and the end of the last one; not all parts are empty.
  * @throws what body throws for one of the parts; Cancelled.
  */
 template <class Body>
@@ -70,6 +70,7 @@ void forEachPart(
 	std::vector<double> before(1, 0); // how much of the range is done by then, in this order
 	for (int part : order)
 		before.push_back(before.back() + size(part));
+	const double total = before.back();
 	std::atomic<int> next = 0, done = 0;
 	std::atomic<bool> stop = false;
 	std::vector<std::exception_ptr> errors(count + 1);
@@ -86,8 +87,7 @@ void forEachPart(
 		const Progress silent([&](int, const char*) { return !stop; });
 		for (int i; !stop && (i = next++) < count; ++done)
 			guarded(errors[i], [&] {
-				const Progress window =
-					progress.part(before[i] / before.back(), before[i + 1] / before.back());
+				const Progress window = progress.part(before[i] / total, before[i + 1] / total);
 				body(start[order[i]], start[order[i] + 1], reports ? window : silent);
 			});
 		constexpr int reportEvery = 1 << 10; // some hundred us
@@ -98,7 +98,7 @@ void forEachPart(
 		}
 	};
 #ifdef _OPENMP
-#pragma omp parallel if (before.back() >= leastForTeam)
+#pragma omp parallel if (total >= leastForTeam)
 	work(omp_get_thread_num() == 0);
 #else
 	work(true);
