@@ -45,7 +45,8 @@ inline double solverTolerance(const Parameters& parameters)
  * Components are solved by themselves, several at once where there are threads: each moves as it would alone,
  * to the last bit.
  * @pre stage.mesh is compact.
- * @throws SolverError if the system breaks down or a position stops being finite; Cancelled.
+ * @throws SolverError if the system breaks down or a position stops being finite; Cancelled. Some components
+ *         may have moved by then: the stage is good for nothing.
  * Complexity: that of one sparse factorisation, about O(V log V) on a surface mesh.
  */
 inline void contract(

@@ -265,7 +265,8 @@ public:
 
 	/**
 	 * A vertex c that is a neighbour of both ends of h though neither triangle at h has it, so that
-	 * collapsing h would pinch the surface; -1 if there is none (link condition: lk(a) n lk(b) = lk(ab)). Of several, the first in the ring of target(h).
+	 * collapsing h would pinch the surface; -1 if there is none (link condition: lk(a) n lk(b) = lk(ab)).
+	 * Of several, the first in the ring of target(h).
 	 */
 	int pinchVertex(int h) const
 	{
