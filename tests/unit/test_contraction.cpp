@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -137,6 +138,34 @@ TEST(Contraction, MovesAComponentAsItWouldAlone)
 		Stage stage = start;
 		contract(stage, Parameters());
 		EXPECT_EQ(stage.mesh.position, expected) << threads; // to the last bit
+	}
+}
+
+TEST(Contraction, LargeSystemsAreTheSameOnAnyNumberOfThreads)
+{
+	const SurfaceMesh mesh = shapes::jittered(shapes::torus(1, 0.3, 220, 100), 0.002).mesh();
+	Stage stage = initialStage(mesh, shrinkingBallPoles(mesh));
+	for (size_t v = 0; v < stage.fixed.size(); v += 7)
+		stage.fixed[v] = 1;
+	const auto systemOn = [&](int threads) {
+		const ThreadCount limit(threads);
+		return flowSystem(stage, Parameters());
+	};
+	const FlowSystem one = systemOn(1);
+	ASSERT_GT(one.vertex.size(), 1u << 14); // as many as several threads share
+	for (int threads : {2, 5}) {
+		const FlowSystem several = systemOn(threads);
+		EXPECT_EQ(several.vertex, one.vertex);
+		EXPECT_EQ(several.M.start, one.M.start);
+		EXPECT_EQ(several.M.excess, one.M.excess);
+		EXPECT_EQ(several.M.diagonal, one.M.diagonal);
+		EXPECT_EQ(several.D, one.D);
+		EXPECT_EQ(several.b, one.b);
+		const auto isSame = [](const SparseEntry& x, const SparseEntry& y) {
+			return x.index == y.index && x.value == y.value;
+		};
+		EXPECT_TRUE(std::equal(several.M.entries.begin(), several.M.entries.end(),
+			one.M.entries.begin(), one.M.entries.end(), isSame));
 	}
 }
 

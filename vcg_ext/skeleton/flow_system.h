@@ -8,6 +8,7 @@
 
 #include "cotangent_laplacian.h"
 #include "elimination_order.h"
+#include "parallel_blocks.h"
 #include "parameters.h"
 #include "progress.h"
 #include "stage.h"
@@ -87,44 +88,61 @@ inline FlowSystem flowSystem(
 	M.start.assign(n + 1, 0);
 	std::vector<float> cotangent(mesh.halfEdgeSlots());
 	std::vector<Point3d> normal(mesh.vertexSlots(), Point3d(0, 0, 0));
-	const auto forEachMoving = [&](auto&& visit) {
+	// Rows are made triangle by triangle, since a walk round each vertex waits for every step. Where they are many,
+	// each thread makes a range of them, and looks for their triangles in the whole mesh.
+	constexpr int leastForTeam = 1 << 14;
+	const std::vector<int> ranges = rangesForThreads(n, leastForTeam);
+	const auto onAllCores = [&](const Progress& part, const auto& make) {
+		if (ranges.size() == 2)
+			make([](int row) { return row >= 0; });
+		else
+			forEachPart(ranges, part, "Contracting", [&](int begin, int end, const Progress&) {
+				make([begin, end](int row) { return row >= begin && row < end; });
+			});
+	};
+	const auto forEachTriangle = [&](const auto& isMine, auto&& visit) {
 		for (int f = 0; f < mesh.faceSlots(); ++f) {
 			const Triangle t = mesh.triangle(f);
 			const std::array<int, 3> row = {unknown[t[0]], unknown[t[1]], unknown[t[2]]};
-			if (std::max({row[0], row[1], row[2]}) >= 0)
+			if (isMine(row[0]) || isMine(row[1]) || isMine(row[2]))
 				visit(f, t, row);
 		}
 	};
-	forEachMoving([&](int f, const Triangle& t, const std::array<int, 3>& row) {
-		const TriangleMeasures measures = measureTriangle(mesh, f);
-		for (int k = 0; k < 3; ++k) {
-			cotangent[3 * f + k] = float(measures.cotangent[k]);
-			normal[t[k]] += measures.areaVector;
-			if (row[k] >= 0 && row[(k + 1) % 3] >= 0)
-				++M.start[row[k] + 1];
-		}
+	onAllCores(progress.part(0, 0.5), [&](const auto& isMine) {
+		forEachTriangle(isMine, [&](int f, const Triangle& t, const std::array<int, 3>& row) {
+			const TriangleMeasures measures = measureTriangle(mesh, f);
+			if (isMine(std::max({row[0], row[1], row[2]}))) // one thread of those who measure it
+				for (int k = 0; k < 3; ++k)
+					cotangent[3 * f + k] = float(measures.cotangent[k]);
+			for (int k = 0; k < 3; ++k)
+				if (isMine(row[k])) {
+					normal[t[k]] += measures.areaVector;
+					M.start[row[k] + 1] += row[(k + 1) % 3] >= 0;
+				}
+		});
 	});
 	for (int i = 0; i < n; ++i)
 		M.start[i + 1] = M.start[i] + filledUp(M.start[i + 1], SymmetricRows::Group);
 	progress.report(0.5, "Contracting");
 
-	// Triangle by triangle, since a walk round each vertex waits for every step.
 	M.entries.resize(M.start[n]);
 	std::vector<int> end(M.start.begin(), M.start.end() - 1);
 	std::vector<double> toFree(n, 0), toFixed(n, 0); // sums of the weights of a row
 	std::vector<Point3d> curvature(mesh.vertexSlots(), Point3d(0, 0, 0)); // w_L L v
-	forEachMoving([&](int f, const Triangle& t, const std::array<int, 3>& row) {
-		for (int k = 0; k < 3; ++k) {
-			const int i = row[k], j = row[(k + 1) % 3], h = 3 * f + k;
-			if (i < 0)
-				continue;
-			const int v = t[k], to = t[(k + 1) % 3];
-			const double w = wL * cotangentWeight(cotangent[h], cotangent[mesh.twin(h)]);
-			(j >= 0 ? toFree : toFixed)[i] += w;
-			curvature[v] += (mesh.position[v] - mesh.position[to]) * w;
-			if (j >= 0)
-				M.entries[end[i]++] = {j, float(-w)};
-		}
+	onAllCores(progress.part(0.5, 1), [&](const auto& isMine) {
+		forEachTriangle(isMine, [&](int f, const Triangle& t, const std::array<int, 3>& row) {
+			for (int k = 0; k < 3; ++k) {
+				const int i = row[k], j = row[(k + 1) % 3], h = 3 * f + k;
+				if (!isMine(i))
+					continue;
+				const int v = t[k], to = t[(k + 1) % 3];
+				const double w = wL * cotangentWeight(cotangent[h], cotangent[mesh.twin(h)]);
+				(j >= 0 ? toFree : toFixed)[i] += w;
+				curvature[v] += (mesh.position[v] - mesh.position[to]) * w;
+				if (j >= 0)
+					M.entries[end[i]++] = {j, float(-w)};
+			}
+		});
 	});
 	D.resize(n);
 	b.resize(n);

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstdint>
 #include <exception>
 #include <numeric>
 #include <thread>
@@ -114,6 +115,20 @@ void forEachPart(
 			}
 	if (cancelled)
 		std::rethrow_exception(cancelled);
+}
+
+/// Parts of [0, count) for forEachPart(), one for each thread; a single one if count is less than `leastForTeam`.
+inline std::vector<int> rangesForThreads(int count, int leastForTeam)
+{
+	int parts = 1;
+#ifdef _OPENMP
+	if (count >= leastForTeam)
+		parts = omp_get_max_threads();
+#endif
+	std::vector<int> start;
+	for (int i = 0; i <= parts; ++i)
+		start.push_back(int(std::int64_t(count) * i / parts));
+	return start;
 }
 
 } // namespace vcg::tri::mcf
