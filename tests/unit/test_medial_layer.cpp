@@ -5,6 +5,7 @@
 
 #include "shapes.h"
 #include "skeleton/medial_layer.h"
+#include "skeleton/poles.h"
 #include "skeleton/shrinking_balls.h"
 
 #include <gtest/gtest.h>
@@ -61,6 +62,19 @@ TEST(MedialLayer, AnglesAreThoseOfTheTwoContacts)
 			EXPECT_NEAR(angle[v], 180, 5);
 		}
 	}
+}
+
+TEST(MedialLayer, AnglesOfAComponentAreThoseThatItHasAlone)
+{
+	// A ring round the centre of a ball, where all the ball's poles are.
+	const shapes::Soup ball = shapes::sphere(3), ring = shapes::torus(0.5, 0.1);
+	const auto anglesOf = [](const shapes::Soup& soup) {
+		return poleAngles(soup.mesh(), medialPoles(soup.mesh(), PoleMethod::Balls));
+	};
+	std::vector<double> alone = anglesOf(ball);
+	const std::vector<double> ofRing = anglesOf(ring);
+	alone.insert(alone.end(), ofRing.begin(), ofRing.end());
+	EXPECT_EQ(anglesOf(shapes::joined({ball, ring})), alone);
 }
 
 TEST(MedialLayer, FiltersByAngleAndRadius)

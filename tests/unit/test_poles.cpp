@@ -273,21 +273,41 @@ TEST_P(Poles, TreatComponentsAlike)
 	}
 }
 
+TEST_P(Poles, OfAComponentAreThoseThatItHasAlone)
+{
+	// A body within another one, and a ring through both of their walls.
+	const std::vector<shapes::Soup> bodies = {shapes::jittered(shapes::sphere(4), 1e-3),
+		shapes::sphere(3, 0.6), shapes::torus(0.8, 0.1, 60, 12)};
+	const PoleSet together = polesOf(shapes::joined({bodies[0], bodies[1], bodies[2]}).mesh());
+	auto radius = together.radius.begin();
+	auto centre = together.centre.begin();
+	for (const shapes::Soup& body : bodies) {
+		const PoleSet alone = polesOf(body.mesh());
+		EXPECT_TRUE(std::equal(alone.radius.begin(), alone.radius.end(), radius));
+		EXPECT_TRUE(std::equal(alone.centre.begin(), alone.centre.end(), centre));
+		radius += long(body.points.size());
+		centre += long(body.points.size());
+	}
+}
+
 TEST_P(Poles, StopWhenAskedTo)
 {
-	const SurfaceMesh mesh = shapes::sphere(4).mesh();
-	int calls = 0, last = 0;
-	medialPoles(mesh, GetParam(), Progress([&](int percent, const char*) {
-		EXPECT_GE(percent, last);
-		last = percent;
-		++calls;
-		return true;
-	}));
-	EXPECT_EQ(last, 100);
-	for (int allowed = 0; allowed < calls; ++allowed) {
-		int left = allowed;
-		const Progress progress([&](int, const char*) { return left-- > 0; });
-		EXPECT_THROW(medialPoles(mesh, GetParam(), progress), Cancelled);
+	const shapes::Soup body = shapes::sphere(4);
+	for (const SurfaceMesh& mesh :
+		{body.mesh(), shapes::joined({body, shapes::scaled(body, 0.5)}).mesh()}) {
+		int calls = 0, last = 0;
+		medialPoles(mesh, GetParam(), Progress([&](int percent, const char*) {
+			EXPECT_GE(percent, last);
+			last = percent;
+			++calls;
+			return true;
+		}));
+		EXPECT_EQ(last, 100);
+		for (int allowed = 0; allowed < calls; ++allowed) {
+			int left = allowed;
+			const Progress progress([&](int, const char*) { return left-- > 0; });
+			EXPECT_THROW(medialPoles(mesh, GetParam(), progress), Cancelled);
+		}
 	}
 }
 

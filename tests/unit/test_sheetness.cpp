@@ -83,6 +83,17 @@ TEST(Sheetness, TheSameAtAnySizeAndPlace)
 		EXPECT_NEAR(a[v], b[v], 1e-6);
 }
 
+TEST(Sheetness, OfAComponentIsWhatItIsAlone)
+{
+	// A ball in a plate, which touches both of its walls and neither of its neighbours.
+	const shapes::Soup ball = shapes::moved(shapes::sphere(3, 0.05), {0.5, 0.4, 0.05}),
+					   plate = {slab().position, slab().triangles()};
+	std::vector<double> alone = sheetnessOf(plate.mesh());
+	const std::vector<double> ofBall = sheetnessOf(ball.mesh());
+	alone.insert(alone.end(), ofBall.begin(), ofBall.end());
+	EXPECT_EQ(sheetnessOf(shapes::joined({plate, ball}).mesh()), alone);
+}
+
 TEST(MarkSheets, TheThresholdSaysHowMuch)
 {
 	const SurfaceMesh mesh = slab();

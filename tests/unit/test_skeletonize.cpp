@@ -59,7 +59,10 @@ std::vector<NamedShape> generatedShapes()
 			shapes::joined(
 				{shapes::torus(), shapes::moved(shapes::scaled(shapes::capsule(), 0.01), {3, 0, 0}),
 					shapes::moved(shapes::scaled(shapes::plate(2), 100), {0, 0, 50})}),
-			3, 3}};
+			3, 3},
+		{"bodies through each other",
+			shapes::joined({shapes::sphere(4), shapes::sphere(3, 0.6), shapes::torus(0.8, 0.1)}), 3,
+			1}};
 }
 
 /// Distance of p to the segment a b.
@@ -105,6 +108,20 @@ TEST(Skeletonize, EveryStageOfEveryShapeIsASoundMeshOfItsTopology)
 		EXPECT_EQ(s.components, components);
 		EXPECT_EQ(s.cycles, genus);
 	}
+}
+
+TEST(Skeletonize, BodiesWithinEachOtherContractAsTheyDoAlone)
+{
+	const std::vector<shapes::Soup> bodies = {
+		shapes::sphere(4), shapes::sphere(3, 0.6), shapes::torus(0.8, 0.1)};
+	const auto iterationsOf = [](const shapes::Soup& soup) {
+		return contractToSkeleton(stageOf(soup), Parameters()).iteration;
+	};
+	int most = 0;
+	for (const shapes::Soup& body : bodies)
+		most = std::max(most, iterationsOf(body));
+	// The last one makes up the end of the flow, and its share of the whole area when that is.
+	EXPECT_LE(iterationsOf(shapes::joined({bodies[0], bodies[1], bodies[2]})), most + 1);
 }
 
 TEST(Skeletonize, ConvergesOnEveryMeshOfTheFolder)

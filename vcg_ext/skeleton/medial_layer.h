@@ -6,6 +6,7 @@
 #ifndef VCG_MCF_MEDIAL_LAYER_H
 #define VCG_MCF_MEDIAL_LAYER_H
 
+#include "component_meshes.h"
 #include "errors.h"
 #include "parallel_blocks.h"
 #include "point_tree.h"
@@ -77,34 +78,42 @@ struct WidestAngle
 	}
 };
 
-} // namespace detail
+constexpr const char* measuringAngles = "Measuring the poles' angles";
 
-/**
- * For each pole the widest angle, degrees, between its vertex and any other vertex that its ball
- * touches, seen from the pole; -1 where there is no pole.
- * @pre surface is compact. @throws Cancelled. Complexity: O(V log V).
- */
-inline std::vector<double> poleAngles(
-	const SurfaceMesh& surface, const PoleSet& poles, const Progress& progress = Progress())
+/// poleAngles() of a surface of one component.
+inline std::vector<double> poleAnglesOfComponent(
+	const SurfaceMesh& surface, const PoleSet& poles, const Progress& progress)
 {
 	constexpr double touching = 0.01; // of the radius: facets of a round surface differ that much
 	const UnitFrame frame(surface.position);
 	const PointTree tree(frame.in(surface.position));
 	std::vector<double> angle(poles.radius.size(), -1);
-	forEachBlock(
-		int(angle.size()), progress, "Measuring the poles' angles", [&](int begin, int end) {
-			for (int v = begin; v < end; ++v) {
-				if (!poles.has(v))
-					continue;
-				const Point3d centre = frame.in(poles.centre[v]);
-				detail::WidestAngle search {centre,
-					frame.lengthIn(poles.radius[v]) * (1 + touching),
-					frame.in(surface.position[v]) - centre};
-				tree.search(search);
-				angle[v] = search.widest * 180 / M_PI;
-			}
-		});
+	forEachBlock(int(angle.size()), progress, measuringAngles, [&](int begin, int end) {
+		for (int v = begin; v < end; ++v) {
+			if (!poles.has(v))
+				continue;
+			const Point3d centre = frame.in(poles.centre[v]);
+			WidestAngle search {centre, frame.lengthIn(poles.radius[v]) * (1 + touching),
+				frame.in(surface.position[v]) - centre};
+			tree.search(search);
+			angle[v] = search.widest * 180 / M_PI;
+		}
+	});
 	return angle;
+}
+
+} // namespace detail
+
+/**
+ * For each pole the widest angle, degrees, between its vertex and any other vertex that its ball
+ * touches, seen from the pole; -1 where there is no pole. Other components do not count.
+ * @pre surface is compact. @throws Cancelled. Complexity: O(V log V).
+ */
+inline std::vector<double> poleAngles(
+	const SurfaceMesh& surface, const PoleSet& poles, const Progress& progress = Progress())
+{
+	return detail::foundByComponent(
+		surface, poles, progress, detail::measuringAngles, detail::poleAnglesOfComponent);
 }
 
 /**

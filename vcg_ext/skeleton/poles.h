@@ -7,6 +7,7 @@
 #define VCG_MCF_POLES_H
 
 #include "check_input.h"
+#include "component_meshes.h"
 #include "parameters.h"
 #include "pole_set.h"
 #include "principal_frame.h"
@@ -35,42 +36,34 @@ constexpr double poleTolerance = 2e-4;
 namespace detail {
 
 /**
- * Poles found in the shape's own coordinates: where several balls are as good, which one is found
- * depends on the order of the searches, and that on the coordinates. They are rounded, as contract()
- * does it.
- * @param component of each vertex, and `frames` of the vertices of each component.
- * @param find makes the poles of `vertices` of a mesh, given how deep a vertex may lie in the ball of each,
- *             with a progress window of its own.
+ * The poles of some vertices of one component, found in its own coordinates: where several balls are as good,
+ * which one is found depends on the order of the searches, and that on the coordinates. They are rounded, as
+ * contract() does it.
  */
-template <class Find>
-PoleSet polesInShapeFrame(const SurfaceMesh& mesh, const std::vector<int>& component,
-	const std::vector<PrincipalFrame>& frames, const std::vector<int>& vertices,
-	const Progress& progress, Find&& find)
+inline PoleSet polesOfComponent(const SurfaceMesh& mesh, const PrincipalFrame& frame,
+	const std::vector<int>& vertices, PoleMethod method, const Progress& progress)
 {
-	// Components may lie within each other: they have one frame for all, as fine as it needs to be.
-	const bool single = frames.size() == 1;
-	const PrincipalFrame frame = single
-		? frames.front()
-		: PrincipalFrame::ofPoints(
-			mesh.position, std::vector<int>(component.size(), 0), 1, progress.part(0, 0))
-			  .front();
 	SurfaceMesh own = mesh.copied(progress.part(0, 0));
-	reportedLoop(own.vertexSlots(), progress.part(0, 0.01), "Measuring the surface", [&](int v) {
-		Point3d& p = own.position[v];
-		p = single ? frame.onGrid(p) : frame.in(p);
-	});
-	std::vector<double> delta;
-	delta.reserve(vertices.size());
-	const int count = int(vertices.size());
-	reportedLoop(count, progress.part(0.01, 0.01), "Measuring the surface", [&](int i) {
-		const PrincipalFrame& ofComponent = frames[component[vertices[i]]];
-		delta.push_back(poleTolerance * frame.lengthOnGrid(ofComponent.size()));
-	});
-	PoleSet poles = find(own, delta, progress.part(0.01, 1));
-	reportedLoop(count, progress.part(1, 1), "Measuring the surface", [&](int i) {
+	reportedLoop(own.vertexSlots(), progress.part(0, 0.01), "Measuring the surface",
+		[&](int v) { own.position[v] = frame.onGrid(own.position[v]); });
+	const Progress ofSearch = progress.part(0.01, 1);
+	PoleSet poles;
+	if (method == PoleMethod::Balls) {
+		const double delta = poleTolerance * frame.lengthOnGrid(frame.size());
+		poles = shrinkingBallPoles(own, vertices,
+			filledArray(vertices.size(), delta, progress.part(0, 0), "Measuring the surface"),
+			ofSearch);
+	}
+	else {
+		const PoleSet all = voronoiPoles(own, ofSearch);
+		for (int v : vertices) {
+			poles.centre.push_back(all.centre[v]);
+			poles.radius.push_back(all.radius[v]);
+		}
+	}
+	reportedLoop(int(vertices.size()), progress.part(1, 1), "Measuring the surface", [&](int i) {
 		Point3d& centre = poles.centre[i];
-		centre = single ? frame.out(PrincipalFrame::rounded(centre))
-						: frames[component[vertices[i]]].snapped(frame.out(centre));
+		centre = frame.out(PrincipalFrame::rounded(centre));
 		if (poles.has(i))
 			poles.radius[i] = Distance(centre, mesh.position[vertices[i]]);
 	});
@@ -80,7 +73,7 @@ PoleSet polesInShapeFrame(const SurfaceMesh& mesh, const std::vector<int>& compo
 } // namespace detail
 
 /**
- * medialPoles() of some vertices: against all vertices of the mesh, in the order of `vertices`.
+ * medialPoles() of some vertices: against all vertices of their component, in the order of `vertices`.
  * Shrinking balls are searched for these vertices only; the Voronoi diagram is always that of all.
  * @param component of each vertex of the mesh, see connectedComponents().
  * @param frames    of the vertices of each component, see PrincipalFrame::ofPoints().
@@ -89,19 +82,33 @@ inline PoleSet polesAt(const SurfaceMesh& mesh, const std::vector<int>& componen
 	const std::vector<PrincipalFrame>& frames, const std::vector<int>& vertices, PoleMethod method,
 	const Progress& progress = Progress())
 {
-	const auto find = [&](const SurfaceMesh& own, const std::vector<double>& delta,
-						  const Progress& ofSearch) {
-		if (method == PoleMethod::Balls)
-			return shrinkingBallPoles(own, vertices, delta, ofSearch);
-		const PoleSet all = voronoiPoles(own, ofSearch);
-		PoleSet poles;
-		for (int v : vertices) {
-			poles.centre.push_back(all.centre[v]);
-			poles.radius.push_back(all.radius[v]);
-		}
-		return poles;
-	};
-	return detail::polesInShapeFrame(mesh, component, frames, vertices, progress, find);
+	if (frames.size() == 1)
+		return detail::polesOfComponent(mesh, frames.front(), vertices, method, progress);
+	const Progress begin = progress.part(0, 0);
+	const char* const what = "Measuring the surface";
+	const int count = int(vertices.size());
+	std::vector<int> wanted = detail::filledArray(size_t(mesh.vertexSlots()), -1, begin, what);
+	detail::reportedLoop(count, begin, what, [&](int i) { wanted[vertices[i]] = i; });
+	PoleSet poles;
+	poles.centre = detail::filledArray(vertices.size(), Point3d(0, 0, 0), begin, what);
+	poles.radius = detail::filledArray(vertices.size(), -1.0, begin, what);
+	forEachComponent(mesh, component, int(frames.size()), progress,
+		[&](int c, const SurfaceMesh& own, const std::vector<int>& ids, const Progress& part) {
+			std::vector<int> ofThese;
+			detail::reportedLoop(int(ids.size()), part.part(0, 0), what, [&](int i) {
+				if (wanted[ids[i]] >= 0)
+					ofThese.push_back(i);
+			});
+			if (ofThese.empty())
+				return;
+			const PoleSet found = detail::polesOfComponent(own, frames[c], ofThese, method, part);
+			detail::reportedLoop(int(ofThese.size()), part.part(1, 1), what, [&](int k) {
+				const int i = wanted[ids[ofThese[k]]];
+				poles.centre[i] = found.centre[k];
+				poles.radius[i] = found.radius[k];
+			});
+		});
+	return poles;
 }
 
 /// The same where components and frames are not known yet.
@@ -119,6 +126,8 @@ inline PoleSet polesAt(const SurfaceMesh& mesh, const std::vector<int>& vertices
 /**
  * The inner medial pole of each vertex: the centre of a large ball inside the shape that touches
  * the surface at the vertex. Every pole lies inside the shape; a vertex without one has radius -1.
+ * Each component is a solid of its own, as if the others were not there: they may lie within each other, or
+ * cross.
  * @pre mesh is compact.
  * @throws SolverError, Cancelled.
  */

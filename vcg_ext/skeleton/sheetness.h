@@ -6,6 +6,7 @@
 #ifndef VCG_MCF_SHEETNESS_H
 #define VCG_MCF_SHEETNESS_H
 
+#include "component_meshes.h"
 #include "large_arrays.h"
 #include "marked_parts.h"
 #include "parallel_blocks.h"
@@ -46,26 +47,9 @@ struct ContactDirections
 	}
 };
 
-} // namespace detail
-
-/**
- * How sheet-like a shape is at each vertex of its surface: 0 where its cross-section is round, 1
- * between parallel walls.
- *
- * At the vertex's pole c of radius r the surface within 1.15 r touches the medial ball, or nearly: two
- * opposite spots in a sheet, a ring in a tube, all around in a ball. With l1 >= l2 >= l3 the
- * eigenvalues of the mean of d d^T over the directions d from c to that part of the surface,
- *
- *     s = 1 - l2 / l1,
- *
- * averaged three times over the neighbours. A round tube has 0.25 or less, an elliptic one with axes
- * 1 : 2 about 0.55, with 1 : 4 about 0.8; between parallel walls it is above 0.9.
- * @param poles  one for each vertex; a vertex without one takes its neighbours' mean.
- * @return s, #V, in [0, 1]. @pre mesh is compact.
- * @throws Cancelled. Complexity: O(V k) for k vertices around a ball. Same bits on any number of threads.
- */
-inline std::vector<double> sheetness(
-	const SurfaceMesh& mesh, const PoleSet& poles, const Progress& progress = Progress())
+/// sheetness() of a mesh of one component.
+inline std::vector<double> sheetnessOfComponent(
+	const SurfaceMesh& mesh, const PoleSet& poles, const Progress& progress)
 {
 	constexpr double nearly = 1.15;
 	constexpr int rounds = 3;
@@ -121,6 +105,32 @@ inline std::vector<double> sheetness(
 	for (double& value : s)
 		value = std::max(value, 0.0);
 	return s;
+}
+
+} // namespace detail
+
+/**
+ * How sheet-like a shape is at each vertex of its surface: 0 where its cross-section is round, 1
+ * between parallel walls.
+ *
+ * At the vertex's pole c of radius r the surface within 1.15 r touches the medial ball, or nearly: two
+ * opposite spots in a sheet, a ring in a tube, all around in a ball. With l1 >= l2 >= l3 the
+ * eigenvalues of the mean of d d^T over the directions d from c to that part of the surface,
+ *
+ *     s = 1 - l2 / l1,
+ *
+ * averaged three times over the neighbours. A round tube has 0.25 or less, an elliptic one with axes
+ * 1 : 2 about 0.55, with 1 : 4 about 0.8; between parallel walls it is above 0.9. Each component is looked at as if
+ * the others were not there.
+ * @param poles  one for each vertex; a vertex without one takes its neighbours' mean.
+ * @return s, #V, in [0, 1]. @pre mesh is compact.
+ * @throws Cancelled. Complexity: O(V k) for k vertices around a ball. Same bits on any number of threads.
+ */
+inline std::vector<double> sheetness(
+	const SurfaceMesh& mesh, const PoleSet& poles, const Progress& progress = Progress())
+{
+	return detail::foundByComponent(
+		mesh, poles, progress, "Looking for sheets", detail::sheetnessOfComponent);
 }
 
 } // namespace vcg::tri::mcf

@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file The connected components of a surface as meshes of their own.
+
+#ifndef VCG_MCF_COMPONENT_MESHES_H
+#define VCG_MCF_COMPONENT_MESHES_H
+
+#include "check_input.h"
+#include "large_arrays.h"
+#include "pole_set.h"
+#include "progress.h"
+#include "surface_mesh.h"
+#include "ticker.h"
+
+#include <utility>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/**
+ * Calls visit(c, own, ids, progress) for each connected component c of a mesh: `own` is that component alone,
+ * vertices and triangles in the order that they have in the mesh, `ids` what its vertices are called there.
+ * @param component  of each vertex of the mesh, from 0 to components - 1.
+ * @pre mesh is compact. @throws Cancelled, and what visit() throws. Complexity: O(V + F), and the visits.
+ */
+template <class Visitor>
+void forEachComponent(const SurfaceMesh& mesh, const std::vector<int>& component, int components,
+	const Progress& progress, Visitor&& visit)
+{
+	const char* const what = "Measuring the surface";
+	std::vector<std::vector<int>> ids(components);
+	std::vector<int> place;
+	place.reserve(component.size());
+	const Progress begin = progress.part(0, 0);
+	detail::reportedLoop(mesh.vertexSlots(), begin, what, [&](int v) {
+		place.push_back(int(ids[component[v]].size()));
+		ids[component[v]].push_back(v);
+	});
+	std::vector<std::vector<Triangle>> triangles(components);
+	detail::reportedLoop(mesh.faceSlots(), begin, what, [&](int f) {
+		const Triangle t = mesh.triangle(f);
+		triangles[component[t[0]]].push_back({place[t[0]], place[t[1]], place[t[2]]});
+	});
+	double done = 0;
+	for (int c = 0; c < components; ++c) {
+		const double from = done / mesh.vertexSlots();
+		done += double(ids[c].size());
+		const Progress part = progress.part(from, done / mesh.vertexSlots());
+		std::vector<Point3d> position;
+		position.reserve(ids[c].size());
+		detail::reportedLoop(int(ids[c].size()), part.part(0, 0), what,
+			[&](int i) { position.push_back(mesh.position[ids[c][i]]); });
+		const SurfaceMesh own(std::move(position), triangles[c], part.part(0, 0));
+		visit(c, own, ids[c], part);
+	}
+}
+
+namespace detail {
+
+/**
+ * What find(mesh, poles, progress) tells of each vertex, asked of each component by itself.
+ * @return #V. @pre mesh is compact. @throws Cancelled, and what find() throws.
+ */
+template <class Find>
+std::vector<double> foundByComponent(const SurfaceMesh& mesh, const PoleSet& poles,
+	const Progress& progress, const char* what, const Find& find)
+{
+	int components = 0;
+	const std::vector<int> component =
+		connectedComponents(mesh, &components, progress.part(0, 0.02));
+	const Progress finding = progress.part(0.02, 1);
+	if (components == 1)
+		return find(mesh, poles, finding);
+	std::vector<double> values = filledArray(component.size(), 0.0, finding.part(0, 0), what);
+	forEachComponent(mesh, component, components, finding,
+		[&](int, const SurfaceMesh& own, const std::vector<int>& ids, const Progress& part) {
+			PoleSet polesOfOwn;
+			reportedLoop(int(ids.size()), part.part(0, 0), what, [&](int i) {
+				polesOfOwn.centre.push_back(poles.centre[ids[i]]);
+				polesOfOwn.radius.push_back(poles.radius[ids[i]]);
+			});
+			const std::vector<double> found = find(own, polesOfOwn, part);
+			reportedLoop(
+				int(ids.size()), part.part(1, 1), what, [&](int i) { values[ids[i]] = found[i]; });
+		});
+	return values;
+}
+
+} // namespace detail
+
+} // namespace vcg::tri::mcf
+
+#endif
