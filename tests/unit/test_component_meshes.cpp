@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 #include "shapes.h"
+#include "threads.h"
 
 #include "skeleton/check_input.h"
 #include "skeleton/component_meshes.h"
@@ -9,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <vector>
 
 using namespace vcg::tri::mcf;
@@ -68,6 +70,32 @@ TEST(ForEachComponent, TellsTheirVerticesApartInAnyNumbering)
 	EXPECT_EQ(all.size(), size_t(mesh.vertexSlots()));
 }
 
+TEST(ForEachComponent, VisitsLargeOnesFirstAndEachOnceOnAnyThreads)
+{
+	shapes::Soup soup = shapes::tetrahedron();
+	for (int i = 1; i <= 40; ++i)
+		soup = shapes::joined({soup, shapes::moved(shapes::sphere(3), {3. * i, 0, 0})});
+	soup = shapes::joined({soup, shapes::moved(shapes::sphere(6), {0, 3, 0})});
+	const SurfaceMesh mesh = soup.mesh();
+	for (int threads : {1, 3}) {
+		const ThreadCount used(threads);
+		std::atomic<int> count = 0;
+		int components = 0;
+		const std::vector<int> component = connectedComponents(mesh, &components);
+		ASSERT_EQ(components, 42);
+		std::vector<int> turn(42, -1);
+		forEachComponent(mesh, component, components, Progress(),
+			[&](int c, const SurfaceMesh& own, const std::vector<int>& ids, const Progress&) {
+				turn[size_t(c)] = count++;
+				EXPECT_EQ(own.position.size(), ids.size());
+				EXPECT_EQ(own.position[0], mesh.position[ids[0]]);
+			});
+		EXPECT_EQ(count, 42);
+		EXPECT_EQ(turn[41], 0);
+		EXPECT_EQ(std::count(turn.begin(), turn.end(), -1), 0);
+	}
+}
+
 TEST(ForEachComponent, ReportsForwardByTheVerticesThatAreDone)
 {
 	std::vector<int> percents;
@@ -79,8 +107,8 @@ TEST(ForEachComponent, ReportsForwardByTheVerticesThatAreDone)
 	}),
 		[](int, const SurfaceMesh&, const std::vector<int>&, const Progress& part) {
 			part.report(0, "visiting");
-			part.report(1, "visiting"); // of the first, 4 of 10 vertices
+			part.report(1, "visiting"); // of the larger one, 6 of 10 vertices
 		});
 	EXPECT_EQ(percents.back(), 100);
-	EXPECT_NE(std::find(percents.begin(), percents.end(), 40), percents.end());
+	EXPECT_NE(std::find(percents.begin(), percents.end(), 60), percents.end());
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 #include "shapes.h"
+#include "threads.h"
 
 #include "skeleton/inner_segments.h"
 #include "skeleton/poles.h"
@@ -288,6 +289,22 @@ TEST_P(Poles, OfAComponentAreThoseThatItHasAlone)
 		radius += long(body.points.size());
 		centre += long(body.points.size());
 	}
+}
+
+TEST_P(Poles, OfManyBodiesAreTheSameBitsOnAnyThreads)
+{
+	shapes::Soup soup = pebble(3);
+	for (int i = 1; i < 30; ++i)
+		soup = shapes::joined({soup, shapes::moved(pebble(2), {3. * i, 0, 0})});
+	const SurfaceMesh mesh = soup.mesh();
+	std::vector<PoleSet> poles;
+	for (int threads : {1, 2, 5}) {
+		const ThreadCount used(threads);
+		poles.push_back(polesOf(mesh));
+		EXPECT_EQ(poles.back().radius, poles.front().radius);
+		EXPECT_EQ(poles.back().centre, poles.front().centre);
+	}
+	EXPECT_EQ(poles.front().missing(), 0);
 }
 
 TEST_P(Poles, StopWhenAskedTo)

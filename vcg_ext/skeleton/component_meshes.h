@@ -8,11 +8,13 @@
 
 #include "check_input.h"
 #include "large_arrays.h"
+#include "parallel_blocks.h"
 #include "pole_set.h"
 #include "progress.h"
 #include "surface_mesh.h"
 #include "ticker.h"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -21,13 +23,17 @@ namespace vcg::tri::mcf {
 /**
  * Calls visit(c, own, ids, progress) for each connected component c of a mesh: `own` is that component alone,
  * vertices and triangles in the order that they have in the mesh, `ids` what its vertices are called there.
+ * Large components are visited one after the other, so that each has all cores, then the others, several at
+ * once.
  * @param component  of each vertex of the mesh, from 0 to components - 1.
- * @pre mesh is compact. @throws Cancelled, and what visit() throws. Complexity: O(V + F), and the visits.
+ * @pre mesh is compact; visits change nothing in common.
+ * @throws Cancelled, and what visit() throws. Complexity: O(V + F), and the visits.
  */
 template <class Visitor>
 void forEachComponent(const SurfaceMesh& mesh, const std::vector<int>& component, int components,
-	const Progress& progress, Visitor&& visit)
+	const Progress& progress, const Visitor& visit)
 {
+	constexpr size_t large = 1 << 13;
 	const char* const what = "Measuring the surface";
 	std::vector<std::vector<int>> ids(components);
 	std::vector<int> place;
@@ -42,18 +48,33 @@ void forEachComponent(const SurfaceMesh& mesh, const std::vector<int>& component
 		const Triangle t = mesh.triangle(f);
 		triangles[component[t[0]]].push_back({place[t[0]], place[t[1]], place[t[2]]});
 	});
-	double done = 0;
-	for (int c = 0; c < components; ++c) {
-		const double from = done / mesh.vertexSlots();
-		done += double(ids[c].size());
-		const Progress part = progress.part(from, done / mesh.vertexSlots());
+	const auto visitOne = [&](int c, const Progress& part) {
 		std::vector<Point3d> position;
 		position.reserve(ids[c].size());
 		detail::reportedLoop(int(ids[c].size()), part.part(0, 0), what,
 			[&](int i) { position.push_back(mesh.position[ids[c][i]]); });
 		const SurfaceMesh own(std::move(position), triangles[c], part.part(0, 0));
 		visit(c, own, ids[c], part);
+	};
+	const double all = mesh.vertexSlots();
+	int done = 0;
+	std::vector<int> small, start(1, 0); // the vertices of the small ones, as parts of a range
+	for (int c = 0; c < components; ++c) {
+		const int size = int(ids[c].size());
+		if (ids[c].size() < large) {
+			small.push_back(c);
+			start.push_back(start.back() + size);
+			continue;
+		}
+		visitOne(c, progress.part(done / all, (done + size) / all));
+		done += size;
 	}
+	if (!small.empty())
+		forEachPart(
+			start, progress.part(done / all, 1), what, [&](int first, int, const Progress& part) {
+				const auto at = std::lower_bound(start.begin(), start.end(), first);
+				visitOne(small[size_t(at - start.begin())], part);
+			});
 }
 
 namespace detail {
