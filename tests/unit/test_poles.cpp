@@ -295,8 +295,9 @@ TEST_P(Poles, OfManyBodiesAreTheSameBitsOnAnyThreads)
 {
 	shapes::Soup soup = pebble(3);
 	for (int i = 1; i < 30; ++i)
-		soup = shapes::joined({soup, shapes::moved(pebble(2), {3. * i, 0, 0})});
+		soup = shapes::joined({soup, shapes::moved(pebble(3), {3. * i, 0, 0})});
 	const SurfaceMesh mesh = soup.mesh();
+	ASSERT_GT(mesh.vertexSlots(), 1 << 12); // as many as several threads share
 	std::vector<PoleSet> poles;
 	for (int threads : {1, 2, 5}) {
 		const ThreadCount used(threads);

@@ -120,7 +120,7 @@ TEST(Skeletonize, BodiesWithinEachOtherContractAsTheyDoAlone)
 	int most = 0;
 	for (const shapes::Soup& body : bodies)
 		most = std::max(most, iterationsOf(body));
-	// The last one makes up the end of the flow, and its share of the whole area when that is.
+	// The flow ends when the area of all of them stops changing: perhaps an iteration later.
 	EXPECT_LE(iterationsOf(shapes::joined({bodies[0], bodies[1], bodies[2]})), most + 1);
 }
 

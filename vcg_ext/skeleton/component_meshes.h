@@ -20,6 +20,25 @@
 
 namespace vcg::tri::mcf {
 
+/// The vertices of each component in the order of their ids, and for each vertex its place among those.
+struct ComponentVertices
+{
+	std::vector<std::vector<int>> ids;
+	std::vector<int> place;
+
+	/// @param component of each vertex, from 0 to components - 1. @throws Cancelled
+	ComponentVertices(const std::vector<int>& component, int components, const Progress& progress) :
+			ids(components)
+	{
+		place.reserve(component.size());
+		detail::reportedLoop(int(component.size()), progress, "Measuring the surface", [&](int v) {
+			std::vector<int>& own = ids[component[v]];
+			place.push_back(int(own.size()));
+			own.push_back(v);
+		});
+	}
+};
+
 /**
  * Calls visit(c, own, ids, progress) for each connected component c of a mesh: `own` is that component alone,
  * vertices and triangles in the order that they have in the mesh, `ids` what its vertices are called there.
@@ -35,14 +54,10 @@ void forEachComponent(const SurfaceMesh& mesh, const std::vector<int>& component
 {
 	constexpr size_t large = 1 << 13;
 	const char* const what = "Measuring the surface";
-	std::vector<std::vector<int>> ids(components);
-	std::vector<int> place;
-	place.reserve(component.size());
 	const Progress begin = progress.part(0, 0);
-	detail::reportedLoop(mesh.vertexSlots(), begin, what, [&](int v) {
-		place.push_back(int(ids[component[v]].size()));
-		ids[component[v]].push_back(v);
-	});
+	const ComponentVertices vertices(component, components, begin);
+	const std::vector<std::vector<int>>& ids = vertices.ids;
+	const std::vector<int>& place = vertices.place;
 	std::vector<std::vector<Triangle>> triangles(components);
 	detail::reportedLoop(mesh.faceSlots(), begin, what, [&](int f) {
 		const Triangle t = mesh.triangle(f);

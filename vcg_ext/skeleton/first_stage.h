@@ -139,9 +139,9 @@ FlowSurface surfaceForFlow(const SurfaceMesh& surface, double epsilon,
  * Stage 0: the surface with edges of the flow's length, and its poles.
  *
  * Lengths, areas and volumes are measured on the surface itself, and its vertices keep their
- * correspondence. Poles are found for the vertices that remain, against all vertices of the surface;
- * where it is dense, see leftOfDenseSurface, against those that remain. Those in the middle of halved
- * edges have theirs against all vertices of the finer surface.
+ * correspondence. Poles are found for the vertices that remain, against all that their component has on the
+ * surface; where it is dense, see leftOfDenseSurface, against those that remain. Those in the middle of
+ * halved edges have theirs against those of the finer surface.
  *
  * @param surface    compact, closed; see checkedSurface().
  * @param parameters epsilon and poleMethod are used.

@@ -8,6 +8,7 @@
 
 #include "check_input.h"
 #include "component_meshes.h"
+#include "large_arrays.h"
 #include "parameters.h"
 #include "pole_set.h"
 #include "principal_frame.h"
@@ -48,12 +49,9 @@ inline PoleSet polesOfComponent(const SurfaceMesh& mesh, const PrincipalFrame& f
 		[&](int v) { own.position[v] = frame.onGrid(own.position[v]); });
 	const Progress ofSearch = progress.part(0.01, 1);
 	PoleSet poles;
-	if (method == PoleMethod::Balls) {
-		const double delta = poleTolerance * frame.lengthOnGrid(frame.size());
-		poles = shrinkingBallPoles(own, vertices,
-			filledArray(vertices.size(), delta, progress.part(0, 0), "Measuring the surface"),
-			ofSearch);
-	}
+	if (method == PoleMethod::Balls)
+		poles = shrinkingBallPoles(
+			own, vertices, poleTolerance * frame.lengthOnGrid(frame.size()), ofSearch);
 	else {
 		const PoleSet all = voronoiPoles(own, ofSearch);
 		for (int v : vertices) {

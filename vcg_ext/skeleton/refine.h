@@ -8,6 +8,7 @@
 
 #include "check_input.h"
 #include "closest_surface.h"
+#include "component_meshes.h"
 #include "curve_skeleton.h"
 #include "errors.h"
 #include "principal_frame.h"
@@ -266,14 +267,8 @@ inline CurveSkeleton refine(const CurveSkeleton& curve, const SurfaceMesh& surfa
 	const std::vector<int> component =
 		connectedComponents(surface, &components, progress.part(0, 0.01));
 	const std::vector<int> componentOfNode = refining::componentOfNodes(curve, component);
-	std::vector<std::vector<int>> vertices(components), nodes(components), edges(components);
-	std::vector<int> place;
-	place.reserve(surface.vertexSlots());
-	detail::reportedLoop(surface.vertexSlots(), progress.part(0.01, 0.01), what, [&](int v) {
-		std::vector<int>& ofComponent = vertices[component[v]];
-		place.push_back(int(ofComponent.size()));
-		ofComponent.push_back(v);
-	});
+	const ComponentVertices vertices(component, components, progress.part(0.01, 0.01));
+	std::vector<std::vector<int>> nodes(components), edges(components);
 	for (size_t v = 0; v < componentOfNode.size(); ++v)
 		if (componentOfNode[v] >= 0)
 			nodes[componentOfNode[v]].push_back(int(v));
@@ -311,19 +306,21 @@ inline CurveSkeleton refine(const CurveSkeleton& curve, const SurfaceMesh& surfa
 			part.edges.push_back({number[curve.edges[e][0]], number[curve.edges[e][1]]});
 		const Progress ofComponent =
 			progress.part(0.03 + 0.97 * c / components, 0.03 + 0.97 * (c + 1) / components);
-		const ClosestSurface closest(unit, vertices[c], sampleSpacing, ofComponent.part(0, 0.1));
-		part = refining::refineComponent(
-			part, closest, {unit, vertices[c], place}, parameters, ofComponent.part(0.1, 0.95));
+		const ClosestSurface closest(
+			unit, vertices.ids[c], sampleSpacing, ofComponent.part(0, 0.1));
+		part = refining::refineComponent(part, closest, {unit, vertices.ids[c], vertices.place},
+			parameters, ofComponent.part(0.1, 0.95));
 
 		const std::vector<std::vector<int>> neighbours = part.neighbours();
 		const int first = int(refined.position.size());
-		detail::reportedLoop(int(vertices[c].size()), ofComponent.part(0.95, 1), what, [&](int i) {
-			const int s = vertices[c][i];
-			if (curve.node[s] >= 0)
-				refined.node[s] = first
-					+ refining::nearestAlong(
-						part, neighbours, part.node[number[curve.node[s]]], unit.position[s]);
-		});
+		detail::reportedLoop(
+			int(vertices.ids[c].size()), ofComponent.part(0.95, 1), what, [&](int i) {
+				const int s = vertices.ids[c][i];
+				if (curve.node[s] >= 0)
+					refined.node[s] = first
+						+ refining::nearestAlong(
+							part, neighbours, part.node[number[curve.node[s]]], unit.position[s]);
+			});
 		for (const Point3d& p : part.position)
 			refined.position.push_back(fromUnit(p, c));
 		for (const auto& [a, b] : part.edges)

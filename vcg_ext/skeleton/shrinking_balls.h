@@ -289,14 +289,14 @@ inline PoleSet shrinkingBalls(const std::vector<Point3d>& points,
  * triangle, or through a wall thinner than its tolerance: then it is searched again without tolerance,
  * and if that reaches out as well, there is no pole.
  * @param vertices  ids, #P, each at most once.
- * @param delta     of each of them, as in shrinkingBalls(), #P; empty: 0 for all.
+ * @param delta     as in shrinkingBalls().
  * @pre mesh is compact.
  * @return poles, #P, in the order of `vertices`; radius -1 where there is none.
  * @throws Cancelled
  * Complexity: O((P + V) log V). Same bits on any number of threads.
  */
 inline PoleSet shrinkingBallPoles(const SurfaceMesh& mesh, const std::vector<int>& vertices,
-	const std::vector<double>& delta = {}, const Progress& progress = Progress())
+	double delta = 0, const Progress& progress = Progress())
 {
 	const Progress begin = progress.part(0, 0);
 	const UnitFrame frame(mesh.position, begin);
@@ -304,6 +304,7 @@ inline PoleSet shrinkingBallPoles(const SurfaceMesh& mesh, const std::vector<int
 	std::vector<int> place(mesh.vertexSlots(), -1);
 	for (size_t i = 0; i < vertices.size(); ++i)
 		place[vertices[i]] = int(i);
+	const double tolerance = detail::ballTolerance(frame, delta);
 	std::vector<detail::Touch> touches;
 	touches.reserve(vertices.size());
 	const detail::OsculatingNormals normals =
@@ -313,8 +314,6 @@ inline PoleSet shrinkingBallPoles(const SurfaceMesh& mesh, const std::vector<int
 			const int v = tree.order()[slot];
 			if (place[v] < 0)
 				return;
-			const double tolerance =
-				detail::ballTolerance(frame, delta.empty() ? 0 : delta[place[v]]);
 			touches.push_back({tree.point(slot), normals.normal[v], tolerance, place[v], slot});
 		});
 	const InnerSegments segments(mesh, tree, progress.part(0.25, 0.4));
@@ -330,7 +329,7 @@ inline PoleSet shrinkingBallPoles(const SurfaceMesh& mesh, const Progress& progr
 {
 	std::vector<int> all(mesh.vertexSlots());
 	std::iota(all.begin(), all.end(), 0);
-	return shrinkingBallPoles(mesh, all, {}, progress);
+	return shrinkingBallPoles(mesh, all, 0, progress);
 }
 
 } // namespace vcg::tri::mcf
