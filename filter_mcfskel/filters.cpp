@@ -61,6 +61,30 @@ QString resultsText(const Results& results)
 	return parts.join(", ");
 }
 
+/// Which filter of MeshLab cures a mesh, as a sentence after the library's own; empty if none does.
+const char* cureInMeshLab(vcg::tri::mcf::Defect defect)
+{
+	using vcg::tri::mcf::Defect;
+	switch (defect) {
+	case Defect::NoFaces:
+		return " Make a surface of the points first, e.g. with 'Surface Reconstruction: Screened "
+			   "Poisson'.";
+	case Defect::NotFinite:
+		return " Select them with 'Conditional Vertex Selection', delete them, and run 'Close "
+			   "Holes'.";
+	case Defect::NonManifoldEdges:
+		return " Run 'Repair non Manifold Edges', then, where there are border edges, 'Close "
+			   "Holes'.";
+	case Defect::NonManifoldVertices: return " Run 'Repair non Manifold Vertices by splitting'.";
+	case Defect::OneSided:
+	case Defect::BorderEdges: return " Run 'Close Holes'.";
+	case Defect::NoVolume: return " 'Remove Isolated pieces (wrt Diameter)' does the latter.";
+	case Defect::Other:
+	case Defect::Empty: break;
+	}
+	return "";
+}
+
 } // namespace
 
 Scalarm defaultLength(const ParameterSpec& spec, double diagonal)
@@ -113,6 +137,9 @@ Outcome runFilter(const FilterSpec& filter, MeshDocument& document,
 	}
 	catch (const vcg::tri::mcf::Cancelled&) {
 		outcome.error = "Cancelled; nothing was changed.";
+	}
+	catch (const vcg::tri::mcf::InvalidInput& error) {
+		outcome.error = QString::fromUtf8(error.what()) + cureInMeshLab(error.defect());
 	}
 	catch (const std::bad_alloc&) {
 		outcome.error = "Not enough memory for this mesh; nothing was changed.";

@@ -83,8 +83,7 @@ inline std::vector<int> connectedComponents(
  *
  * @param points    one for each input vertex, mesh units.
  * @param triangles corners as indices into `points`.
- * @throws InvalidInput saying what is wrong, how many, where, and which MeshLab filter cures it;
- *         Cancelled.
+ * @throws InvalidInput saying what is wrong, how many, where, and what cures it; Cancelled.
  * Complexity: about O(V + F): see repairedSoup().
  */
 inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
@@ -94,11 +93,11 @@ inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
 	detail::keepFreedMemory(); // each job begins here
 	CheckedSurface result;
 	if (points.empty())
-		throw InvalidInput("The layer is empty: a closed triangle mesh is needed.");
+		throw InvalidInput("The mesh is empty: a closed triangle mesh is needed.", Defect::Empty);
 	if (triangles.empty())
 		throw InvalidInput(
-			"The layer has no faces: a closed triangle mesh is needed. Make a surface "
-			"of a point cloud first, e.g. with 'Surface Reconstruction: Screened Poisson'.");
+			"The mesh has no faces: a closed triangle mesh is needed, not a cloud of points.",
+			Defect::NoFaces);
 	detail::reportedLoop(int(triangles.size()), progress.part(0, 0.02), what, [&](int f) {
 		for (int v : triangles[f])
 			if (v < 0 || v >= int(points.size()))
@@ -118,11 +117,10 @@ inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
 		for (size_t i = 1; i < std::min<size_t>(3, notFinite.size()); ++i)
 			which += ", " + std::to_string(notFinite[i]);
 		throw InvalidInput(std::to_string(notFinite.size())
-			+ (notFinite.size() == 1 ? " vertex has" : " vertices have")
-			+ " a coordinate that is not a finite number (NaN or infinite), first at vertex "
-			+ which
-			+ ": select them with 'Conditional Vertex Selection' and delete them, then run 'Close "
-			  "Holes'.");
+				+ (notFinite.size() == 1 ? " vertex has" : " vertices have")
+				+ " a coordinate that is not a finite number (NaN or infinite), first at vertex "
+				+ which + ": delete them and fill the holes first.",
+			Defect::NotFinite);
 	}
 
 	std::optional<SurfaceMesh> ready =
@@ -203,10 +201,12 @@ inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
 	}
 	if (!flat.empty())
 		throw InvalidInput("There is no inside for a skeleton to lie in: of "
-			+ std::to_string(components) + " connected component" + (components == 1 ? "" : "s")
-			+ ", "
-			+ detail::countAndPlaces(flat.size(), "encloses no volume", "enclose no volume", flat)
-			+ ". Scale or remove the flat part ('Remove Isolated pieces (wrt Diameter)').");
+				+ std::to_string(components) + " connected component" + (components == 1 ? "" : "s")
+				+ ", "
+				+ detail::countAndPlaces(
+					flat.size(), "encloses no volume", "enclose no volume", flat)
+				+ ". Scale or remove the flat part.",
+			Defect::NoVolume);
 	if (insideOut) {
 		const Progress turning = progress.part(0.9, 0.9);
 		std::vector<Triangle> faces = mesh.triangles(turning);

@@ -18,11 +18,32 @@ public:
 	using std::runtime_error::runtime_error;
 };
 
+/// What keeps a mesh from being the boundary of a solid, for callers that know which tool cures it.
+enum class Defect {
+	Other,
+	Empty,               ///< no vertices
+	NoFaces,             ///< vertices only
+	NotFinite,           ///< coordinates that are NaN or infinite
+	NonManifoldEdges,    ///< with more than two faces; there may be border edges, too
+	NonManifoldVertices, ///< where separate fans of faces touch
+	OneSided,            ///< not orientable; there may be border edges, too
+	BorderEdges,         ///< not watertight
+	NoVolume             ///< a connected component is flat
+};
+
 /// The mesh cannot be skeletonized; the text says what is wrong, how many, where, and what cures it.
 class InvalidInput : public Error
 {
 public:
-	using Error::Error;
+	explicit InvalidInput(const std::string& text, Defect defect = Defect::Other) :
+			Error(text), kind(defect)
+	{
+	}
+
+	Defect defect() const { return kind; }
+
+private:
+	Defect kind;
 };
 
 /// A parameter is out of its range; the text names it and the range.

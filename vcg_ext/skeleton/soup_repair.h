@@ -320,24 +320,29 @@ inline RepairedSoup repairedSoup(const std::vector<Point3d>& points,
 		throw InvalidInput("All faces are degenerate: a closed triangle mesh is needed.");
 	if (defects.nonManifold)
 		throw InvalidInput("The mesh is not two-manifold: it has "
-			+ countAndPlaces(defects.nonManifold, "edge with more than two faces",
-				"edges with more than two faces", defects.nonManifoldPlaces)
-			+ ". Run 'Repair non Manifold Edges' first"
-			+ (defects.border
-					? ", then 'Close Holes' (" + std::to_string(defects.border) + " border edges)."
-					: "."));
+				+ countAndPlaces(defects.nonManifold, "edge with more than two faces",
+					"edges with more than two faces", defects.nonManifoldPlaces)
+				+ ". Split the mesh apart there first"
+				+ (defects.border ? ", then fill the holes (" + std::to_string(defects.border)
+							+ " border edges)."
+								  : "."),
+			Defect::NonManifoldEdges);
 	const int turned = orientCoherently(faces, edges, progress.part(0.72, 0.85));
 	if (turned < 0)
 		throw InvalidInput(
 			"The mesh is one-sided (like a Moebius strip or a Klein bottle): its faces cannot be "
 			"oriented alike, so it encloses no volume"
-			+ (defects.border ? " (and it has " + std::to_string(defects.border) + " border edges)"
-							  : std::string())
-			+ ". Cut it open where it is twisted, then run 'Close Holes'.");
+				+ (defects.border
+						? " (and it has " + std::to_string(defects.border) + " border edges)"
+						: std::string())
+				+ ". Cut it open where it is twisted, then fill the holes.",
+			Defect::OneSided);
 	if (defects.border)
 		throw InvalidInput("The mesh is not watertight: it has "
-			+ countAndPlaces(defects.border, "border edge", "border edges", defects.borderPlaces)
-			+ ". Run 'Close Holes' first.");
+				+ countAndPlaces(
+					defects.border, "border edge", "border edges", defects.borderPlaces)
+				+ ". Fill the holes first.",
+			Defect::BorderEdges);
 	if (turned > 0)
 		result.notes.push_back(
 			std::to_string(turned) + " faces were turned to agree with their neighbours.");
@@ -348,9 +353,10 @@ inline RepairedSoup repairedSoup(const std::vector<Point3d>& points,
 		for (size_t i = 0; i < std::min<size_t>(3, pinched.size()); ++i)
 			places.push_back(points[pinched[i]]);
 		throw InvalidInput("The mesh is not two-manifold: it has "
-			+ countAndPlaces(pinched.size(), "vertex at which separate fans of faces touch",
-				"vertices at which separate fans of faces touch", places)
-			+ ". Run 'Repair non Manifold Vertices by splitting' first.");
+				+ countAndPlaces(pinched.size(), "vertex at which separate fans of faces touch",
+					"vertices at which separate fans of faces touch", places)
+				+ ". Split the mesh apart there first.",
+			Defect::NonManifoldVertices);
 	}
 	return result;
 }
