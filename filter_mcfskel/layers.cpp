@@ -7,6 +7,7 @@
 
 #include <skeleton/check_input.h>
 #include <skeleton/errors.h>
+#include <skeleton/surface_rounding.h>
 #include <skeleton/ticker.h>
 
 #include <QRegularExpression>
@@ -14,7 +15,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <numeric>
 #include <type_traits>
 #include <typeindex>
@@ -176,39 +176,6 @@ vcg::Box3d liveBounds(const CMeshO& mesh)
 	return box;
 }
 
-double toSingle(double x)
-{
-	// Volatile: where GCC 12 vectorises, it drops a conversion to float and back.
-	volatile float single = float(x);
-	return single;
-}
-
-/// Whether single precision resolves a millionth of a surface's diagonal: not far from the origin.
-bool fitsSinglePrecision(const vcg::Box3d& box)
-{
-	double reach = 0;
-	for (int k = 0; k < 3; ++k)
-		reach = std::max({reach, std::abs(box.min[k]), std::abs(box.max[k])});
-	return reach * std::numeric_limits<float>::epsilon() <= 1e-6 * box.Diag();
-}
-
-/// Coordinates of a surface as the pipeline takes them: in single precision, where that resolves it,
-/// also in a host that counts in double. The steps of the contraction amplify the smallest
-/// difference; with the same input bits every host gives the same graph.
-class SurfaceRounding
-{
-public:
-	explicit SurfaceRounding(const vcg::Box3d& box) : single(fitsSinglePrecision(box)) {}
-
-	vcg::Point3d operator()(const vcg::Point3d& p) const
-	{
-		return single ? vcg::Point3d(toSingle(p[0]), toSingle(p[1]), toSingle(p[2])) : p;
-	}
-
-private:
-	bool single;
-};
-
 /// The slots of a layer that are vertices, in order.
 std::vector<int> liveSlots(const CMeshO& mesh)
 {
@@ -304,7 +271,7 @@ double referenceDiagonal(const MeshModel& layer)
 		for (const vcg::Point3d& p : *state->stage.stage->surface)
 			box.Add(p);
 	else if (box = liveBounds(layer.cm); !box.IsNull()) {
-		const SurfaceRounding rounded(box);
+		const mcf::SurfaceRounding rounded(box);
 		box.min = rounded(box.min);
 		box.max = rounded(box.max);
 	}
@@ -360,7 +327,7 @@ SurfaceLayer readSurface(const MeshModel& layer, const mcf::Progress& progress)
 		points.push_back(toDouble(v.cP()));
 		box.Add(points.back());
 	});
-	const SurfaceRounding rounded(box);
+	const mcf::SurfaceRounding rounded(box);
 	mcf::detail::reportedLoop(int(points.size()), progress.part(0.1, 0.1), what,
 		[&](int i) { points[size_t(i)] = rounded(points[size_t(i)]); });
 	std::vector<mcf::Triangle> triangles;

@@ -6,6 +6,7 @@
 #include "sheets.h"
 
 #include <skeleton/collapse_to_curve.h>
+#include <skeleton/collapse_with_sheets.h>
 #include <skeleton/errors.h>
 
 namespace mcfskel {
@@ -26,7 +27,7 @@ Results run(FilterRun& run)
 	const double epsilon = readEpsilon(run.parameters);
 	if (run.parameters.flag("keep_sheets")) {
 		const mcf::SheetCollapse collapse =
-			collapseWithSheets(run, *found.stage, epsilon, run.progress);
+			mcf::collapseWithSheets(*found.stage, epsilon, run.progress, noteLog(run));
 		DocumentEdit edit(run.document);
 		edit.addMesoSkeleton(run.layer(), baseName(run.layer()) + "_skeleton", collapse.skeleton);
 		edit.writeNodes(found.surface, collapse.skeleton.node);

@@ -3,14 +3,10 @@
 
 #include "common.h"
 
-#include <skeleton/measured_surface.h>
-#include <skeleton/noise.h>
 #include <skeleton/poles.h>
-#include <skeleton/resample.h>
-#include <skeleton/target_length.h>
 
-#include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace mcfskel {
 
@@ -180,18 +176,6 @@ QString stageLine(const mcf::StageFigures& figures)
 		.arg(figures.converged ? "; converged" : "");
 }
 
-double meanEdgeLength(const mcf::SurfaceMesh& mesh)
-{
-	double sum = 0;
-	int count = 0;
-	for (int h = 0; h < mesh.halfEdgeSlots(); ++h)
-		if (mesh.isEdge(h)) {
-			sum += std::sqrt(mesh.squaredLength(h));
-			++count;
-		}
-	return count ? sum / count : 0;
-}
-
 std::vector<char> selectionToHold(const FilterRun& run, const SurfaceLayer& surface)
 {
 	if (!run.parameters.flag("fix_selected"))
@@ -211,35 +195,16 @@ void logNotes(const FilterRun& run, const SurfaceLayer& surface)
 		run.log(QString::fromStdString(note));
 }
 
-SurfaceLayer resampledSurface(const FilterRun& run, const mcf::SurfaceMesh& mesh,
-	const mcf::Parameters& parameters, const mcf::Progress& progress)
+mcf::NoteCallback noteLog(const FilterRun& run)
 {
-	const mcf::MeasuredSurface surface(mesh, progress.part(0, 0.05));
-	const mcf::NoiseReport noise = mcf::measureNoise(surface, progress.part(0.05, 0.15));
-	const bool smooth = parameters.denoise && noise.isNoisy();
-	if (noise.isNoisy())
-		run.log(
-			QString("The surface has noise of %1 % of its diagonal: %2.")
-				.arg(100 * noise.level, 0, 'g', 2)
-				.arg(smooth ? QString("smoothing it in %1 rounds").arg(noise.mostRounds())
-							: QString("it may show in the skeleton; 'denoise' would smooth it")));
-	const auto resample = [&](const mcf::MeasuredSurface& calm) {
-		return mcf::resample(calm, mcf::defaultTargetLength(calm, parameters),
-			parameters.resampleIterations, progress.part(smooth ? 0.35 : 0.15, 1));
-	};
-	SurfaceLayer result;
-	result.mesh = std::make_shared<const mcf::SurfaceMesh>(smooth
-			? resample({mcf::smoothed(surface, noise.rounds, progress.part(0.15, 0.3)),
-				progress.part(0.3, 0.35)})
-			: resample(surface));
-	run.log(QString("Resampled to %1 vertices, mean edge length %2 mesh units%3.")
-				.arg(result.mesh->vertexCount())
-				.arg(meanEdgeLength(*result.mesh))
-				.arg(parameters.targetLength == 0 ? " (chosen from the mesh)" : ""));
-	auto identity = std::make_shared<std::vector<int>>(size_t(result.mesh->vertexSlots()));
+	return [&run](const std::string& note) { run.log(QString::fromStdString(note)); };
+}
+
+SurfaceLayer compactSurface(std::shared_ptr<const mcf::SurfaceMesh> mesh)
+{
+	auto identity = std::make_shared<std::vector<int>>(size_t(mesh->vertexSlots()));
 	std::iota(identity->begin(), identity->end(), 0);
-	result.vertexOfSlot = identity;
-	return result;
+	return {std::move(mesh), identity, {}};
 }
 
 PoledSurface surfaceWithPoles(FilterRun& run, mcf::PoleMethod method, const mcf::Progress& progress)

@@ -11,10 +11,10 @@
 #include "../layers.h"
 
 #include <skeleton/curve_skeleton.h>
+#include <skeleton/notes.h>
 #include <skeleton/parameters.h>
 #include <skeleton/stage.h>
 
-#include <chrono>
 #include <memory>
 
 namespace mcfskel {
@@ -51,9 +51,6 @@ Results stageResults(const vcg::tri::mcf::Stage& stage);
 Results curveResults(const vcg::tri::mcf::CurveSkeleton& skeleton);
 QString stageLine(const vcg::tri::mcf::StageFigures& figures);
 
-/// Mean edge length, mesh units; 0 for a mesh without edges.
-double meanEdgeLength(const vcg::tri::mcf::SurfaceMesh& mesh);
-
 /**
  * The selected vertices of the current surface layer, if the parameter fix_selected is set; else empty.
  * @throws InvalidInput if it is set and no vertex is selected.
@@ -63,10 +60,11 @@ std::vector<char> selectionToHold(const FilterRun& run, const SurfaceLayer& surf
 /// Writes the repairs of a surface into the log, once.
 void logNotes(const FilterRun& run, const SurfaceLayer& surface);
 
-/// Smooths what noise a surface has, if the parameters say so, and resamples it; says in the log what
-/// was found and done. The result is what a layer made from it will be.
-SurfaceLayer resampledSurface(const FilterRun& run, const vcg::tri::mcf::SurfaceMesh& mesh,
-	const vcg::tri::mcf::Parameters& parameters, const vcg::tri::mcf::Progress& progress);
+/// Writes the library's notes into the log; valid as long as the run.
+vcg::tri::mcf::NoteCallback noteLog(const FilterRun& run);
+
+/// What a layer made from a surface will be.
+SurfaceLayer compactSurface(std::shared_ptr<const vcg::tri::mcf::SurfaceMesh> mesh);
 
 /// A surface together with its poles.
 struct PoledSurface
@@ -87,23 +85,6 @@ QString stageLabel(const QString& name, const vcg::tri::mcf::Stage& stage);
 /// Layers of the stages of a run, NAME_meso_K, in the frame of the layer that they come from. @throws Cancelled
 void addStages(DocumentEdit& edit, const MeshModel& source, KeptStages& stages,
 	const SurfaceLink& surface, const vcg::tri::mcf::Progress& progress);
-
-/// Measures wall-clock time, seconds.
-class Stopwatch
-{
-public:
-	double lap()
-	{
-		const auto now = Clock::now();
-		const std::chrono::duration<double> seconds = now - start;
-		start = now;
-		return seconds.count();
-	}
-
-private:
-	using Clock = std::chrono::steady_clock;
-	Clock::time_point start = Clock::now();
-};
 
 } // namespace mcfskel
 

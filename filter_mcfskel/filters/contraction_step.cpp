@@ -6,8 +6,9 @@
 #include "sheets.h"
 
 #include <skeleton/errors.h>
+#include <skeleton/flow.h>
 #include <skeleton/held_vertices.h>
-#include <skeleton/skeletonize.h>
+#include <skeleton/start_of_flow.h>
 
 #include <optional>
 
@@ -52,9 +53,9 @@ Start startOf(FilterRun& run, const mcf::Parameters& parameters)
 			"This layer was a stage of the contraction, but its state is gone or its geometry was "
 			"changed: it is taken as a surface of its own.");
 	start.surface = surfaceWithPoles(run, parameters.poleMethod, run.progress.part(0, 0.08));
-	start.stage = std::make_shared<const mcf::Stage>(
-		startOfFlow(run, parameters, *start.surface.surface.mesh, *start.surface.poles,
-			selectionToHold(run, start.surface.surface), run.progress.part(0.08, 0.1)));
+	start.stage = std::make_shared<const mcf::Stage>(mcf::startOfFlow(*start.surface.surface.mesh,
+		*start.surface.poles, selectionToHold(run, start.surface.surface), parameters,
+		run.progress.part(0.08, 0.1), noteLog(run)));
 	start.link = linkTo(run.layer(), start.surface.surface);
 	return start;
 }

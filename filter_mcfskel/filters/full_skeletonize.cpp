@@ -4,13 +4,8 @@
 #include "all_filters.h"
 #include "common.h"
 #include "sheets.h"
-#include "skeletons.h"
 
-#include <skeleton/collapse_to_curve.h>
 #include <skeleton/errors.h>
-#include <skeleton/held_vertices.h>
-#include <skeleton/poles.h>
-#include <skeleton/refine.h>
 #include <skeleton/skeletonize.h>
 
 #include <optional>
@@ -21,100 +16,21 @@ namespace mcf = vcg::tri::mcf;
 
 namespace {
 
-/// What the stages of one run leave behind.
-struct Pipeline
+/// The numbers of a run, for Python and for the log.
+Results resultsOf(const mcf::Skeletonization& run, bool keepSheets)
 {
-	SurfaceLayer input;
-	/// The surface that was contracted: resampled, or the input itself.
-	SurfaceLayer surface;
-	std::shared_ptr<const mcf::PoleSet> poles;
-	bool newPoles = false;
-	/// 1 for the vertices of `surface` that are held; empty if there are none.
-	std::vector<char> held;
-	/// The stages to keep as layers, the last one always among them.
-	KeptStages kept;
-	mcf::CurveSkeleton skeleton;
-	/// Instead of `skeleton` where sheets are kept.
-	std::optional<mcf::SheetCollapse> sheets;
-	Results seconds;
-
-	/// For each vertex of `surface` its node of the skeleton.
-	const std::vector<int>& nodes() const { return sheets ? sheets->skeleton.node : skeleton.node; }
-};
-
-void contractAll(FilterRun& run, const mcf::Parameters& parameters, const mcf::Progress& progress,
-	Pipeline& pipeline)
-{
-	const int keepStages = run.parameters.integer("keep_stages");
-	mcf::StageObserver observer;
-	observer.onFigures = [&](const mcf::StageFigures& figures) { run.log(stageLine(figures)); };
-	if (keepStages > 0) {
-		observer.every = keepStages;
-		observer.onStage = [&](mcf::Stage stage) {
-			pipeline.kept.add(std::make_shared<const mcf::Stage>(std::move(stage)));
-		};
-	}
-	mcf::Stage start = startOfFlow(run, parameters, *pipeline.surface.mesh, *pipeline.poles,
-		pipeline.held, progress.part(0, 0.03));
-	std::optional<KeptStages::FlowShare> share;
-	if (keepStages > 0)
-		share.emplace();
-	mcf::Stage end =
-		mcf::contractToSkeleton(std::move(start), parameters, progress.part(0.03, 1), observer);
-	if (!end.converged)
-		run.log(
-			QString("The contraction has not converged after %1 iterations.").arg(end.iteration));
-	if (pipeline.kept.empty() || pipeline.kept.last()->iteration != end.iteration)
-		pipeline.kept.add(std::make_shared<const mcf::Stage>(std::move(end)));
-}
-
-void skeletonize(FilterRun& run, const mcf::Parameters& parameters, Pipeline& pipeline)
-{
-	const auto note = [&](const char* what, double seconds) {
-		pipeline.seconds[std::string("seconds_") + what] = seconds;
-	};
-	pipeline.input = readSurface(run.layer(), run.progress.part(0, 0.02));
-	logNotes(run, pipeline.input);
-	pipeline.held = selectionToHold(run, pipeline.input);
-
-	Stopwatch watch;
-	pipeline.surface = parameters.resample
-		? resampledSurface(run, *pipeline.input.mesh, parameters, run.progress.part(0.02, 0.15))
-		: pipeline.input;
-	if (parameters.resample && !pipeline.held.empty())
-		pipeline.held = mcf::selectionOnResampled(*pipeline.input.mesh, pipeline.held,
-			*pipeline.surface.mesh, run.progress.part(0.15, 0.15));
-	note("resample", watch.lap());
-
-	if (!parameters.resample)
-		pipeline.poles = readPoles(run.layer(), pipeline.input, run.progress.part(0.15, 0.15));
-	pipeline.newPoles = !pipeline.poles;
-	if (pipeline.newPoles)
-		pipeline.poles = std::make_shared<const mcf::PoleSet>(mcf::medialPoles(
-			*pipeline.surface.mesh, parameters.poleMethod, run.progress.part(0.15, 0.25)));
+	Results results = stageResults(*run.stage);
+	if (run.sheets)
+		results.merge(sheetResults(*run.sheets));
 	else
-		run.log("Taking the medial poles that the layer carries.");
-	note("poles", watch.lap());
-
-	contractAll(run, parameters, run.progress.part(0.25, 0.85), pipeline);
-	note("contraction", watch.lap());
-
-	const mcf::Progress progress = run.progress.part(0.85, 0.9);
-	if (pipeline.kept.last()->hasSheets())
-		pipeline.sheets =
-			collapseWithSheets(run, *pipeline.kept.last(), parameters.epsilon, progress);
-	else
-		pipeline.skeleton =
-			mcf::collapseToCurve(*pipeline.kept.last(), parameters.epsilon, progress);
-	note("collapse", watch.lap());
-	if (parameters.refine && pipeline.sheets)
-		run.log("The skeleton is not refined: that is for curves without sheets.");
-	else if (parameters.refine && !pipeline.held.empty())
-		run.log("The skeleton is not refined: that would move it off the vertices that are held.");
-	else if (parameters.refine)
-		pipeline.skeleton = mcf::refine(pipeline.skeleton, *pipeline.surface.mesh,
-			mcf::RefineParameters(), run.progress.part(0.9, 0.98));
-	note("refine", watch.lap());
+		results.merge(
+			keepSheets ? sheetResults(withoutSheets(run.curve)) : curveResults(run.curve));
+	results["seconds_resample"] = run.seconds.resample;
+	results["seconds_poles"] = run.seconds.poles;
+	results["seconds_contraction"] = run.seconds.contraction;
+	results["seconds_collapse"] = run.seconds.collapse;
+	results["seconds_refine"] = run.seconds.refine;
+	return results;
 }
 
 Results run(FilterRun& run)
@@ -128,44 +44,63 @@ Results run(FilterRun& run)
 	parameters.poleMethod = readPoleMethod(run.parameters);
 	parameters.maxIterations = run.parameters.integer("max_iterations");
 	parameters.check();
-	if (run.parameters.integer("keep_stages") < 0)
+	const int keepStages = run.parameters.integer("keep_stages");
+	if (keepStages < 0)
 		throw mcf::InvalidParameter("Parameter keep_stages must be at least 0.");
-	Pipeline pipeline;
-	skeletonize(run, parameters, pipeline);
 
-	const std::vector<int> inputNodes = parameters.resample
-		? carriedOver(*pipeline.surface.mesh, pipeline.nodes(), *pipeline.input.mesh,
-			run.progress.part(0.98, 0.99))
-		: std::vector<int>();
+	const SurfaceLayer read = readSurface(run.layer(), run.progress.part(0, 0.02));
+	logNotes(run, read);
+	mcf::SurfaceInput surfaceInput {read.mesh, selectionToHold(run, read)};
+	if (!parameters.resample)
+		surfaceInput.poles = readPoles(run.layer(), read, run.progress.part(0.02, 0.02));
+	if (surfaceInput.poles)
+		run.log("Taking the medial poles that the layer carries.");
+
+	KeptStages kept; // the last one is always among them
+	std::optional<KeptStages::FlowShare> share;
+	mcf::Observer observer;
+	observer.onNote = noteLog(run);
+	observer.onFigures = [&](const mcf::StageFigures& figures) { run.log(stageLine(figures)); };
+	if (keepStages > 0) {
+		observer.every = keepStages;
+		observer.onStage = [&](mcf::Stage stage) {
+			kept.add(std::make_shared<const mcf::Stage>(std::move(stage)));
+		};
+		observer.onPhase = [&](mcf::Phase ended) {
+			if (ended == mcf::Phase::Poles)
+				share.emplace();
+			else
+				share.reset();
+		};
+	}
+	const mcf::Skeletonization result =
+		mcf::skeletonize(surfaceInput, parameters, run.progress.part(0.02, 0.99), observer);
+	if (kept.empty() || kept.last()->iteration != result.stage->iteration)
+		kept.add(result.stage);
 
 	DocumentEdit edit(run.document);
 	MeshModel& input = run.layer();
 	const QString name = baseName(input);
 	MeshModel* surface = &input;
-	if (parameters.resample)
+	SurfaceLayer contracted = read;
+	if (parameters.resample) {
 		surface = &edit.addSurface(
-			input, name + "_resampled", *pipeline.surface.mesh, run.progress.part(0.99, 0.99));
-	const SurfaceLink link = linkTo(*surface, pipeline.surface);
-	addStages(edit, input, pipeline.kept, link, run.progress.part(0.99, 1));
-	if (pipeline.sheets)
-		edit.addMesoSkeleton(input, name + "_skeleton", pipeline.sheets->skeleton);
+			input, name + "_resampled", *result.surface, run.progress.part(0.99, 0.99));
+		contracted = compactSurface(result.surface);
+	}
+	const SurfaceLink link = linkTo(*surface, contracted);
+	addStages(edit, input, kept, link, run.progress.part(0.99, 1));
+	if (result.sheets)
+		edit.addMesoSkeleton(input, name + "_skeleton", result.sheets->skeleton);
 	else
-		edit.addCurve(input, name + "_skeleton", {pipeline.skeleton, link, surface->label()});
-	if (pipeline.newPoles)
-		edit.writePoles(*surface, pipeline.surface, pipeline.poles);
-	edit.writeNodes(*surface, *pipeline.surface.vertexOfSlot, pipeline.nodes());
+		edit.addCurve(input, name + "_skeleton", {result.curve, link, surface->label()});
+	if (!surfaceInput.poles)
+		edit.writePoles(*surface, contracted, result.poles);
+	edit.writeNodes(*surface, *contracted.vertexOfSlot, result.nodeOfSurface());
 	if (parameters.resample)
-		edit.writeNodes(input, *pipeline.input.vertexOfSlot, inputNodes);
+		edit.writeNodes(input, *read.vertexOfSlot, result.node);
 	edit.commit();
-
-	Results results = stageResults(*pipeline.kept.last());
-	if (pipeline.sheets)
-		results.merge(sheetResults(*pipeline.sheets));
-	else
-		results.merge(parameters.keepSheets ? sheetResults(withoutSheets(pipeline.skeleton))
-											: curveResults(pipeline.skeleton));
-	results.insert(pipeline.seconds.begin(), pipeline.seconds.end());
-	return results;
+	return resultsOf(result, parameters.keepSheets);
 }
 
 } // namespace

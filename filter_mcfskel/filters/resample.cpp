@@ -4,6 +4,11 @@
 #include "all_filters.h"
 #include "common.h"
 
+#include <skeleton/resampled_surface.h>
+
+#include <memory>
+#include <utility>
+
 namespace mcfskel {
 
 namespace mcf = vcg::tri::mcf;
@@ -17,8 +22,10 @@ Results run(FilterRun& run)
 	parameters.check();
 	const SurfaceLayer surface = readSurface(run.layer(), run.progress.part(0, 0.1));
 	logNotes(run, surface);
+	mcf::ResampledSurface made =
+		mcf::resampledSurface(*surface.mesh, parameters, run.progress.part(0.1, 1), noteLog(run));
 	const SurfaceLayer resampled =
-		resampledSurface(run, *surface.mesh, parameters, run.progress.part(0.1, 1));
+		compactSurface(std::make_shared<const mcf::SurfaceMesh>(std::move(made.mesh)));
 	const mcf::SurfaceMesh& mesh = *resampled.mesh;
 
 	DocumentEdit edit(run.document);
@@ -27,7 +34,7 @@ Results run(FilterRun& run)
 	edit.attachSurface(layer, resampled);
 	edit.commit();
 	return {{"vertices", mesh.vertexCount()}, {"faces", mesh.faceCount()},
-		{"edge_length_mean", meanEdgeLength(mesh)}};
+		{"edge_length_mean", mcf::meanEdgeLength(mesh)}};
 }
 
 } // namespace

@@ -8,12 +8,12 @@
 #include <skeleton/closest_surface.h>
 #include <skeleton/errors.h>
 #include <skeleton/large_arrays.h>
-#include <skeleton/nearest_points.h>
 #include <skeleton/parallel_blocks.h>
 #include <skeleton/point_tree.h>
 #include <skeleton/skeleton_radius.h>
 #include <skeleton/stage.h>
 #include <skeleton/ticker.h>
+#include <skeleton/transferred_nodes.h>
 
 #include <algorithm>
 #include <cmath>
@@ -59,16 +59,6 @@ std::vector<int> nodesFromAttribute(const SkeletonSurface& surface, size_t nodes
 }
 
 } // namespace
-
-std::vector<int> carriedOver(const mcf::SurfaceMesh& from, const std::vector<int>& node,
-	const mcf::SurfaceMesh& to, const mcf::Progress& progress)
-{
-	std::vector<int> result =
-		mcf::nearestPoints(from.position, to.position, meanEdgeLength(from), progress);
-	for (int& v : result)
-		v = node[size_t(v)];
-	return result;
-}
 
 CurveLayer skeletonOn(const MeshModel& layer)
 {
@@ -124,9 +114,9 @@ std::vector<int> nodesOnSurface(const FilterRun& run, const CurveLayer& curve,
 		progress.report(0, reading);
 		const SurfaceLayer own = readSurface(*remembered, progress.part(0, 0.5));
 		if (own.mesh->position.size() == node.size())
-			return remembered == surface.layer
-				? node
-				: carriedOver(*own.mesh, node, *surface.surface.mesh, progress.part(0.5, 1));
+			return remembered == surface.layer ? node
+											   : mcf::transferredNodes(*own.mesh, node,
+												   *surface.surface.mesh, progress.part(0.5, 1));
 	}
 	return nodesFromAttribute(surface, curve.skeleton.position.size());
 }
@@ -210,8 +200,8 @@ void addDerivedSkeleton(FilterRun& run, const CurveLayer& curve, mcf::CurveSkele
 				others.push_back({run.document.getMesh(int(layer->id())),
 					readSurface(*layer, progress.part(0.5, 0.7)), {}});
 	for (Other& other : others)
-		other.node =
-			carriedOver(*own.mesh, skeleton.node, *other.surface.mesh, progress.part(0.7, 1));
+		other.node = mcf::transferredNodes(
+			*own.mesh, skeleton.node, *other.surface.mesh, progress.part(0.7, 1));
 
 	MeshModel& source = run.layer();
 	CurveLayer derived = curve;

@@ -16,11 +16,6 @@
 
 namespace mcfskel {
 
-/// For each vertex of a surface the node that the nearest vertex of another surface has.
-/// @throws Cancelled
-std::vector<int> carriedOver(const vcg::tri::mcf::SurfaceMesh& from, const std::vector<int>& node,
-	const vcg::tri::mcf::SurfaceMesh& to, const vcg::tri::mcf::Progress& progress);
-
 /// The skeleton on a layer with a radius for each node: from the attribute, else from the quality,
 /// else 0.
 CurveLayer skeletonOn(const MeshModel& layer);

@@ -11,13 +11,9 @@
 #include "read_mesh.h"
 
 #include <skeleton/check_input.h>
-#include <skeleton/collapse_to_curve.h>
 #include <skeleton/cotangent_laplacian.h>
-#include <skeleton/poles.h>
-#include <skeleton/refine.h>
-#include <skeleton/resample.h>
 #include <skeleton/skeletonize.h>
-#include <skeleton/target_length.h>
+#include <skeleton/surface_rounding.h>
 
 #include <benchmark/benchmark.h>
 
@@ -29,29 +25,31 @@ namespace mcf = vcg::tri::mcf;
 
 namespace {
 
-/// What the stages of one mesh start from.
+/// What the stages of one mesh start from: what a run with default parameters leaves.
 struct Prepared
 {
 	bench::Soup soup;
-	mcf::SurfaceMesh surface;   ///< the input, checked
-	mcf::SurfaceMesh resampled; ///< with default parameters
+	mcf::SurfaceMesh input; ///< checked
+	mcf::Skeletonization run;
 	mcf::Stage initial;
-	mcf::Stage halfway; ///< after half of the iterations to convergence
-	mcf::Stage last;
-	mcf::CurveSkeleton curve;
+	mcf::Stage halfway;       ///< after half of the iterations to convergence
+	mcf::CurveSkeleton curve; ///< before it is refined
 
 	explicit Prepared(const std::string& path) : soup(bench::readMesh(path))
 	{
 		const mcf::Parameters parameters;
-		surface = mcf::checkedSurface(soup.points, soup.triangles).mesh;
-		resampled = mcf::resample(
-			surface, mcf::defaultTargetLength(surface), parameters.resampleIterations);
-		initial = mcf::initialStage(resampled, mcf::medialPoles(resampled, parameters.poleMethod));
-		last = mcf::contractToSkeleton(initial, parameters);
-		curve = mcf::collapseToCurve(last);
+		input = checked();
+		run = mcf::skeletonize(soup.points, soup.triangles, parameters);
+		initial = mcf::startOfFlow(*run.surface, *run.poles, {}, parameters);
+		curve = mcf::collapseToCurve(*run.stage, parameters.epsilon);
 		mcf::Parameters half = parameters;
-		half.maxIterations = last.iteration / 2;
+		half.maxIterations = run.stage->iteration / 2;
 		halfway = mcf::contractToSkeleton(initial, half);
+	}
+
+	mcf::SurfaceMesh checked() const
+	{
+		return mcf::checkedSurface(mcf::roundedCoordinates(soup.points), soup.triangles).mesh;
 	}
 };
 
@@ -74,19 +72,22 @@ void addStages(const std::string& path)
 	const auto data = std::make_shared<const Prepared>(path);
 	const size_t slash = path.find_last_of('/');
 	const std::string name = path.substr(slash == std::string::npos ? 0 : slash + 1) + "/";
-	const int in = data->surface.vertexCount(), out = data->resampled.vertexCount();
+	const int in = data->input.vertexCount(), out = data->run.surface->vertexCount();
 	const mcf::Parameters parameters;
-	add(name + "check", in,
-		[data] { return mcf::checkedSurface(data->soup.points, data->soup.triangles); });
-	add(name + "resample", out, [data, parameters] {
-		return mcf::resample(
-			data->surface, mcf::defaultTargetLength(data->surface), parameters.resampleIterations);
+	add(name + "whole", in, [data, parameters] {
+		return mcf::skeletonize(data->soup.points, data->soup.triangles, parameters);
 	});
+	add(name + "check", in, [data] { return data->checked(); });
+	add(name + "resample", out,
+		[data, parameters] { return mcf::resampledSurface(data->input, parameters); });
 	add(name + "poles_balls", out,
-		[data] { return mcf::medialPoles(data->resampled, mcf::PoleMethod::Balls); });
+		[data] { return mcf::medialPoles(*data->run.surface, mcf::PoleMethod::Balls); });
 	add(name + "poles_voronoi", out,
-		[data] { return mcf::medialPoles(data->resampled, mcf::PoleMethod::Voronoi); });
-	add(name + "laplacian", out, [data] { return mcf::cotangentLaplacian(data->resampled); });
+		[data] { return mcf::medialPoles(*data->run.surface, mcf::PoleMethod::Voronoi); });
+	add(name + "start_of_flow", out, [data, parameters] {
+		return mcf::startOfFlow(*data->run.surface, *data->run.poles, {}, parameters);
+	});
+	add(name + "laplacian", out, [data] { return mcf::cotangentLaplacian(*data->run.surface); });
 	add(name + "copy_stage", out, [data] { return mcf::Stage(data->initial); });
 	add(name + "first_step", out,
 		[data, parameters] { return mcf::step(data->initial, parameters); });
@@ -94,10 +95,10 @@ void addStages(const std::string& path)
 		[data, parameters] { return mcf::step(data->halfway, parameters); });
 	add(name + "contraction", out,
 		[data, parameters] { return mcf::contractToSkeleton(data->initial, parameters); });
-	add(name + "collapse", data->last.mesh.vertexCount(),
-		[data] { return mcf::collapseToCurve(data->last); });
+	add(name + "collapse", data->run.stage->mesh.vertexCount(),
+		[data, parameters] { return mcf::collapseToCurve(*data->run.stage, parameters.epsilon); });
 	add(name + "refine", int(data->curve.position.size()),
-		[data] { return mcf::refine(data->curve, data->resampled); });
+		[data] { return mcf::refine(data->curve, *data->run.surface); });
 }
 
 } // namespace

@@ -1,25 +1,19 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The bare library as a command: mesh in, skeleton and one line of figures out. The bench times it
-// beside CGAL, without any host in between.
+// The bare library as a command: mesh in, skeleton and one line of figures out, to the last bit what the
+// plugin makes of that mesh. The bench times it beside CGAL, without any host in between.
 
 #include "read_mesh.h"
 #include "report.h"
 
 #include <skeleton/check_input.h>
-#include <skeleton/collapse_to_curve.h>
-#include <skeleton/first_stage.h>
-#include <skeleton/measured_surface.h>
-#include <skeleton/noise.h>
 #include <skeleton/parameters.h>
-#include <skeleton/poles.h>
 #include <skeleton/refine.h>
-#include <skeleton/resample.h>
+#include <skeleton/resampled_surface.h>
 #include <skeleton/skeletonize.h>
-#include <skeleton/target_length.h>
+#include <skeleton/surface_rounding.h>
 
-#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <functional>
@@ -43,12 +37,12 @@ const char* const usage =
 	"  --no-denoise              resample without smoothing the noise first\n"
 	"  --resample-only           stop after the resampling\n"
 	"  --pole-method METHOD      voronoi or balls\n"
-	"  --all-poles               find the poles of all vertices, as the plugin does for its layers\n"
 	"  --w-l W  --w-h W  --w-m W weights of Eq. 6, in the paper's units\n"
 	"  --epsilon PCT             edges shorter than this are collapsed, in % of the diagonal\n"
 	"  --split-angle DEGREES     edges opposite wider angles are split\n"
 	"  --max-iterations N        stop the flow after this many\n"
-	"  --shortest-edge PCT       edges of the curve shorter than this are collapsed, likewise\n"
+	"  --keep-sheets             flat parts become sheets: faces of the skeleton\n"
+	"  --sheet-threshold S       how flat they have to be, 0 to 1\n"
 	"  --no-refine               leave the curve as the flow made it\n"
 	"  --spacing PCT             distance of the refined nodes, in % of the diagonal\n"
 	"  --smoothing K             smoothness of the refined branches\n"
@@ -62,8 +56,6 @@ struct Options
 {
 	std::string mesh, skeleton, surface, stage;
 	bool resampleOnly = false;
-	bool allPoles = false;
-	double shortestEdge = 1e-4;
 	bool verbose = false;
 	bool progressGaps = false;
 	mcf::Parameters parameters;
@@ -88,9 +80,9 @@ Options parse(int argc, char** argv)
 		{"--no-resample", [&] { p.resample = false; }},
 		{"--progress-gaps", [&] { options.progressGaps = true; }},
 		{"--resample-only", [&] { options.resampleOnly = true; }},
-		{"--all-poles", [&] { options.allPoles = true; }},
 		{"--no-denoise", [&] { p.denoise = false; }},
 		{"--no-refine", [&] { p.refine = false; }},
+		{"--keep-sheets", [&] { p.keepSheets = true; }},
 		{"--verbose", [&] { options.verbose = true; }},
 	};
 	using Text = const std::string&;
@@ -106,7 +98,7 @@ Options parse(int argc, char** argv)
 		{"--w-m", [&](Text t) { p.wM = std::stod(t); }},
 		{"--epsilon", [&](Text t) { p.epsilon = std::stod(t) / 100; }},
 		{"--split-angle", [&](Text t) { p.splitAngle = std::stod(t); }},
-		{"--shortest-edge", [&](Text t) { options.shortestEdge = std::stod(t) / 100; }},
+		{"--sheet-threshold", [&](Text t) { p.sheetThreshold = std::stod(t); }},
 		{"--max-iterations", [&](Text t) { p.maxIterations = std::stoi(t); }},
 		{"--spacing", [&](Text t) { r.spacing = std::stod(t) / 100; }},
 		{"--smoothing", [&](Text t) { r.smoothing = std::stod(t); }},
@@ -183,25 +175,72 @@ private:
 	}
 };
 
-mcf::SurfaceMesh resampled(const mcf::SurfaceMesh& mesh, const mcf::Parameters& parameters,
-	const mcf::Progress& progress, bench::Json& report)
+/// The skeleton with its sheets, if there are any, as faces.
+bench::Curve toCurve(const mcf::Skeletonization& result)
 {
-	const auto resample = [&](const mcf::MeasuredSurface& surface) {
-		return mcf::resample(surface, mcf::defaultTargetLength(surface, parameters),
-			parameters.resampleIterations, progress);
-	};
-	const mcf::MeasuredSurface surface(mesh, progress);
-	const mcf::NoiseReport noise = mcf::measureNoise(surface, progress);
-	report.add("noise", noise.level);
-	return parameters.denoise && noise.isNoisy()
-		? resample({mcf::smoothed(surface, noise.rounds, progress), progress})
-		: resample(surface);
+	if (!result.sheets)
+		return toCurve(result.curve);
+	mcf::CurveSkeleton curves;
+	curves.position = result.sheets->skeleton.position;
+	curves.edges = result.sheets->skeleton.edges;
+	bench::Curve curve = toCurve(curves);
+	for (const auto& face : result.sheets->skeleton.faces)
+		curve.faces.push_back({size_t(face[0]), size_t(face[1]), size_t(face[2])});
+	return curve;
+}
+
+/// Where a program's time goes, by phase; the names are those of all programs of the bench.
+const std::map<mcf::Phase, const char*> phaseNames = {{mcf::Phase::Check, "check"},
+	{mcf::Phase::Resample, "resample"}, {mcf::Phase::Poles, "poles"},
+	{mcf::Phase::Contraction, "contraction"}, {mcf::Phase::Collapse, "conversion"},
+	{mcf::Phase::Refine, "refine"}};
+
+void addSurface(const mcf::SurfaceMesh& surface, const Options& options, bench::Json& report)
+{
+	int components = 0;
+	mcf::connectedComponents(surface, &components);
+	report.add("mesh_components", components).add("vertices", surface.vertexCount());
+	if (!options.surface.empty())
+		bench::writeMesh(surface, options.surface);
+}
+
+void addSkeleton(const mcf::Skeletonization& result, const Options& options, bench::Json& report)
+{
+	const bench::Curve curve = toCurve(result);
+	mcf::CurveSkeleton graph = result.curve;
+	if (result.sheets) {
+		graph.position = result.sheets->skeleton.position;
+		graph.edges = result.sheets->skeleton.edges;
+	}
+	const mcf::SkeletonStatistics counts = mcf::statistics(graph);
+	const mcf::Stage& stage = *result.stage;
+	report.add("poles_missing", result.poles->missing())
+		.add("iterations", stage.iteration)
+		.add("converged", stage.converged)
+		.add("area_fraction", stage.areaFraction())
+		.add("volume_fraction", stage.volumeFraction())
+		.add("fixed_fraction", stage.fixedFraction())
+		.add("stage_vertices", stage.mesh.vertexCount())
+		.add("refined", result.refined)
+		.add("skeleton_vertices", curve.points.size())
+		.add("skeleton_edges", curve.edges.size())
+		.add("components", counts.components)
+		.add("cycles", counts.cycles)
+		.add("branches", counts.branches)
+		.add("terminals", counts.terminals)
+		.add("junctions", counts.junctions)
+		.add("skeleton_length", counts.length);
+	if (result.sheets)
+		report.add("sheet_faces", curve.faces.size());
+	if (!options.stage.empty())
+		bench::writeMesh(stage.mesh, options.stage);
+	if (!options.skeleton.empty())
+		bench::writeObj(curve, options.skeleton);
 }
 
 void run(const Options& options)
 {
 	const mcf::Parameters& parameters = options.parameters;
-	parameters.check();
 	bench::Soup soup = bench::readMesh(options.mesh);
 	bench::Json seconds, report;
 	report.add("program", "mcfskel").add("mesh", options.mesh);
@@ -210,66 +249,33 @@ void run(const Options& options)
 	Listener listener;
 	const mcf::Progress progress = options.progressGaps ? listener.progress() : mcf::Progress();
 	bench::Stopwatch watch;
-	mcf::CheckedSurface checked = mcf::checkedSurface(soup.points, soup.triangles, progress);
-	seconds.add("check", watch.lap());
-	if (options.verbose)
-		for (const std::string& note : checked.notes)
-			std::cerr << note << '\n';
-	soup = bench::Soup();
-
-	watch.lap();
-	if (parameters.resample)
-		checked.mesh = resampled(checked.mesh, parameters, progress, report);
-	seconds.add("resample", watch.lap());
-	const mcf::SurfaceMesh& surface = checked.mesh;
-	int components = 0;
-	mcf::connectedComponents(surface, &components, progress);
-	report.add("mesh_components", components).add("vertices", surface.vertexCount());
-	if (!options.surface.empty())
-		bench::writeMesh(surface, options.surface);
-
-	if (!options.resampleOnly) {
-		watch.lap();
-		mcf::PoleSet poles;
-		if (options.allPoles)
-			poles = mcf::medialPoles(surface, parameters.poleMethod, progress);
-		mcf::Stage start =
-			mcf::firstStage(surface, parameters, options.allPoles ? &poles : nullptr, progress);
-		const auto polesMissing = std::count_if(
-			start.poleRadius.begin(), start.poleRadius.end(), [](double r) { return r < 0; });
-		seconds.add("poles", watch.lap());
-		mcf::StageObserver observer;
-		if (options.verbose)
-			observer.onFigures = describe;
-		const mcf::Stage stage =
-			mcf::contractToSkeleton(std::move(start), parameters, progress, observer);
-		seconds.add("contraction", watch.lap());
-		mcf::CurveSkeleton skeleton = mcf::collapseToCurve(stage, options.shortestEdge, progress);
-		seconds.add("conversion", watch.lap());
-		if (parameters.refine)
-			skeleton = mcf::refine(skeleton, surface, options.refinement, progress);
-		seconds.add("refine", watch.lap());
-
-		const mcf::SkeletonStatistics counts = mcf::statistics(skeleton);
-		report.add("poles_missing", size_t(polesMissing))
-			.add("iterations", stage.iteration)
-			.add("converged", stage.converged)
-			.add("area_fraction", stage.areaFraction())
-			.add("volume_fraction", stage.volumeFraction())
-			.add("fixed_fraction", stage.fixedFraction())
-			.add("stage_vertices", stage.mesh.vertexCount())
-			.add("skeleton_vertices", skeleton.position.size())
-			.add("skeleton_edges", skeleton.edges.size())
-			.add("components", counts.components)
-			.add("cycles", counts.cycles)
-			.add("branches", counts.branches)
-			.add("terminals", counts.terminals)
-			.add("junctions", counts.junctions)
-			.add("skeleton_length", counts.length);
-		if (!options.stage.empty())
-			bench::writeMesh(stage.mesh, options.stage);
-		if (!options.skeleton.empty())
-			bench::writeObj(toCurve(skeleton), options.skeleton);
+	mcf::Observer observer;
+	observer.onPhase = [&](mcf::Phase phase) { seconds.add(phaseNames.at(phase), watch.lap()); };
+	if (options.verbose) {
+		observer.onNote = [](const std::string& note) { std::cerr << note << '\n'; };
+		observer.onFigures = describe;
+	}
+	if (options.resampleOnly) {
+		mcf::SurfaceMesh surface =
+			mcf::checkedSurface(mcf::roundedCoordinates(soup.points), soup.triangles, progress)
+				.mesh;
+		observer.onPhase(mcf::Phase::Check);
+		if (parameters.resample) {
+			mcf::ResampledSurface resampled =
+				mcf::resampledSurface(surface, parameters, progress, observer.onNote);
+			report.add("noise", resampled.noise.level);
+			surface = std::move(resampled.mesh);
+		}
+		observer.onPhase(mcf::Phase::Resample);
+		addSurface(surface, options, report);
+	}
+	else {
+		const mcf::Skeletonization result = mcf::skeletonize(
+			soup.points, soup.triangles, parameters, progress, observer, options.refinement);
+		if (parameters.resample)
+			report.add("noise", result.noise.level);
+		addSurface(*result.surface, options, report);
+		addSkeleton(result, options, report);
 	}
 	if (options.progressGaps)
 		report.add("longest_silence_ms", listener.longestMs())

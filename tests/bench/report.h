@@ -135,9 +135,11 @@ struct Curve
 {
 	std::vector<std::array<double, 3>> points;
 	std::vector<std::pair<std::size_t, std::size_t>> edges;
+	/// Of sheets; empty for a curve skeleton.
+	std::vector<std::array<std::size_t, 3>> faces = {};
 };
 
-/// Writes @p curve as OBJ, one `l a b` line per edge.
+/// Writes @p curve as OBJ, one `l a b` line per edge, one `f a b c` line per face.
 /// @throws std::runtime_error if the file cannot be written.
 inline void writeObj(const Curve& curve, const std::string& path)
 {
@@ -147,6 +149,8 @@ inline void writeObj(const Curve& curve, const std::string& path)
 		out << "v " << p[0] << ' ' << p[1] << ' ' << p[2] << '\n';
 	for (const auto& e : curve.edges)
 		out << "l " << e.first + 1 << ' ' << e.second + 1 << '\n';
+	for (const auto& f : curve.faces)
+		out << "f " << f[0] + 1 << ' ' << f[1] + 1 << ' ' << f[2] + 1 << '\n';
 	if (!out.flush())
 		throw std::runtime_error("cannot write " + path);
 }

@@ -5,7 +5,7 @@
 #include "shapes.h"
 
 #include "skeleton/collapse_to_curve.h"
-#include "skeleton/skeletonize.h"
+#include "skeleton/flow.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 
 #include "skeleton/collapse_to_curve.h"
 #include "skeleton/first_stage.h"
-#include "skeleton/skeletonize.h"
+#include "skeleton/flow.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include "skeleton/collapse_to_curve.h"
 #include "skeleton/held_vertices.h"
 #include "skeleton/poles.h"
-#include "skeleton/skeletonize.h"
+#include "skeleton/flow.h"
 
 #include <gtest/gtest.h>
 

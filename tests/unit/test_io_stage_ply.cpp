@@ -7,7 +7,7 @@
 #include "io_skeleton/skeleton_ply.h"
 #include "io_skeleton/stage_ply.h"
 #include "skeleton/poles.h"
-#include "skeleton/skeletonize.h"
+#include "skeleton/flow.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include "shapes.h"
 
 #include "skeleton/parameters.h"
-#include "skeleton/skeletonize.h"
+#include "skeleton/flow.h"
 
 #include <gtest/gtest.h>
 

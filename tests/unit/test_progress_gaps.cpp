@@ -15,7 +15,7 @@
 #include "skeleton/point_tree.h"
 #include "skeleton/refine.h"
 #include "skeleton/resample.h"
-#include "skeleton/skeletonize.h"
+#include "skeleton/flow.h"
 #include "skeleton/soup_repair.h"
 #include "skeleton/voronoi_poles.h"
 

@@ -11,7 +11,7 @@
 #include "skeleton/first_stage.h"
 #include "skeleton/refine.h"
 #include "skeleton/resample.h"
-#include "skeleton/skeletonize.h"
+#include "skeleton/flow.h"
 #include "skeleton/target_length.h"
 
 #include <gtest/gtest.h>

@@ -8,7 +8,7 @@
 #include "skeleton/poles.h"
 #include "skeleton/sheet_marks.h"
 #include "skeleton/sheetness.h"
-#include "skeleton/skeletonize.h"
+#include "skeleton/flow.h"
 
 #include <gtest/gtest.h>
 

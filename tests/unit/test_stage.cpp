@@ -4,7 +4,7 @@
 #include "mesh_checks.h"
 #include "shapes.h"
 
-#include "skeleton/skeletonize.h"
+#include "skeleton/flow.h"
 #include "skeleton/stage.h"
 
 #include <gtest/gtest.h>

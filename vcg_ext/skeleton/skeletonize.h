@@ -1,193 +1,224 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-/// @file Fig. 4 of the paper as code: one step of the contraction, and the run to the end.
+/// @file Fig. 4 of the paper, top to bottom: from a closed surface to its skeleton.
 
 #ifndef VCG_MCF_SKELETONIZE_H
 #define VCG_MCF_SKELETONIZE_H
 
-#include "breadth_first_order.h"
-#include "contraction.h"
-#include "degeneracy.h"
-#include "local_remeshing.h"
+#include "check_input.h"
+#include "collapse_to_curve.h"
+#include "collapse_with_sheets.h"
+#include "flow.h"
+#include "held_vertices.h"
+#include "notes.h"
 #include "parameters.h"
+#include "poles.h"
 #include "progress.h"
-#include "sheet_marks.h"
-#include "stage.h"
-#include "stage_frames.h"
-#include "ticker.h"
+#include "refine.h"
+#include "resampled_surface.h"
+#include "start_of_flow.h"
+#include "surface_rounding.h"
+#include "transferred_nodes.h"
 
-#include <cmath>
+#include <chrono>
 #include <functional>
-#include <numeric>
+#include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace vcg::tri::mcf {
 
+/// The lines of Fig. 4, ours at both ends included.
+enum class Phase { Check, Resample, Poles, Contraction, Collapse, Refine };
+
+/// Wall-clock time of each phase, seconds; 0 for those that were left out.
+struct PhaseSeconds
+{
+	double check = 0, resample = 0, poles = 0, contraction = 0, collapse = 0, refine = 0;
+};
+
+/// Callbacks invoked during skeletonize(), beside those of the contraction. Unset ones cost nothing.
+struct Observer : StageObserver
+{
+	/// One sentence on what was repaired, found, or decided.
+	NoteCallback onNote;
+	/// A phase has ended, or was left out.
+	std::function<void(Phase)> onPhase;
+};
+
+/// A surface that has been checked, and what is known of it.
+struct SurfaceInput
+{
+	/// As checkedSurface() makes it: closed, oriented, compact.
+	std::shared_ptr<const SurfaceMesh> mesh;
+	/// 1 for the vertices that are to stay where they are; empty if there are none.
+	std::vector<char> held = {};
+	/// The medial poles of all vertices; null: they are computed. Of no use if the surface is resampled.
+	std::shared_ptr<const PoleSet> poles = nullptr;
+};
+
+/// What skeletonize() returns.
+struct Skeletonization
+{
+	/// The skeleton; empty where there are sheets.
+	CurveSkeleton curve;
+	/// The skeleton where sheets were kept.
+	std::optional<SheetCollapse> sheets;
+	/// For each vertex of the input its node of the skeleton, -1 for vertices that no face uses.
+	std::vector<int> node;
+	/// The surface that was contracted: the resampled one, or the input; the skeleton's own `node` is of it.
+	std::shared_ptr<const SurfaceMesh> surface;
+	/// Its medial poles.
+	std::shared_ptr<const PoleSet> poles;
+	/// The last stage of the contraction, with iterations, convergence and fractions: see figuresOf().
+	std::shared_ptr<const Stage> stage;
+	/// The noise of the input; not measured if it is not resampled.
+	NoiseReport noise;
+	/// Whether the curve was refined.
+	bool refined = false;
+	PhaseSeconds seconds;
+
+	/// For each vertex of `surface` its node of the skeleton.
+	const std::vector<int>& nodeOfSurface() const
+	{
+		return sheets ? sheets->skeleton.node : curve.node;
+	}
+};
+
 namespace detail {
 
-/// After every so many steps a stage is numbered anew, so that neighbours are near each other in memory and
-/// in the elimination order. Stage 0 is numbered so by surfaceForFlow().
-constexpr int renumberEvery = 4;
-
-/// step() of a stage that has entered its frames.
-inline void stepInFrames(
-	Stage& stage, const StageFrames& frames, const Parameters& parameters, const Progress& progress)
+/// Measures the phases of a run and reports their ends.
+class PhaseClock
 {
-	SurfaceMesh& mesh = stage.mesh;
-	const int before = mesh.vertexSlots();
-	contract(stage, parameters, progress.part(0, 0.8));
-	for (int v = 0; v < mesh.vertexSlots(); ++v)
-		if (!stage.fixed[v])
-			mesh.position[v] = PrincipalFrame::rounded(mesh.position[v]);
-	MergeForest forest(mesh.vertexSlots());
-	const std::vector<int> candidates =
-		collapseShortEdges(stage, parameters.epsilon, forest, progress.part(0.8, 0.9));
-	splitWideAngles(stage, parameters, forest, progress.part(0.9, 1));
-	fixDegenerateVertices(stage, candidates, parameters.epsilon);
-	fixArrivedSheets(stage, parameters.epsilon);
+public:
+	explicit PhaseClock(const Observer& observer) : observer(observer) {}
 
-	// Vertices that have merged, or are new, are between grid points; so are the poles of new ones.
-	const auto toGrid = [&](int v) {
-		if (!stage.held[v])
-			mesh.position[v] = PrincipalFrame::rounded(mesh.position[v]);
-	};
-	std::vector<int> mergedInto(before);
-	for (int v = 0; v < before; ++v) {
-		mergedInto[v] = forest.find(v);
-		if (mergedInto[v] != v)
-			toGrid(mergedInto[v]);
+	/// The seconds since the last phase ended.
+	double end(Phase phase)
+	{
+		const Clock::time_point now = Clock::now();
+		const std::chrono::duration<double> seconds = now - std::exchange(begin, now);
+		if (observer.onPhase)
+			observer.onPhase(phase);
+		return seconds.count();
 	}
-	for (int v = before; v < mesh.vertexSlots(); ++v) {
-		toGrid(v);
-		stage.pole[v] = PrincipalFrame::rounded(stage.pole[v]);
-	}
-	const std::vector<int> newVertex = (stage.iteration + 1) % renumberEvery == 0
-		? renumberBreadthFirst(mesh, progress.part(1, 1))
-		: mesh.compact();
-	for (int& node : stage.node)
-		node = newVertex[mergedInto[node]];
-	const auto renumber = [&](auto& ofVertex) {
-		ofVertex = renumbered(ofVertex, newVertex, mesh.vertexSlots());
-	};
-	renumber(stage.pole);
-	renumber(stage.poleRadius);
-	renumber(stage.fixed);
-	renumber(stage.held);
-	renumber(stage.sheet);
-	renumber(stage.component);
 
-	const Extent extent = frames.extent(stage);
-	constexpr double settled = 1e-4;
-	stage.converged = true;
-	for (size_t c = 0; c < extent.area.size(); ++c)
-		stage.converged &=
-			std::abs(extent.area[c] - stage.area[c]) < settled * stage.initialArea[c];
-	stage.area = extent.area;
-	stage.volume = extent.volume;
-	stage.converged &=
-		stage.volumeFraction() < 0.05 || stage.fixedFraction() > 0.5 || stage.heldCount() > 0;
-	++stage.iteration;
-	stage.epsilon = parameters.epsilon;
-}
+private:
+	using Clock = std::chrono::steady_clock;
+	const Observer& observer;
+	Clock::time_point begin = Clock::now();
+};
 
 } // namespace detail
 
 /**
- * One iteration of the loop of Fig. 4: weights and contraction, then connectivity, then degeneracy.
- *
- * Convergence: in every component the area changed by less than 1e-4 of the surface's area, and there
- * is nothing left to contract: less than 5 % of the volume (in the end it is some 1e-5), or most
- * vertices are fixed (a body thinner than epsilon keeps its volume). The area alone would take a flow
- * for finished that a large w_H makes slow; it must do where vertices are held, since they may hold
- * any volume open. A converged stage stays as it is.
- *
- * All of it happens in the shape's own coordinates, see StageFrames.
- * @return the next stage; the given one is not changed.
- * @throws SolverError, InvalidParameter, Cancelled.
+ * Computes the skeleton of a checked surface.
+ * @param parameters all of them are read.
+ * @param refinement the knobs of refine(), where parameters.refine is set.
+ * @throws InvalidParameter, InvalidInput, SolverError, Cancelled.
+ * Complexity: O(V log V) and some 10 to 40 steps of the flow.
  */
-inline Stage step(Stage stage, const Parameters& parameters, const Progress& progress = Progress())
+inline Skeletonization skeletonize(const SurfaceInput& input, const Parameters& parameters,
+	const Progress& progress = Progress(), const Observer& observer = Observer(),
+	const RefineParameters& refinement = RefineParameters())
 {
 	parameters.check();
-	if (stage.converged)
-		return stage;
-	StageFrames frames(stage, progress.part(0, 0));
-	frames.enter(stage);
-	detail::stepInFrames(stage, frames, parameters, progress);
-	frames.leave(stage);
-	return stage;
+	refinement.check();
+	const auto note = [&](const std::string& text) {
+		if (observer.onNote)
+			observer.onNote(text);
+	};
+	detail::PhaseClock clock(observer);
+	Skeletonization result;
+
+	result.surface = input.mesh;
+	std::vector<char> held = input.held;
+	if (parameters.resample) {
+		ResampledSurface resampled =
+			resampledSurface(*input.mesh, parameters, progress.part(0, 0.13), observer.onNote);
+		result.surface = std::make_shared<const SurfaceMesh>(std::move(resampled.mesh));
+		result.noise = std::move(resampled.noise);
+		if (!held.empty())
+			held =
+				selectionOnResampled(*input.mesh, held, *result.surface, progress.part(0.13, 0.13));
+	}
+	const SurfaceMesh& surface = *result.surface;
+	result.seconds.resample = clock.end(Phase::Resample);
+
+	if (!parameters.resample)
+		result.poles = input.poles;
+	if (!result.poles)
+		result.poles = std::make_shared<const PoleSet>(
+			medialPoles(surface, parameters.poleMethod, progress.part(0.13, 0.23)));
+	result.seconds.poles = clock.end(Phase::Poles);
+
+	Stage start = startOfFlow(
+		surface, *result.poles, held, parameters, progress.part(0.23, 0.25), observer.onNote);
+	result.stage = std::make_shared<const Stage>(
+		contractToSkeleton(std::move(start), parameters, progress.part(0.25, 0.85), observer));
+	const Stage& stage = *result.stage;
+	if (!stage.converged)
+		note("The contraction has not converged after " + std::to_string(stage.iteration)
+			+ " iterations.");
+	result.seconds.contraction = clock.end(Phase::Contraction);
+
+	if (stage.hasSheets())
+		result.sheets = collapseWithSheets(
+			stage, parameters.epsilon, progress.part(0.85, 0.9), observer.onNote);
+	else
+		result.curve = collapseToCurve(stage, parameters.epsilon, progress.part(0.85, 0.9));
+	result.seconds.collapse = clock.end(Phase::Collapse);
+
+	if (parameters.refine && result.sheets)
+		note("The skeleton is not refined: that is for curves without sheets.");
+	else if (parameters.refine && !held.empty())
+		note("The skeleton is not refined: that would move it off the vertices that are held.");
+	else if (parameters.refine) {
+		result.curve = refine(result.curve, surface, refinement, progress.part(0.9, 0.99));
+		result.refined = true;
+	}
+	result.seconds.refine = clock.end(Phase::Refine);
+
+	result.node = parameters.resample
+		? transferredNodes(surface, result.nodeOfSurface(), *input.mesh, progress.part(0.99, 1))
+		: result.nodeOfSurface();
+	return result;
 }
 
-/// Who is told of the stages of a run. What nobody asks for costs nothing.
-struct StageObserver
-{
-	/// Called with stages as step() would make them, the observer's own, e.g. to keep them; may be empty.
-	/// Each costs a copy.
-	std::function<void(Stage)> onStage;
-	/// Every which iteration onStage is called, >= 1.
-	int every = 1;
-	/// Called with the figures of each new stage; may be empty.
-	std::function<void(const StageFigures&)> onFigures;
-};
-
 /**
- * Repeats step() until the flow has converged or parameters.maxIterations are made.
- * @throws as step().
+ * Computes the skeleton of any triangle mesh: checks it as checkedSurface() does, in single precision
+ * where that is enough, see SurfaceRounding, then as above.
+ * @param points    vertices, mesh units.
+ * @param triangles corners as indices into `points`.
+ * @throws as above; InvalidInput if they do not bound a solid.
  */
-inline Stage contractToSkeleton(Stage stage, const Parameters& parameters,
-	const Progress& progress = Progress(), const StageObserver& observer = StageObserver())
+inline Skeletonization skeletonize(const std::vector<Point3d>& points,
+	const std::vector<Triangle>& triangles, const Parameters& parameters = Parameters(),
+	const Progress& progress = Progress(), const Observer& observer = Observer(),
+	const RefineParameters& refinement = RefineParameters())
 {
 	parameters.check();
-	const Progress begin = progress.part(0, 0), end = progress.part(1, 1);
-	StageFrames frames(stage, begin); // found by the surface's own correspondence
-	// The surface, and the first stages, have many more vertices than the others. Only what becomes of
-	// the vertices of one of them is followed, until half of these are gone; the surface's are told when
-	// somebody looks, and at the end.
-	const std::vector<int> ofSurface = std::move(stage.node);
-	std::vector<int> ofFirst(stage.mesh.vertexSlots());
-	std::iota(ofFirst.begin(), ofFirst.end(), 0);
-	stage.node = ofFirst;
-	const auto goesOn = [&] {
-		return !stage.converged && stage.iteration < parameters.maxIterations;
-	};
-	// Held vertices have places outside that those inside do not tell: each step finds them again.
-	const bool staysInside = stage.heldCount() == 0 && goesOn();
-	if (staysInside)
-		frames.enter(stage);
-	const auto outside = [&](Stage inside, const Progress& part) {
-		if (staysInside)
-			frames.leave(inside);
-		std::vector<int> node;
-		node.reserve(ofSurface.size());
-		detail::reportedLoop(int(ofSurface.size()), part, "Contracting",
-			[&](int s) { node.push_back(inside.node[ofFirst[ofSurface[s]]]); });
-		inside.node = std::move(node);
-		return inside;
-	};
-	double done = 0;
-	while (goesOn()) {
-		// The area falls by a like factor each iteration: its logarithm tells how far it is.
-		const double next = done + 0.1 * (1 - done);
-		const Progress part = progress.part(done, next);
-		if (staysInside)
-			detail::stepInFrames(stage, frames, parameters, part);
-		else
-			stage = step(std::move(stage), parameters, part);
-		done = next;
-		if (observer.onFigures)
-			observer.onFigures(figuresOf(stage));
-		if (observer.onStage && stage.iteration % observer.every == 0)
-			observer.onStage(outside(stage, part.part(1, 1)));
-		if (2 * size_t(stage.mesh.vertexSlots()) < stage.node.size()) {
-			for (int& node : ofFirst)
-				node = stage.node[node];
-			stage.node.resize(stage.mesh.vertexSlots());
-			std::iota(stage.node.begin(), stage.node.end(), 0);
-		}
-	}
-	return outside(std::move(stage), end);
+	detail::PhaseClock clock(observer);
+	CheckedSurface checked = checkedSurface(
+		roundedCoordinates(points, progress.part(0, 0.002)), triangles, progress.part(0.002, 0.02));
+	if (observer.onNote)
+		for (const std::string& text : checked.notes)
+			observer.onNote(text);
+	const double seconds = clock.end(Phase::Check);
+
+	const SurfaceInput input {std::make_shared<const SurfaceMesh>(std::move(checked.mesh))};
+	Skeletonization result =
+		skeletonize(input, parameters, progress.part(0.02, 1), observer, refinement);
+	result.seconds.check = seconds;
+	std::vector<int> node;
+	node.reserve(checked.vertexOfInput.size());
+	for (int v : checked.vertexOfInput)
+		node.push_back(v < 0 ? -1 : result.node[size_t(v)]);
+	result.node = std::move(node);
+	return result;
 }
 
 } // namespace vcg::tri::mcf
