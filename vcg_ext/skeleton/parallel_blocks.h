@@ -62,7 +62,7 @@ template <class Body>
 void forEachPart(
 	const std::vector<int>& start, const Progress& progress, const char* what, const Body& body)
 {
-	constexpr double leastForTeam = 1 << 12; // in less, the others hardly wake up
+	[[maybe_unused]] constexpr double leastForTeam = 1 << 12; // in less, the others hardly wake up
 	const int count = int(start.size()) - 1;
 	const auto size = [&](int part) { return start[part + 1] - start[part]; };
 	std::vector<int> order(count);
@@ -118,7 +118,7 @@ void forEachPart(
 }
 
 /// Parts of [0, count) for forEachPart(), one for each thread; a single one if count is less than `leastForTeam`.
-inline std::vector<int> rangesForThreads(int count, int leastForTeam)
+inline std::vector<int> rangesForThreads(int count, [[maybe_unused]] int leastForTeam)
 {
 	int parts = 1;
 #ifdef _OPENMP

@@ -7,6 +7,7 @@
 #define VCG_MCF_PARAMETERS_H
 
 #include "errors.h"
+#include "has_qhull.h"
 
 #include <cmath>
 #include <string>
@@ -15,7 +16,7 @@ namespace vcg::tri::mcf {
 
 /// Where the medial poles of the surface come from (Sec. 4.5).
 enum class PoleMethod {
-	Voronoi, ///< the Voronoi diagram of the vertices (Qhull), as in the paper
+	Voronoi, ///< the Voronoi diagram of the vertices, as in the paper; needs Qhull: see has_qhull.h
 	Balls    ///< shrinking balls (Ma, Bae, Choi 2012): the same poles, faster, and never outside
 };
 
@@ -68,6 +69,8 @@ struct Parameters
 		require(targetLength >= 0 && targetLength <= 0.5, "target_length",
 			"between 0 and 50 % of the diagonal");
 		require(resampleIterations >= 0, "resample_iterations", "at least 0");
+		require(poleMethod != PoleMethod::Voronoi || hasQhull, "pole_method",
+			"'balls': this program is built without Qhull, which finds the poles of 'voronoi'");
 	}
 
 private:

@@ -8,6 +8,7 @@
 #define VCG_MCF_VORONOI_POLES_H
 
 #include "errors.h"
+#include "has_qhull.h"
 #include "inner_segments.h"
 #include "large_arrays.h"
 #include "point_tree.h"
@@ -16,9 +17,11 @@
 #include "surface_mesh.h"
 #include "unit_frame.h"
 
+#if MCFSKEL_HAS_QHULL
 extern "C" {
 #include <libqhull_r/qhull_ra.h>
 }
+#endif
 
 #include <algorithm>
 #include <array>
@@ -31,6 +34,8 @@ extern "C" {
 #include <vector>
 
 namespace vcg::tri::mcf {
+
+#if MCFSKEL_HAS_QHULL
 
 namespace detail {
 
@@ -317,7 +322,7 @@ inline bool isVoronoiVertex(const Point3d& c, const Tetrahedron& t,
  * next farthest of the cell.
  * @pre mesh is compact.
  * @return poles, #V; radius -1 where no Voronoi vertex of the cell counts.
- * @throws SolverError, Cancelled.
+ * @throws SolverError, also in a program without Qhull; Cancelled.
  * Complexity: O(V log V) for samples of a surface.
  */
 inline PoleSet voronoiPoles(const SurfaceMesh& mesh, const Progress& progress = Progress())
@@ -361,6 +366,15 @@ inline PoleSet voronoiPoles(const SurfaceMesh& mesh, const Progress& progress = 
 	progress.report(1, what);
 	return poles;
 }
+
+#else
+
+inline PoleSet voronoiPoles(const SurfaceMesh&, const Progress& = Progress())
+{
+	throw SolverError("The Voronoi diagram needs Qhull, which this program is built without.");
+}
+
+#endif
 
 } // namespace vcg::tri::mcf
 
