@@ -1,0 +1,411 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file Curve skeletons of the meshes of VCG: the way in for programs that have one.
+
+#ifndef VCG_MEAN_CURVATURE_SKELETON_H
+#define VCG_MEAN_CURVATURE_SKELETON_H
+
+#include "skeletonize.h"
+#include "trimesh.h"
+
+#include <wrap/callback.h>
+
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace vcg::tri {
+
+/**
+ * Curve skeleton of a closed triangle mesh by mean curvature flow that is drawn to the medial axis:
+ *
+ * Tagliasacchi, Alhashim, Olson, Zhang, "Mean Curvature Skeletons", Computer Graphics Forum (SGP) 31(5),
+ * 2012, doi 10.1111/j.1467-8659.2012.03178.x.
+ *
+ * All in one call:
+ * \code
+ * tri::MeanCurvatureSkeleton<MyMesh>::Params params;
+ * MyEdgeMesh skeleton;
+ * tri::MeanCurvatureSkeleton<MyMesh>::Do(mesh, skeleton, params);
+ * \endcode
+ *
+ * or stage by stage, with the same result to the last bit:
+ * \code
+ * tri::MeanCurvatureSkeleton<MyMesh> run(mesh, params);
+ * run.Resample();
+ * run.ComputePoles();
+ * while (run.Step())
+ *     ;
+ * run.Collapse();
+ * run.Refine();
+ * run.GetSkeleton(skeleton);
+ * run.WriteNodes(mesh);
+ * \endcode
+ *
+ * MeshType is any TriMesh with vertices and triangles, in float or double; it needs no adjacency, no
+ * normals, and may have deleted elements. The mesh must bound a solid: closed, two-manifold, of any
+ * number of components. Small defects are repaired in a copy: unreferenced and coincident vertices,
+ * degenerate and duplicate faces, faces that are turned against their neighbours.
+ *
+ * Computed in double whatever the scalar type; the same bits in each run and on any number of threads.
+ *
+ * Everything throws: mcf::InvalidInput (the mesh bounds no solid: what is wrong, how many, where),
+ * mcf::InvalidParameter, mcf::SolverError and mcf::Cancelled (a callback returned false). Meshes are
+ * written to last, so that after an exception they are as they were.
+ */
+template <class MESH_TYPE>
+class MeanCurvatureSkeleton
+{
+public:
+	using MeshType = MESH_TYPE;
+	using ScalarType = typename MeshType::ScalarType;
+
+	/**
+	 * The parameters, under the names that the MeshLab filter Full Skeletonize and the error messages
+	 * have for them. Lengths are fractions of the bounding box diagonal of each connected component.
+	 */
+	struct Params
+	{
+		/// Cover the surface with even triangles first, as in the paper.
+		bool resample = true;
+		/// Their edge length, in [0, 0.5]; 0: chosen from the mesh. Recommended: 0.003 to 0.015.
+		double target_length = 0;
+		/// Rounds of the resampling, >= 0. Recommended: 3 to 10.
+		int resample_iterations = 5;
+		/// Measure the noise of the surface, and smooth it before the resampling.
+		bool denoise = true;
+		/// Smoothness weight w_L (Eq. 6), > 0, in the paper's units as the next two. Recommended: 0.5 to 4.
+		double w_l = 1;
+		/// Velocity weight w_H, > 0. A larger one makes smaller steps. Recommended: 10 to 50.
+		double w_h = 20;
+		/// Medial weight w_M, >= 0. A larger one centres better and keeps more branches; 0: mean
+		/// curvature flow alone. Recommended: 0 to 80.
+		double w_m = 40;
+		/// Edges shorter than this are collapsed, in [0, 0.1]; 0: the default, 0.002.
+		double epsilon = 0;
+		/// An edge whose two opposite angles are wider is split, degrees in [60, 180).
+		double split_angle = 110;
+		/// Every k-th stage of the contraction is given to `on_stage`, >= 0; 0: none.
+		int keep_stages = 0;
+		/// Receives these stages, and the iterations made; valid during the call.
+		std::function<void(const MeshType& stage, int iteration)> on_stage;
+		/// The contraction stops after this many iterations, >= 0; it usually needs 10 to 40.
+		int max_iterations = 500;
+		/// Shrinking balls, or the Voronoi diagram, as in the paper: needs Qhull.
+		mcf::PoleMethod pole_method = mcf::PoleMethod::Balls;
+		/// Refine the curve: spurs, centring, smoothness, tips. Without, it is the paper's own.
+		bool refine = true;
+		/// Selected vertices of the surface stay where they are; the curve is then not refined.
+		bool fix_selected = false;
+		/// Flat parts become sheets, faces of the skeleton mesh; it is then not refined.
+		bool keep_sheets = false;
+		/// How flat a part must be to become a sheet, in [0, 1]; 1: curves only. Recommended: 0.6 to 0.9.
+		double sheet_threshold = mcf::Parameters().sheetThreshold;
+		/// Receives one sentence each on what was repaired, found and decided; may be empty.
+		mcf::NoteCallback on_note;
+	};
+
+	/**
+	 * Computes the skeleton of a surface.
+	 *
+	 * @param surface  closed triangle mesh. Its geometry stays as it is; it gets the per-vertex
+	 *                 attribute `mcfskel_node` (ScalarType): the vertex of `skeleton` that each vertex
+	 *                 belongs to, -1 for vertices that no face uses.
+	 * @param skeleton any mesh with vertices and edges, and with faces if params.keep_sheets is set;
+	 *                 what was in it goes. The local thickness, the mean distance to the surface, is
+	 *                 its per-vertex attribute `mcfskel_radius`, and its vertex quality where it has one.
+	 * @param params   see Params.
+	 * @param cb       progress callback of VCG, or null; to return false cancels.
+	 * @throws mcf::InvalidInput, mcf::InvalidParameter, mcf::SolverError, mcf::Cancelled; std::bad_alloc.
+	 * Complexity: O(V log V), some 10 to 40 steps of the flow: about a second for 50,000 vertices.
+	 */
+	template <class SkeletonMesh>
+	static void Do(MeshType& surface, SkeletonMesh& skeleton, const Params& params = Params(),
+		vcg::CallBackPos* cb = nullptr)
+	{
+		RequireSkeletonMesh(skeleton, params);
+		mcf::requireScalarAttribute(surface, nodeAttribute);
+		const mcf::Progress progress = ProgressOf(cb);
+		const mcf::Parameters parameters = ParametersOf(params);
+		const Surface read(surface, params, progress.part(0, 0.02));
+		mcf::Observer observer;
+		observer.onNote = params.on_note;
+		if (params.keep_stages > 0 && params.on_stage) {
+			observer.every = params.keep_stages;
+			observer.onStage = [&](const mcf::Stage& stage) {
+				MeshType mesh;
+				mcf::fillMesh(mesh, stage.mesh);
+				params.on_stage(mesh, stage.iteration);
+			};
+		}
+		const mcf::Skeletonization result =
+			mcf::skeletonize({read.mesh, read.held}, parameters, progress.part(0.02, 1), observer);
+		FillSkeleton(skeleton, result.curve, result.sheets);
+		WriteNodes(surface, read.vertexOfSlot, result.node);
+	}
+
+	/**
+	 * Begins a run in single stages: reads and checks the surface, which may change or go afterwards.
+	 * The parameters and the callback count for all stages.
+	 */
+	explicit MeanCurvatureSkeleton(
+		const MeshType& surface, const Params& params = Params(), vcg::CallBackPos* cb = nullptr) :
+			params(params),
+			parameters(ParametersOf(params)), progress(ProgressOf(cb)),
+			input(surface, params, progress), contracted(input.mesh), held(input.held)
+	{
+	}
+
+	/// Smooths what noise there is and resamples the surface. @pre the first stage, if it is wanted at all.
+	void Resample()
+	{
+		Require(!poles, "Resample() comes first.");
+		auto resampled = std::make_shared<const mcf::SurfaceMesh>(
+			mcf::resampledSurface(*input.mesh, parameters, progress, params.on_note).mesh);
+		if (!input.held.empty())
+			held = mcf::selectionOnResampled(*input.mesh, input.held, *resampled, progress);
+		contracted = std::move(resampled);
+	}
+
+	/// Finds the medial pole of each vertex of the surface.
+	void ComputePoles()
+	{
+		Require(!stage, "ComputePoles() comes before Step().");
+		poles = std::make_shared<const mcf::PoleSet>(
+			mcf::medialPoles(*contracted, parameters.poleMethod, progress));
+	}
+
+	/**
+	 * Makes one iteration of the contraction, with poles computed first if there are none yet.
+	 * @return whether there is more to do: the flow has neither converged nor reached max_iterations.
+	 */
+	bool Step()
+	{
+		Begin();
+		if (IsDone())
+			return false;
+		stage = mcf::step(*stage, parameters, progress);
+		return !IsDone();
+	}
+
+	/// Collapses the stage to curves, or, if it keeps sheets, to curves and sheets. A stage need not have converged.
+	void Collapse()
+	{
+		Begin();
+		if (stage->hasSheets())
+			return CollapseKeepingSheets();
+		curve = mcf::collapseToCurve(*stage, parameters.epsilon, progress);
+		sheets.reset();
+	}
+
+	/// Collapses the stage to curves, and to sheets where it has contracted to them by now.
+	void CollapseKeepingSheets()
+	{
+		Begin();
+		sheets = mcf::collapseWithSheets(*stage, parameters.epsilon, progress, params.on_note);
+		curve.reset();
+	}
+
+	/// Refines the curve. @pre it was collapsed to curves, and no vertices are held.
+	void Refine()
+	{
+		Require(curve.has_value(),
+			"Refine() comes after Collapse(), and is for curves without sheets.");
+		Require(held.empty(), "Refine() would move the skeleton off the vertices that are held.");
+		curve = mcf::refine(*curve, *contracted, mcf::RefineParameters(), progress);
+	}
+
+	/// Iterations made so far, whether they have converged, and what is left of the surface.
+	mcf::StageFigures Figures() const
+	{
+		return stage ? mcf::figuresOf(*stage) : mcf::StageFigures();
+	}
+
+	/// The surface that is contracted: checked, and resampled if it was.
+	void GetSurface(MeshType& mesh) const { mcf::fillMesh(mesh, *contracted); }
+
+	/// The poles of its vertices, in their order. @pre ComputePoles() or Step() was called.
+	const mcf::PoleSet& Poles() const
+	{
+		Require(poles != nullptr, "ComputePoles() comes first.");
+		return *poles;
+	}
+
+	/// The contracted surface. @pre Step() was called.
+	void GetStage(MeshType& mesh) const
+	{
+		Require(stage.has_value(), "Step() comes first.");
+		mcf::fillMesh(mesh, stage->mesh);
+	}
+
+	/// The skeleton, with its radii: see Do(). @pre Collapse() was called.
+	template <class SkeletonMesh>
+	void GetSkeleton(SkeletonMesh& skeleton) const
+	{
+		RequireCollapsed();
+		RequireSkeletonMesh(skeleton, params);
+		FillSkeleton(skeleton, curve ? *curve : mcf::CurveSkeleton(), sheets);
+	}
+
+	/**
+	 * Writes `mcfskel_node` on the surface of the run: see Do(). @pre Collapse() was called.
+	 * @throws mcf::InvalidInput if the surface has another number of vertices than when the run began.
+	 */
+	void WriteNodes(MeshType& surface) const
+	{
+		RequireCollapsed();
+		mcf::requireScalarAttribute(surface, nodeAttribute);
+		if (surface.vert.size() != input.vertexOfSlot.size())
+			throw mcf::InvalidInput("The surface is not the one that the skeleton was made from.");
+		const std::vector<int>& node = sheets ? sheets->skeleton.node : curve->node;
+		WriteNodes(surface, input.vertexOfSlot,
+			contracted == input.mesh
+				? node
+				: mcf::transferredNodes(*contracted, node, *input.mesh, progress));
+	}
+
+private:
+	static constexpr const char* nodeAttribute = "mcfskel_node";
+	static constexpr const char* radiusAttribute = "mcfskel_radius";
+
+	/// A surface as the library takes it.
+	struct Surface
+	{
+		std::shared_ptr<const mcf::SurfaceMesh> mesh;
+		/// For each vertex slot of the VCG mesh the vertex of `mesh`, or -1.
+		std::vector<int> vertexOfSlot;
+		/// 1 for the vertices that are held; empty if there are none.
+		std::vector<char> held;
+
+		Surface(const MeshType& surface, const Params& params, const mcf::Progress& progress)
+		{
+			const mcf::TriangleSoup soup = mcf::readTriangles(surface, progress.part(0, 0.1));
+			mcf::CheckedSurface checked =
+				mcf::checkedSurface(mcf::roundedCoordinates(soup.points, progress.part(0.1, 0.2)),
+					soup.triangles, progress.part(0.2, 1));
+			mesh = std::make_shared<const mcf::SurfaceMesh>(std::move(checked.mesh));
+			vertexOfSlot.reserve(soup.pointOfSlot.size());
+			for (int point : soup.pointOfSlot)
+				vertexOfSlot.push_back(point < 0 ? -1 : checked.vertexOfInput[size_t(point)]);
+			if (params.on_note)
+				for (const std::string& note : checked.notes)
+					params.on_note(note);
+			if (params.fix_selected)
+				Hold(surface);
+		}
+
+		void Hold(const MeshType& surface)
+		{
+			held.assign(size_t(mesh->vertexSlots()), 0);
+			for (size_t slot = 0; slot < vertexOfSlot.size(); ++slot)
+				if (vertexOfSlot[slot] >= 0 && surface.vert[slot].IsS())
+					held[size_t(vertexOfSlot[slot])] = 1;
+			if (std::find(held.begin(), held.end(), 1) == held.end())
+				throw mcf::InvalidInput(
+					"No vertex of the mesh is selected: select the vertices to hold, "
+					"or leave 'fix_selected' off.");
+		}
+	};
+
+	Params params;
+	mcf::Parameters parameters;
+	mcf::Progress progress;
+	Surface input;
+	std::shared_ptr<const mcf::SurfaceMesh> contracted;
+	std::vector<char> held;
+	std::shared_ptr<const mcf::PoleSet> poles;
+	std::optional<mcf::Stage> stage;
+	std::optional<mcf::CurveSkeleton> curve;
+	std::optional<mcf::SheetCollapse> sheets;
+
+	static mcf::Progress ProgressOf(vcg::CallBackPos* cb)
+	{
+		return cb ? mcf::Progress(cb) : mcf::Progress();
+	}
+
+	static mcf::Parameters ParametersOf(const Params& params)
+	{
+		mcf::Parameters result;
+		result.resample = params.resample;
+		result.targetLength = params.target_length;
+		result.resampleIterations = params.resample_iterations;
+		result.denoise = params.denoise;
+		result.wL = params.w_l;
+		result.wH = params.w_h;
+		result.wM = params.w_m;
+		result.epsilon = params.epsilon == 0 ? mcf::Parameters().epsilon : params.epsilon;
+		result.splitAngle = params.split_angle;
+		result.maxIterations = params.max_iterations;
+		result.poleMethod = params.pole_method;
+		result.refine = params.refine;
+		result.keepSheets = params.keep_sheets;
+		result.sheetThreshold = params.sheet_threshold;
+		result.check();
+		if (params.keep_stages < 0)
+			throw mcf::InvalidParameter("Parameter keep_stages must be at least 0.");
+		return result;
+	}
+
+	/// @throws mcf::InvalidInput if the order of the stages is not kept.
+	static void Require(bool holds, const char* text)
+	{
+		if (!holds)
+			throw mcf::InvalidInput(text);
+	}
+
+	void RequireCollapsed() const { Require(curve || sheets, "Collapse() comes first."); }
+
+	template <class SkeletonMesh>
+	static void RequireSkeletonMesh(const SkeletonMesh&, const Params& params)
+	{
+		Require(SkeletonMesh::EdgeType::HasEVAdjacency(), "The skeleton needs a mesh with edges.");
+		Require(!params.keep_sheets || SkeletonMesh::FaceType::HasFVAdjacency(),
+			"A skeleton with sheets needs a mesh with edges and faces.");
+	}
+
+	/// Makes stage 0, if there is no stage yet.
+	void Begin()
+	{
+		if (stage)
+			return;
+		if (!poles)
+			ComputePoles();
+		stage = mcf::startOfFlow(*contracted, *poles, held, parameters, progress, params.on_note);
+	}
+
+	bool IsDone() const { return stage->converged || stage->iteration >= parameters.maxIterations; }
+
+	template <class SkeletonMesh>
+	static void FillSkeleton(SkeletonMesh& skeleton, const mcf::CurveSkeleton& curve,
+		const std::optional<mcf::SheetCollapse>& sheets)
+	{
+		if (sheets)
+			mcf::fillMesh(skeleton, sheets->skeleton.position, sheets->skeleton.edges,
+				mcf::orientedFaces(sheets->skeleton));
+		else
+			mcf::fillMesh(skeleton, curve.position, curve.edges, {});
+		const std::vector<double>& radius = sheets ? sheets->skeleton.radius : curve.radius;
+		mcf::writeScalarAttribute(
+			skeleton, radiusAttribute, [&](size_t slot) { return radius[slot]; });
+		if (tri::HasPerVertexQuality(skeleton))
+			for (size_t v = 0; v < radius.size(); ++v)
+				skeleton.vert[v].Q() = typename SkeletonMesh::VertexType::QualityType(radius[v]);
+	}
+
+	static void WriteNodes(
+		MeshType& surface, const std::vector<int>& vertexOfSlot, const std::vector<int>& node)
+	{
+		mcf::writeScalarAttribute(surface, nodeAttribute, [&](size_t slot) {
+			return vertexOfSlot[slot] < 0 ? -1 : node[size_t(vertexOfSlot[slot])];
+		});
+	}
+};
+
+} // namespace vcg::tri
+
+#endif
