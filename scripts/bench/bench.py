@@ -22,7 +22,7 @@ import sys
 from pathlib import Path
 
 from document import fill_pages, write_docs
-from meshes import in_single_precision, meshes_in, subdivided
+from meshes import meshes_in, subdivided
 from programs import Program, python_peers, run_interleaved
 from studies import STUDIES, study_table
 from tables import (
@@ -202,10 +202,8 @@ def main() -> int:
         for mesh in meshes:
             print(f"{job}: {mesh.name}", file=sys.stderr, flush=True)
             folder = work / job / mesh.stem
-            # The plugin rounds what it reads; without, an iteration more or less would tell.
-            read = in_single_precision(mesh, work / "meshes") if job == "host" else mesh
             runs = arguments.host_runs if job in THROUGH_HOST else arguments.runs
-            outcomes = run_interleaved(programs, read, folder, runs, arguments.timeout)
+            outcomes = run_interleaved(programs, mesh, folder, runs, arguments.timeout)
             everything[job].append((mesh, outcomes))
             report["meshes"].append(
                 {"mesh": mesh.name, "job": job, "programs": [o.as_json() for o in outcomes]}

@@ -31,15 +31,6 @@ def subdivided(mesh: Path, times: int, folder: Path) -> Path:
     return write_mesh(target, points, triangles)
 
 
-def in_single_precision(mesh: Path, folder: Path) -> Path:
-    """The mesh with coordinates as single precision has them, in the format of subdivided()."""
-    target = folder / f"{mesh.stem}_single.ply"
-    if target.exists() and target.stat().st_mtime > mesh.stat().st_mtime:
-        return target
-    points, triangles = read_mesh(mesh)
-    return write_mesh(target, points.astype(np.float32).astype(float), triangles)
-
-
 def read_mesh(path: Path) -> tuple[np.ndarray, np.ndarray]:
     """Vertices, (V, 3), and triangles, (F, 3), coincident vertices made one."""
     mesh = trimesh.load(path, process=False, force="mesh")
