@@ -34,9 +34,10 @@ class MyMesh : public tri::TriMesh<std::vector<MyVertex>, std::vector<MyEdge>, s
 
 int main(int argc, char** argv)
 try {
+	using Importer = tri::io::Importer<MyMesh>;
 	MyMesh mesh;
 	int mask = 0;
-	if (argc != 3 || tri::io::Importer<MyMesh>::Open(mesh, argv[1], mask) != 0)
+	if (argc != 3 || Importer::ErrorCritical(Importer::Open(mesh, argv[1], mask)))
 		return std::fputs("usage: skeletonize_mesh MESH SKELETON\n", stderr), 2;
 	tri::MeanCurvatureSkeleton<MyMesh>::Params params;
 	params.on_note = [](const std::string& note) { std::puts(note.c_str()); };

@@ -83,7 +83,7 @@ double largestDistance(const Stage& stage, const std::function<double(const Poin
 
 } // namespace
 
-TEST(Skeletonize, EveryStageOfEveryShapeIsASoundMeshOfItsTopology)
+TEST(Flow, EveryStageOfEveryShapeIsASoundMeshOfItsTopology)
 {
 	for (const auto& [name, soup, components, genus] : generatedShapes()) {
 		SCOPED_TRACE(name);
@@ -110,7 +110,7 @@ TEST(Skeletonize, EveryStageOfEveryShapeIsASoundMeshOfItsTopology)
 	}
 }
 
-TEST(Skeletonize, BodiesWithinEachOtherContractAsTheyDoAlone)
+TEST(Flow, BodiesWithinEachOtherContractAsTheyDoAlone)
 {
 	const std::vector<shapes::Soup> bodies = {
 		shapes::sphere(4), shapes::sphere(3, 0.6), shapes::torus(0.8, 0.1)};
@@ -124,7 +124,7 @@ TEST(Skeletonize, BodiesWithinEachOtherContractAsTheyDoAlone)
 	EXPECT_LE(iterationsOf(shapes::joined({bodies[0], bodies[1], bodies[2]})), most + 1);
 }
 
-TEST(Skeletonize, ConvergesOnEveryMeshOfTheFolder)
+TEST(Flow, ConvergesOnEveryMeshOfTheFolder)
 {
 	const struct
 	{
@@ -148,7 +148,7 @@ TEST(Skeletonize, ConvergesOnEveryMeshOfTheFolder)
 
 // Known skeletons.
 
-TEST(Skeletonize, ACapsuleContractsToItsAxis)
+TEST(Flow, ACapsuleContractsToItsAxis)
 {
 	for (PoleMethod method : {PoleMethod::Balls, PoleMethod::Voronoi}) {
 		const Stage stage =
@@ -170,7 +170,7 @@ TEST(Skeletonize, ACapsuleContractsToItsAxis)
 	}
 }
 
-TEST(Skeletonize, ATorusContractsToItsCircle)
+TEST(Flow, ATorusContractsToItsCircle)
 {
 	const Stage stage = contractToSkeleton(stageOf(shapes::fromFile("torus")), Parameters());
 	const auto toCircle = [](const Point3d& p) {
@@ -186,7 +186,7 @@ TEST(Skeletonize, ATorusContractsToItsCircle)
 		EXPECT_NEAR(r, 0.3, 0.02);
 }
 
-TEST(Skeletonize, ASphereContractsToItsCentre)
+TEST(Flow, ASphereContractsToItsCentre)
 {
 	const Stage stage =
 		contractToSkeleton(stageOf(shapes::moved(shapes::sphere(4), {1, 2, 3})), Parameters());
@@ -194,7 +194,7 @@ TEST(Skeletonize, ASphereContractsToItsCentre)
 	EXPECT_LT(largestDistance(stage, toCentre), 0.01 * stage.diagonal[0]);
 }
 
-TEST(Skeletonize, SurfaceVerticesGoToTheirPartOfTheSkeleton)
+TEST(Flow, SurfaceVerticesGoToTheirPartOfTheSkeleton)
 {
 	const Stage stage = contractToSkeleton(stageOf(shapes::fromFile("capsule")), Parameters());
 	for (size_t s = 0; s < stage.node.size(); ++s) {
@@ -205,7 +205,7 @@ TEST(Skeletonize, SurfaceVerticesGoToTheirPartOfTheSkeleton)
 
 // One run, many steps.
 
-TEST(Skeletonize, StepsAreTheRunBitForBit)
+TEST(Flow, StepsAreTheRunBitForBit)
 {
 	for (const shapes::Soup& soup : {shapes::fromFile("hand"), shapes::plate(3, 3),
 			 shapes::joined({shapes::torus(), shapes::moved(shapes::capsule(), {4, 0, 0})})}) {
@@ -225,7 +225,7 @@ TEST(Skeletonize, StepsAreTheRunBitForBit)
 	}
 }
 
-TEST(Skeletonize, TheCorrespondenceOfADenseSurfaceIsThatOfItsSteps)
+TEST(Flow, TheCorrespondenceOfADenseSurfaceIsThatOfItsSteps)
 {
 	const shapes::Soup soup = shapes::torus(1, 0.3, 240, 80);
 	Parameters parameters;
@@ -239,7 +239,7 @@ TEST(Skeletonize, TheCorrespondenceOfADenseSurfaceIsThatOfItsSteps)
 	EXPECT_TRUE(checks::sameBits(unwatched, watched));
 }
 
-TEST(Skeletonize, ThoseWhoWatchSeeEachStageAsItIs)
+TEST(Flow, ThoseWhoWatchSeeEachStageAsItIs)
 {
 	for (const Stage& start : {stageOf(shapes::fromFile("hand")),
 			 firstStage(shapes::torus(1, 0.3, 240, 80).mesh(), Parameters())}) {
@@ -269,14 +269,14 @@ TEST(Skeletonize, ThoseWhoWatchSeeEachStageAsItIs)
 	}
 }
 
-TEST(Skeletonize, TwoRunsAreBitEqual)
+TEST(Flow, TwoRunsAreBitEqual)
 {
 	const shapes::Soup soup = shapes::fromFile("animal");
 	EXPECT_TRUE(checks::sameBits(contractToSkeleton(stageOf(soup), Parameters()),
 		contractToSkeleton(stageOf(soup), Parameters())));
 }
 
-TEST(Skeletonize, AStepLeavesTheGivenStageAsItWas)
+TEST(Flow, AStepLeavesTheGivenStageAsItWas)
 {
 	const Stage start = stageOf(shapes::torus()), copy = start;
 	const Stage next = step(start, Parameters());
@@ -285,7 +285,7 @@ TEST(Skeletonize, AStepLeavesTheGivenStageAsItWas)
 	EXPECT_FALSE(checks::sameBits(next, start));
 }
 
-TEST(Skeletonize, AConvergedStageStaysAsItIs)
+TEST(Flow, AConvergedStageStaysAsItIs)
 {
 	const Stage end = contractToSkeleton(stageOf(shapes::torus()), Parameters());
 	ASSERT_TRUE(end.converged);
@@ -293,7 +293,7 @@ TEST(Skeletonize, AConvergedStageStaysAsItIs)
 	EXPECT_TRUE(checks::sameBits(contractToSkeleton(end, Parameters()), end));
 }
 
-TEST(Skeletonize, StopsAtTheCapAndSaysSo)
+TEST(Flow, StopsAtTheCapAndSaysSo)
 {
 	Parameters parameters;
 	for (int cap : {0, 1, 3}) {
@@ -304,7 +304,7 @@ TEST(Skeletonize, StopsAtTheCapAndSaysSo)
 	}
 }
 
-TEST(Skeletonize, ASlowFlowIsNotTakenForAFinishedOne)
+TEST(Flow, ASlowFlowIsNotTakenForAFinishedOne)
 {
 	// With a large w_H a step hardly moves anything: the area settles long before the volume is gone.
 	Parameters parameters;
@@ -320,7 +320,7 @@ TEST(Skeletonize, ASlowFlowIsNotTakenForAFinishedOne)
 
 // What the parameters do.
 
-TEST(Skeletonize, VolumeFallsWithEachIteration)
+TEST(Flow, VolumeFallsWithEachIteration)
 {
 	double volume = 1;
 	StageObserver observer;
@@ -332,7 +332,7 @@ TEST(Skeletonize, VolumeFallsWithEachIteration)
 	EXPECT_LT(volume, 1e-3);
 }
 
-TEST(Skeletonize, AFinerEpsilonLeavesMoreVertices)
+TEST(Flow, AFinerEpsilonLeavesMoreVertices)
 {
 	std::vector<int> left;
 	for (double epsilon : {0.001, 0.002, 0.004, 0.008}) {
@@ -345,7 +345,7 @@ TEST(Skeletonize, AFinerEpsilonLeavesMoreVertices)
 	EXPECT_GT(left.front(), 2 * left.back());
 }
 
-TEST(Skeletonize, ALargerWeightRatioTakesFewerIterations)
+TEST(Flow, ALargerWeightRatioTakesFewerIterations)
 {
 	// The sweep of Fig. 5: w_H = 20, w_M = 0. Over several shapes: on a single one a few iterations in
 	// which the area hardly changes may come or go at the end.
@@ -366,7 +366,7 @@ TEST(Skeletonize, ALargerWeightRatioTakesFewerIterations)
 	EXPECT_LT(iterations.back(), iterations.front());
 }
 
-TEST(Skeletonize, DoesNotDependOnTheUnit)
+TEST(Flow, DoesNotDependOnTheUnit)
 {
 	// Powers of two are exact: the same bits, scaled.
 	const shapes::Soup soup = shapes::fromFile("y_tube");
@@ -379,7 +379,7 @@ TEST(Skeletonize, DoesNotDependOnTheUnit)
 	}
 }
 
-TEST(Skeletonize, ScaleAndPlaceLeaveTheSkeletonWhereItBelongs)
+TEST(Flow, ScaleAndPlaceLeaveTheSkeletonWhereItBelongs)
 {
 	// Rounding differs here, so single vertices may: the skeleton's place and shape may not.
 	const shapes::Soup soup = shapes::fromFile("capsule");
@@ -397,7 +397,7 @@ TEST(Skeletonize, ScaleAndPlaceLeaveTheSkeletonWhereItBelongs)
 		}
 }
 
-TEST(Skeletonize, ComponentsAreTreatedAsTheyWouldBeAlone)
+TEST(Flow, ComponentsAreTreatedAsTheyWouldBeAlone)
 {
 	const shapes::Soup alone = shapes::fromFile("capsule");
 	const Stage one = contractToSkeleton(stageOf(alone), Parameters());
@@ -415,7 +415,7 @@ TEST(Skeletonize, ComponentsAreTreatedAsTheyWouldBeAlone)
 
 // Progress.
 
-TEST(Skeletonize, ProgressGoesForward)
+TEST(Flow, ProgressGoesForward)
 {
 	int last = 0;
 	contractToSkeleton(
@@ -429,7 +429,7 @@ TEST(Skeletonize, ProgressGoesForward)
 	EXPECT_EQ(last, 100);
 }
 
-TEST(Skeletonize, CanBeCancelledAtAnyReport)
+TEST(Flow, CanBeCancelledAtAnyReport)
 {
 	const Stage start = stageOf(shapes::torus()), copy = start;
 	int reports = 0;
