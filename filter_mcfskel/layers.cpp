@@ -3,6 +3,7 @@
 
 #include "layers.h"
 
+#include "attributes.h"
 #include "fields.h"
 
 #include <skeleton/check_input.h>
@@ -52,6 +53,8 @@ struct LayerState
 };
 
 using StatePointer = std::shared_ptr<const LayerState>;
+using StateAttribute = MeshAttribute<StatePointer>;
+using StateMark = StateAttribute::AttrType;
 
 template <class Value>
 void mix(std::uint64_t& hash, Value value)
@@ -79,16 +82,6 @@ std::uint64_t fingerprint(const CMeshO& mesh)
 		for (int k = 0; k < 2; ++k)
 			mix(hash, e.IsD() ? -1 : int(vcg::tri::Index(mesh, e.cV(k))));
 	return hash;
-}
-
-/// Finds an attribute by name in one of a mesh's attribute sets; null if there is none.
-const vcg::PointerToAttribute* findAttribute(
-	const std::set<vcg::PointerToAttribute>& attributes, const char* name)
-{
-	vcg::PointerToAttribute key;
-	key._name = name;
-	const auto found = attributes.find(key);
-	return found == attributes.end() ? nullptr : &*found;
 }
 
 /// VCG finds attributes by name and size alone and writes beyond the end where the size differs.
@@ -123,7 +116,7 @@ void requireOwnAttributes(const MeshModel& layer)
 	for (const char* name : {poleRadiusAttribute, fixedAttribute, heldAttribute, radiusAttribute,
 			 nodeAttribute, kindAttribute})
 		requireType<Scalarm>(layer, layer.cm.vert_attr, name);
-	requireType<StatePointer>(layer, layer.cm.mesh_attr, stateAttribute);
+	requireType<StateMark>(layer, layer.cm.vert_attr, stateAttribute);
 }
 
 /// Handle to a per-vertex attribute, made if need be.
@@ -131,15 +124,24 @@ template <class T>
 auto vertexAttribute(MeshModel& layer, const char* name)
 {
 	requireType<T>(layer, layer.cm.vert_attr, name);
+	if (!findAttribute(layer.cm.vert_attr, name))
+		addVertexAttribute<VertexAttribute<T>>(layer.cm, name);
 	return Allocator::GetPerVertexAttribute<T>(layer.cm, name);
+}
+
+/// Where a layer's state is; null if it has none.
+StateAttribute* findStateAttribute(const CMeshO& mesh)
+{
+	const auto* attribute = findAttribute(mesh.vert_attr, stateAttribute);
+	return attribute && isOfType<StateMark>(*attribute)
+		? static_cast<StateAttribute*>(attribute->_handle)
+		: nullptr;
 }
 
 StatePointer findState(const CMeshO& mesh)
 {
-	const auto* attribute = findAttribute(mesh.mesh_attr, stateAttribute);
-	if (!attribute || !isOfType<StatePointer>(*attribute))
-		return nullptr;
-	return *valuesOf<StatePointer>(*attribute);
+	const StateAttribute* attribute = findStateAttribute(mesh);
+	return attribute ? attribute->content : nullptr;
 }
 
 /// The state of a layer, if its geometry is still what the state describes.
@@ -151,10 +153,12 @@ StatePointer validState(const MeshModel& layer)
 
 void setState(MeshModel& layer, LayerState state)
 {
-	requireType<StatePointer>(layer, layer.cm.mesh_attr, stateAttribute);
+	requireType<StateMark>(layer, layer.cm.vert_attr, stateAttribute);
 	state.fingerprint = fingerprint(layer.cm);
-	Allocator::GetPerMeshAttribute<StatePointer>(layer.cm, stateAttribute)() =
-		std::make_shared<const LayerState>(std::move(state));
+	StateAttribute* attribute = findStateAttribute(layer.cm);
+	if (!attribute)
+		attribute = &addVertexAttribute<StateAttribute>(layer.cm, stateAttribute);
+	attribute->content = std::make_shared<const LayerState>(std::move(state));
 }
 
 vcg::Point3d toDouble(const Point3m& p)

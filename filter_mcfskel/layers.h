@@ -5,8 +5,8 @@
 /// writing results as new layers and as custom attributes.
 ///
 /// What users and scripts see are the attributes mcfskel_*. They hold the host's scalar, often a
-/// float, while the pipeline counts in double; so each layer also carries its exact state, as an
-/// attribute of the whole mesh. Steps made one by one are then the same, bit for bit, as a full run.
+/// float, while the pipeline counts in double; so each layer also carries its exact state, in one more
+/// attribute (attributes.h). Steps made one by one are then the same, bit for bit, as a full run.
 /// The state counts only as long as the layer's geometry is what it was when the state was written.
 
 #ifndef MCFSKEL_LAYERS_H
