@@ -21,7 +21,7 @@ namespace {
 
 /// Hands progress on to the host, but not more often than anyone can see: a GUI redraws each time. What is
 /// tried again after it has failed, as a collapse with fewer sheets, does not take the bar back.
-vcg::tri::mcf::Progress hostProgress(vcg::CallBackPos* callback)
+vcg::tri::mcf::Progress hostProgress(const HostCallback& callback)
 {
 	using Clock = std::chrono::steady_clock;
 	if (!callback)
@@ -124,7 +124,7 @@ const std::vector<FilterSpec>& catalogue()
 
 Outcome runFilter(const FilterSpec& filter, MeshDocument& document,
 	const ParameterValues& parameters, const std::function<void(const QString&)>& log,
-	vcg::CallBackPos* callback)
+	const HostCallback& callback)
 {
 	Outcome outcome;
 	try {

@@ -133,13 +133,16 @@ struct Outcome
 	QString error;
 };
 
+/// Is told the progress in percent and what is being done; returns false to cancel. May be empty.
+using HostCallback = std::function<bool(int percent, const char* what)>;
+
 /**
  * Runs a filter. This is the one boundary that no exception crosses: the hosts stop, with the user's
  * work lost, on most of them. After an error the document is as it was.
  */
 Outcome runFilter(const FilterSpec& filter, MeshDocument& document,
 	const ParameterValues& parameters, const std::function<void(const QString&)>& log,
-	vcg::CallBackPos* callback);
+	const HostCallback& callback);
 
 } // namespace mcfskel
 

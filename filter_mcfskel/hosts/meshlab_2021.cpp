@@ -7,6 +7,8 @@
 #include "translate.h"
 
 #if MCFSKEL_PYTHON_HOST
+#include "pymeshlab_log.h"
+
 #include <common/globals.h>
 #include <common/python/function_set.h>
 #endif
@@ -94,13 +96,21 @@ std::map<std::string, QVariant> FilterMcfskelPlugin::applyFilter(const QAction* 
 	const RichParameterList& parameters, MeshDocument& document, unsigned int&,
 	vcg::CallBackPos* callback)
 {
+#if MCFSKEL_PYTHON_HOST
+	host::PymeshlabLog hostLog(*this, document, callback);
+	const auto progress = [&hostLog](int percent, const char* what) {
+		return hostLog.progress(percent, what);
+	};
+#else
+	const auto progress = callback;
+#endif
 	// The host's exporters may have been loaded after this plugin.
 	jsonExport_.claim();
 	const FilterSpec& filter = host::filterOf(ID(action));
 	const ParameterValues values = host::readParameters(parameters, filter, document);
 	const Outcome outcome = runFilter(
 		filter, document, values, [this](const QString& line) { log(line.toStdString()); },
-		callback);
+		progress);
 	if (!outcome.error.isEmpty())
 		throw MLException(outcome.error);
 	return outcome.results;

@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "pymeshlab_log.h"
+
+#include <link.h>
+
+#include <cstdint>
+#include <exception>
+#include <mutex>
+
+namespace mcfskel::host {
+
+namespace {
+
+using Word = std::uintptr_t;
+
+/// Of all that follows and of pymeshlab's pointer, as far as filters of this plugin are concerned.
+std::mutex mutex;
+int running = 0;
+
+/// A word to look for in the static memory of the module that has an address.
+struct Search
+{
+	Word address;
+	Word value;
+	Word* found = nullptr;
+	int times = 0;
+};
+
+bool contains(const dl_phdr_info& module, const ElfW(Phdr) & segment, Word address)
+{
+	const Word begin = module.dlpi_addr + segment.p_vaddr;
+	return segment.p_type == PT_LOAD && address >= begin && address - begin < segment.p_memsz;
+}
+
+int searchModule(dl_phdr_info* module, size_t, void* data)
+{
+	Search& search = *static_cast<Search*>(data);
+	const auto* const begin = module->dlpi_phdr;
+	const auto* const end = begin + module->dlpi_phnum;
+	if (std::none_of(begin, end,
+			[&](const auto& segment) { return contains(*module, segment, search.address); }))
+		return 0;
+	for (const auto* segment = begin; segment != end; ++segment) {
+		if (segment->p_type != PT_LOAD || !(segment->p_flags & PF_W))
+			continue;
+		const Word first = module->dlpi_addr + segment->p_vaddr;
+		const Word last = first + segment->p_memsz;
+		for (Word at = (first + sizeof(Word) - 1) / sizeof(Word) * sizeof(Word);
+			 at + sizeof(Word) <= last; at += sizeof(Word)) {
+			Word* const word = reinterpret_cast<Word*>(at);
+			if (__atomic_load_n(word, __ATOMIC_RELAXED) != search.value)
+				continue;
+			search.found = word;
+			++search.times;
+		}
+	}
+	return 1;
+}
+
+/// Sets pymeshlab's pointer to null if it points to this log.
+void release(const GLLogStream& log, vcg::CallBackPos* callback)
+{
+	Search search {reinterpret_cast<Word>(callback), reinterpret_cast<Word>(&log)};
+	dl_iterate_phdr(searchModule, &search);
+	if (search.times == 1)
+		__atomic_compare_exchange_n(
+			search.found, &search.value, 0, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED);
+}
+
+} // namespace
+
+PymeshlabLog::PymeshlabLog(
+	MeshLabPluginLogger& plugin, MeshDocument& document, vcg::CallBackPos* callback) :
+		plugin(plugin),
+		log(document.Log), callback(callback), exceptions(std::uncaught_exceptions())
+{
+	const std::lock_guard<std::mutex> lock(mutex);
+	++running;
+	log.setBookmark();
+}
+
+PymeshlabLog::~PymeshlabLog()
+{
+	const bool failed = std::uncaught_exceptions() > exceptions;
+	const std::lock_guard<std::mutex> lock(mutex);
+	--running;
+	if (failed)
+		plugin.setLog(nullptr);
+	if (failed || running > 0)
+		release(log, callback);
+	log.backToBookmark();
+	log.clearBookmark();
+}
+
+bool PymeshlabLog::progress(int percent, const char* what)
+{
+	const std::lock_guard<std::mutex> lock(mutex);
+	return !callback || callback(percent, what);
+}
+
+} // namespace mcfskel::host
