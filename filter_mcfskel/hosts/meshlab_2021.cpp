@@ -155,6 +155,13 @@ RichParameterList FilterMcfskelPlugin::initSaveParameter(
 	return other ? other->initSaveParameter(format, layer) : RichParameterList();
 }
 
+void FilterMcfskelPlugin::fail(const QString& error)
+{
+	// A host that prints its log leaves the plugin with the log of a document that may go.
+	setLog(nullptr);
+	throw MLException(error);
+}
+
 void FilterMcfskelPlugin::open(const QString&, const QString& file, MeshModel& layer, int& mask,
 	const RichParameterList&, vcg::CallBackPos*)
 {
@@ -163,7 +170,7 @@ void FilterMcfskelPlugin::open(const QString&, const QString& file, MeshModel& l
 	for (const QString& warning : outcome.warnings)
 		log(GLLogStream::WARNING, warning.toStdString());
 	if (!outcome.error.isEmpty())
-		throw MLException(outcome.error);
+		fail(outcome.error);
 }
 
 void FilterMcfskelPlugin::save(const QString& format, const QString& file, MeshModel& layer,
@@ -177,7 +184,7 @@ void FilterMcfskelPlugin::save(const QString& format, const QString& file, MeshM
 	for (const QString& warning : outcome.warnings)
 		log(GLLogStream::WARNING, warning.toStdString());
 	if (!outcome.error.isEmpty())
-		throw MLException(outcome.error);
+		fail(outcome.error);
 }
 
 MESHLAB_PLUGIN_NAME_EXPORTER(FilterMcfskelPlugin)

@@ -47,6 +47,9 @@ public:
 		const RichParameterList& parameters, vcg::CallBackPos* callback) override;
 
 private:
+	/// Ends a reading or writing that has failed.
+	[[noreturn]] void fail(const QString& error);
+
 	mcfskel::host::JsonExport jsonExport_ {this};
 };
 

@@ -23,9 +23,6 @@ FILTER = "generate_curve_skeleton_mcf"
 Length = float | str | pymeshlab.PercentageValue | pymeshlab.PureValue
 
 
-_failed: list[pymeshlab.MeshSet] = []
-
-
 class SkeletonError(ValueError):
     """The mesh, an option or a file is not right; the text says what, how many, and what cures it."""
 
@@ -210,9 +207,6 @@ def _apply(layers: pymeshlab.MeshSet, name: str, options: dict[str, Any]) -> dic
     try:
         return layers.apply_filter(name, **options)
     except pymeshlab.PyMeshLabException as error:
-        # Until its next filter succeeds, pymeshlab goes on writing its log into this document, and
-        # crashes if it is gone.
-        _failed[:] = [layers]
         raise SkeletonError(_reason(error)) from None
 
 

@@ -26,16 +26,6 @@ REFINE = "generate_refined_skeleton_mcf"
 FULL = "generate_curve_skeleton_mcf"
 
 
-# After a filter has failed, pymeshlab goes on writing its log into that document, and crashes if it is
-# gone: documents live as long as the tests.
-ALIVE: list[pymeshlab.MeshSet] = []
-
-
-def new_document() -> pymeshlab.MeshSet:
-    ALIVE.append(pymeshlab.MeshSet())
-    return ALIVE[-1]
-
-
 @pytest.fixture(scope="session", autouse=True)
 def plugin() -> Path:
     """Loads the plugin once: pymeshlab refuses to load a file twice."""
@@ -54,7 +44,7 @@ def server(tmp_path_factory) -> Iterator[Server]:
 
 def opened(name: str) -> pymeshlab.MeshSet:
     """A document with one of the project's meshes."""
-    layers = new_document()
+    layers = pymeshlab.MeshSet()
     layers.load_new_mesh(str(MESHES / f"{name}.off"))
     return layers
 
@@ -68,7 +58,7 @@ def arrays(name: str) -> tuple[np.ndarray, np.ndarray]:
 
 def document(*meshes: tuple[Any, Any]) -> pymeshlab.MeshSet:
     """A document with layers made from (vertices, faces) and called mesh_0, mesh_1, ..."""
-    layers = new_document()
+    layers = pymeshlab.MeshSet()
     for i, (vertices, faces) in enumerate(meshes):
         vertices = np.asarray(vertices, float).reshape(-1, 3)
         faces = np.asarray(faces, int).reshape(-1, 3)
@@ -128,9 +118,6 @@ def failing(layers: pymeshlab.MeshSet, name: str, **parameters: Any) -> str:
     """The text of the error with which a filter fails."""
     with pytest.raises(pymeshlab.PyMeshLabException) as error:
         layers.apply_filter(name, **parameters)
-    # After a filter has failed, pymeshlab goes on logging into that document even when it is gone,
-    # until some filter succeeds.
-    pymeshlab.MeshSet().create_cube()
     return str(error.value)
 
 

@@ -17,7 +17,7 @@ import pytest
 import trimesh
 from plyfile import PlyData
 
-from conftest import (COLLAPSE, FULL, MESHES, ROOT, STEP, attributes, document, labels, layer, new_document,
+from conftest import (COLLAPSE, FULL, MESHES, ROOT, STEP, attributes, document, labels, layer,
                       opened, scalars)
 
 COARSE = {"target_length": pymeshlab.PercentageValue(1.2)}
@@ -104,7 +104,7 @@ class TestSwc:
     def test_read(self, plate, skeleton, tmp_path):
         layers, _ = plate
         layers.save_current_mesh(str(tmp_path / "s.swc"))
-        again = new_document()
+        again = pymeshlab.MeshSet()
         again.load_new_mesh(str(tmp_path / "s.swc"))
         mesh = again.current_mesh()
         assert {tuple(p) for p in mesh.vertex_matrix()} == {
@@ -116,7 +116,7 @@ class TestSwc:
     def test_a_file_from_elsewhere(self, tmp_path):
         (tmp_path / "neuron.swc").write_text(
             "# a soma and two neurites\n1 1 0 0 0 5 -1\n2 3 0 6 0 1 1\n3 3 0 9 0 .5 2\n4 2 0 -6 0 1 1\n")
-        layers = new_document()
+        layers = pymeshlab.MeshSet()
         layers.load_new_mesh(str(tmp_path / "neuron.swc"))
         assert np.array_equal(sorted_edges(layers.current_mesh().edge_matrix()),
                               [[0, 1], [0, 3], [1, 2]])
@@ -130,7 +130,7 @@ class TestCg:
         layers.save_current_mesh(str(path))
         assert path.read_text().splitlines()[0] == (
             f"# D:3 NV:{skeleton.vertex_number()} NE:{skeleton.edge_number()}")
-        again = new_document()
+        again = pymeshlab.MeshSet()
         again.load_new_mesh(str(path))
         assert np.array_equal(again.current_mesh().vertex_matrix(), skeleton.vertex_matrix())
         assert np.array_equal(sorted_edges(again.current_mesh().edge_matrix()),
@@ -232,13 +232,13 @@ class TestPly:
 
     def test_the_host_reads_the_edges(self, plate, skeleton, tmp_path):
         plate[0].apply_filter("save_skeleton_mcf", file=str(tmp_path / "s.ply"))
-        again = new_document()
+        again = pymeshlab.MeshSet()
         again.load_new_mesh(str(tmp_path / "s.ply"))
         assert again.current_mesh().edge_number() == skeleton.edge_number()
 
     def test_load_stage_gives_the_skeleton_back(self, plate, skeleton, tmp_path):
         plate[0].apply_filter("save_stage_mcf", file=str(tmp_path / "mine.ply"))
-        again = new_document()
+        again = pymeshlab.MeshSet()
         results = again.apply_filter("load_stage_mcf", file=str(tmp_path / "mine.ply"))
         assert results["cycles"] == 3
         assert labels(again) == ["mine"]
@@ -378,7 +378,7 @@ class TestRefusals:
         with pytest.raises(pymeshlab.PyMeshLabException, match="Cannot write"):
             layers.save_current_mesh(str(tmp_path / "nowhere" / "s.swc"))
         with pytest.raises(pymeshlab.PyMeshLabException, match="Cannot read"):
-            new_document().apply_filter("load_stage_mcf", file=str(tmp_path / "none.ply"))
+            pymeshlab.MeshSet().apply_filter("load_stage_mcf", file=str(tmp_path / "none.ply"))
 
     def test_an_edited_skeleton_is_written_as_it_is(self, tmp_path):
         layers = opened("capsule")

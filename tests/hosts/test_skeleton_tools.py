@@ -12,7 +12,7 @@ import pymeshlab
 import pytest
 
 from conftest import (FULL, MESHES, POLES, ROOT, area, components, diagonal, euler, fingerprint,
-                      layer, new_document, opened, points, scalars, volume)
+                      layer, opened, points, scalars, volume)
 
 PARTS = "compute_skeleton_parts_mcf"
 PRUNE = "generate_pruned_skeleton_mcf"
@@ -392,7 +392,7 @@ class TestMeasure:
         assert results["terminals"] == 3
 
     def test_needs_a_surface(self):
-        layers = new_document()
+        layers = pymeshlab.MeshSet()
         add_curve(layers, *known_skeleton("bent_tube"), "drawn")
         with pytest.raises(pymeshlab.PyMeshLabException, match="surface"):
             layers.apply_filter(MEASURE)
@@ -460,7 +460,7 @@ class TestBalls:
         assert euler(layers.current_mesh()) == 0
 
     def test_without_a_surface_the_radius_counts(self):
-        layers = new_document()
+        layers = pymeshlab.MeshSet()
         add_curve(layers, [[0, 0, 0], [1, 0, 0]], [[0, 1]], [0.5, 0.5], "bar")
         layers.apply_filter(BALLS, voxel=percent(4))
         union = layers.current_mesh()
