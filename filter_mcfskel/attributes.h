@@ -4,9 +4,10 @@
 /// @file Attributes of layers that do not outlive their layer.
 ///
 /// VCG never frees the attributes of a mesh that is destroyed: what they hold is lost to the process.
-/// But TriMesh::Clear(), which the destructor calls, resizes the attributes of vertices to nothing. An
-/// ordinary attribute keeps its memory then; those here give it back, so that nothing of a layer stays
-/// but some 60 bytes for each attribute. An attribute of the whole mesh gets no such call.
+/// But TriMesh::Clear(), which the destructor calls, resizes the attributes of vertices to nothing in
+/// releases since 2023.12 (in earlier ones all is lost as ever). An ordinary attribute keeps its memory
+/// then; those here give it back, so that nothing of a layer stays but some 60 bytes for each attribute.
+/// An attribute of the whole mesh gets no such call.
 ///
 /// No list of layers is kept: a mesh may be swapped with another one, moved, cleared or destroyed by any
 /// filter, in any document and any thread, and the attribute is always called by whoever owns it.

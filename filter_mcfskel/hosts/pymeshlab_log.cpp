@@ -3,10 +3,13 @@
 
 #include "pymeshlab_log.h"
 
+#include <QtGlobal>
+
 #include <link.h>
 
 #include <cstdint>
 #include <exception>
+#include <iostream>
 #include <mutex>
 
 namespace mcfskel::host {
@@ -59,6 +62,30 @@ int searchModule(dl_phdr_info* module, size_t, void* data)
 	return 1;
 }
 
+/// Where output goes that nobody has redirected: as it was when the plugin was loaded.
+class Output
+{
+public:
+	Output() : out(std::cout.rdbuf()), err(std::cerr.rdbuf()), qt(qInstallMessageHandler(nullptr))
+	{
+		restore();
+	}
+
+	void restore() const
+	{
+		std::cout.rdbuf(out);
+		std::cerr.rdbuf(err);
+		qInstallMessageHandler(qt);
+	}
+
+private:
+	std::streambuf* out;
+	std::streambuf* err;
+	QtMessageHandler qt;
+};
+
+const Output output;
+
 /// Sets pymeshlab's pointer to null if it points to this log.
 void release(const GLLogStream& log, vcg::CallBackPos* callback)
 {
@@ -86,8 +113,10 @@ PymeshlabLog::~PymeshlabLog()
 	const bool failed = std::uncaught_exceptions() > exceptions;
 	const std::lock_guard<std::mutex> lock(mutex);
 	--running;
-	if (failed)
+	if (failed) {
 		plugin.setLog(nullptr);
+		output.restore();
+	}
 	if (failed || running > 0)
 		release(log, callback);
 	log.backToBookmark();

@@ -19,7 +19,9 @@ namespace mcfskel::host {
  * failed, the next callback, as from load_new_mesh() into another document, writes into that document,
  * which may be gone (applyFilterRPL() in PyMeshLab's meshset_helper.cpp, 2022.2 to 2025.7). So this sets
  * it to null where an exception leaves the filter. The module exports no symbol for the pointer: it is
- * the one word of the module's static memory that holds the address of the document's log.
+ * the one word of the module's static memory that holds the address of the document's log. Nor does
+ * pymeshlab undo the redirection into nowhere of std::cout, std::cerr and Qt's messages, and everything
+ * that it prints later is lost: they are put back, too.
  *
  * The same happens where two filters run in two threads, both logging into the document of one of them,
  * without a lock. Filters of this plugin take turns in calling back, and of those that run at once none

@@ -241,6 +241,20 @@ class TestAfterErrors:
         assert "Checking the surface    [" in done.stderr and "poles = 450" in done.stderr
 
 
+    def test_pymeshlab_still_prints(self, plugin):
+        """What it writes itself, after two filters of one document have failed."""
+        script = PRELUDE + textwrap.dedent("""
+            layers = opened(F[1:])
+            failing(layers)
+            failing(layers, "generate_meso_skeleton_mcf")
+            layers.print_status()
+        """)
+        done = subprocess.run([sys.executable, "-c", script, str(plugin), str(MESHES)],
+                              capture_output=True, text=True, timeout=120)
+        assert done.returncode == 0
+        assert "Number meshes: 1" in done.stdout
+
+
 class TestThreads:
     def test_errors_among_them(self, run):
         """Four threads, each with documents of its own, a third of whose jobs fail."""
