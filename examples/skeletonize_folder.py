@@ -16,16 +16,17 @@ import csv
 import io
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import closing
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 MESHES = {".off", ".ply", ".obj", ".stl"}
 FORMATS = ("swc", "cg", "graphml", "json", "ply")
@@ -166,6 +167,28 @@ def rows_of(table: Path) -> list[Row]:
     return list(csv.DictReader(io.StringIO(text[:text.rfind("\n") + 1])))
 
 
+def write_table(table: Path, rows: Iterable[Row]) -> None:
+    """Replaces the table, or leaves it as it was, after any error and if the process is killed."""
+    part = table.with_suffix(".part")
+    try:
+        with open(part, "w", newline="", encoding="utf-8") as lines:
+            writer = csv.DictWriter(lines, COLUMNS, extrasaction="ignore")
+            writer.writeheader()
+            writer.writerows(rows)
+            flush_to_disk(lines)
+        if table.exists():
+            shutil.copymode(table, part)
+        os.replace(part, table)
+    except BaseException:
+        part.unlink(missing_ok=True)
+        raise
+
+
+def flush_to_disk(lines: TextIO) -> None:
+    lines.flush()
+    os.fsync(lines.fileno())
+
+
 def summary(rows: list[Row]) -> str:
     """The table as text."""
     lines = [f"{'mesh':32} {'status':8} {'seconds':>8} {'nodes':>6} {'branches':>8} {'cycles':>6}"]
@@ -182,7 +205,7 @@ def main() -> int:
     from tqdm import tqdm
 
     arguments.results.mkdir(parents=True, exist_ok=True)
-    table = arguments.results / "results.csv"
+    table = (arguments.results / "results.csv").resolve()  # where a link leads to
     done = {row["mesh"]: row for row in rows_of(table)
             if row["status"] == "ok" or not arguments.retry}
     meshes = sorted(str(path.resolve()) for path in arguments.folder.iterdir()
@@ -193,11 +216,7 @@ def main() -> int:
         print(f"error: no meshes in '{arguments.folder}'", file=sys.stderr)
         return 1
 
-    with open(table.with_suffix(".part"), "w", newline="", encoding="utf-8") as kept:
-        writer = csv.DictWriter(kept, COLUMNS, extrasaction="ignore")
-        writer.writeheader()
-        writer.writerows(done.values())
-    os.replace(table.with_suffix(".part"), table)
+    write_table(table, done.values())
     rows = (run_on_cluster(jobs, arguments.scheduler) if arguments.scheduler
             else run_here(jobs, arguments.workers))
     with open(table, "a", newline="", encoding="utf-8") as lines, closing(rows), \
@@ -205,7 +224,7 @@ def main() -> int:
         writer = csv.DictWriter(lines, COLUMNS, extrasaction="ignore")
         for row in rows:
             writer.writerow(row)
-            lines.flush()  # what is done stays done if this run is interrupted
+            flush_to_disk(lines)  # what is done stays done if this run is interrupted
             done[row["mesh"]] = row
             bar.set_postfix_str(Path(row["mesh"]).name, refresh=False)
             bar.update()
@@ -223,3 +242,6 @@ if __name__ == "__main__":
     except KeyboardInterrupt:
         print("interrupted; the same command goes on from here", file=sys.stderr)
         sys.exit(130)
+    except OSError as error:  # a full disk, say
+        print(f"error: {error}; the same command goes on from here", file=sys.stderr)
+        sys.exit(1)

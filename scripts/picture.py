@@ -4,10 +4,13 @@
 """Draws a curve skeleton inside its translucent surface. Needs neither a display nor OpenGL."""
 
 import argparse
+import io
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+
+from whole_file import write_whole
 
 SURFACE_COLOUR = np.array([0.62, 0.71, 0.80])
 LIGHT = np.array([-0.35, 0.55, 0.76])
@@ -172,7 +175,7 @@ def branch_numbers(count: int, edges: np.ndarray) -> np.ndarray:
 def draw(vertices: np.ndarray, faces: np.ndarray, nodes: np.ndarray, edges: np.ndarray,
          radius: np.ndarray, path: Path, colour: str = "radius", up: str = "auto",
          turn: float = 25, tilt: float = 12, pixels: int = 1200) -> None:
-    """Writes the picture; see main() for the options."""
+    """Writes the picture, a PNG file; see main() for the options."""
     import matplotlib
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
@@ -217,8 +220,10 @@ def draw(vertices: np.ndarray, faces: np.ndarray, nodes: np.ndarray, edges: np.n
     if colour == "radius":
         place = figure.add_axes(((inches[0] + 0.12) / (inches[0] + bar), 0.2, 0.2 / (inches[0] + bar), 0.6))
         figure.colorbar(line, cax=place, label="radius (mesh units)")
-    figure.savefig(path, dpi=dpi)
+    content = io.BytesIO()
+    figure.savefig(content, dpi=dpi, format="png")
     plt.close(figure)
+    write_whole(path, content.getvalue())
 
 
 def main() -> None:

@@ -2,18 +2,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The project's own PLY files. MeshLab and its Python module write neither edges nor attributes."""
 
-import os
+import io
 from pathlib import Path
 
 import numpy as np
 from plyfile import PlyData, PlyElement
 
+from whole_file import write_whole
+
 
 def _write(path: Path, elements: list[PlyElement]) -> None:
-    """Writes beside the file and renames: what has the final name is whole."""
-    part = path.with_name(path.name + ".part")
-    PlyData(elements, byte_order="<").write(str(part))
-    os.replace(part, path)
+    content = io.BytesIO()
+    PlyData(elements, byte_order="<").write(content)
+    write_whole(path, content.getvalue())
 
 
 def _vertices(positions: np.ndarray, attributes: dict[str, np.ndarray]) -> PlyElement:

@@ -4,7 +4,6 @@
 """Computes the curve skeleton of a mesh and draws it."""
 
 import argparse
-import os
 import sys
 from pathlib import Path
 from typing import Any
@@ -172,13 +171,10 @@ def surface_attributes(mesh: Any) -> dict[str, Any]:
 
 def write_obj(path: Path, nodes: Any, edges: Any) -> None:
     """Two-index lines, the only edges that survive MeshLab's own reading and writing."""
-    part = path.with_name(path.name + ".part")
-    with open(part, "w") as out:
-        for x, y, z in nodes:
-            out.write(f"v {x!r} {y!r} {z!r}\n")
-        for a, b in edges + 1:
-            out.write(f"l {a} {b}\n")
-    os.replace(part, path)
+    from whole_file import write_whole
+
+    lines = [f"v {x!r} {y!r} {z!r}\n" for x, y, z in nodes] + [f"l {a} {b}\n" for a, b in edges + 1]
+    write_whole(path, "".join(lines).encode())
 
 
 def write_results(options: argparse.Namespace, layers: Any) -> list[Path]:

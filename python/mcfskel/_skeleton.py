@@ -73,6 +73,9 @@ class Skeleton:
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes the skeleton in the format that the name ends with.
 
+        The file is replaced as a whole, or stays as it was: after an error such as a full disk, and if
+        the process is killed.
+
         Args:
             path: Ends with .swc, .cg, .graphml, .json or .ply. SWC holds trees only: each cycle is
                 cut at its thinnest edge, and a warning lists the cuts. Only .graphml and .json keep
@@ -93,7 +96,7 @@ class Skeleton:
             layers.add_mesh(surface, "surface", set_as_current=False)
             options["surface"] = 1
         _apply(layers, "save_skeleton_mcf", options)
-        if Path(path).suffix.lower() == ".swc":
+        if Path(path).suffix.lower() == ".swc" and Path(path).is_file():  # not from a pipe
             _warn_of_cuts(Path(path))
 
 
