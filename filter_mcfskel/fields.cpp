@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 
 namespace mcfskel {
 
@@ -125,8 +126,19 @@ std::vector<int> facePartsOfSlots(const MeshModel& layer, const SurfaceLayer& su
 
 void setFaceParts(MeshModel& layer, const std::vector<int>& ofSlot)
 {
-	layer.updateDataMask(MeshModel::MM_FACEQUALITY);
-	layer.updateDataMask(MeshModel::MM_FACECOLOR);
+	auto& faces = layer.cm.face;
+	const bool hadQuality = faces.IsQualityEnabled(), hadColour = faces.IsColorEnabled();
+	try {
+		layer.updateDataMask(MeshModel::MM_FACEQUALITY | MeshModel::MM_FACECOLOR);
+	}
+	catch (const std::bad_alloc&) {
+		// VCG takes them for enabled now, though they have no memory.
+		if (!hadQuality)
+			faces.DisableQuality();
+		if (!hadColour)
+			faces.DisableColor();
+		throw;
+	}
 	for (size_t slot = 0; slot < ofSlot.size(); ++slot) {
 		layer.cm.face[slot].Q() = decltype(layer.cm.face[slot].Q() + 0)(ofSlot[slot]);
 		layer.cm.face[slot].C() = partColour(ofSlot[slot]);

@@ -133,7 +133,12 @@ Outcome runFilter(const FilterSpec& filter, MeshDocument& document,
 				"There is no layer: open a closed triangle mesh first.");
 		FilterRun run {document, parameters, log, hostProgress(callback)};
 		outcome.results = filter.run(run);
-		log(resultsText(outcome.results));
+		try {
+			log(resultsText(outcome.results));
+		}
+		catch (const std::bad_alloc&) {
+			// The document has its results by now: this is no failure any more.
+		}
 	}
 	catch (const vcg::tri::mcf::Cancelled&) {
 		outcome.error = "Cancelled; nothing was changed.";

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <system_error>
 #include <utility>
 
 namespace mcfskel {
@@ -16,7 +17,12 @@ namespace mcf = vcg::tri::mcf;
 KeptStages::KeptStages()
 {
 	if (omp_get_max_threads() > 1)
-		teller = std::thread([this] { tell(); });
+		try {
+			teller = std::thread([this] { tell(); });
+		}
+		catch (const std::system_error&) {
+			// No thread is to be had: takeFields() does the work.
+		}
 }
 
 KeptStages::~KeptStages()

@@ -84,6 +84,17 @@ std::uint64_t fingerprint(const CMeshO& mesh)
 	return hash;
 }
 
+/// Removes an attribute, if it is there. Unlike VCG's way to do so this needs no memory.
+void removeAttribute(std::set<vcg::PointerToAttribute>& attributes, const char* name)
+{
+	const auto found = std::find_if(attributes.begin(), attributes.end(),
+		[&](const vcg::PointerToAttribute& attribute) { return attribute._name == name; });
+	if (found == attributes.end())
+		return;
+	delete found->_handle;
+	attributes.erase(found);
+}
+
 /// VCG finds attributes by name and size alone and writes beyond the end where the size differs.
 template <class T>
 bool isOfType(const vcg::PointerToAttribute& attribute)
@@ -151,14 +162,24 @@ StatePointer validState(const MeshModel& layer)
 	return state && state->fingerprint == fingerprint(layer.cm) ? state : nullptr;
 }
 
-void setState(MeshModel& layer, LayerState state)
+/// A state for a layer as it is now.
+StatePointer newState(const MeshModel& layer, LayerState state)
+{
+	state.fingerprint = fingerprint(layer.cm);
+	return std::make_shared<const LayerState>(std::move(state));
+}
+
+/// A layer's state, made if need be.
+StateAttribute& stateOf(MeshModel& layer)
 {
 	requireType<StateMark>(layer, layer.cm.vert_attr, stateAttribute);
-	state.fingerprint = fingerprint(layer.cm);
 	StateAttribute* attribute = findStateAttribute(layer.cm);
-	if (!attribute)
-		attribute = &addVertexAttribute<StateAttribute>(layer.cm, stateAttribute);
-	attribute->content = std::make_shared<const LayerState>(std::move(state));
+	return attribute ? *attribute : addVertexAttribute<StateAttribute>(layer.cm, stateAttribute);
+}
+
+void setState(MeshModel& layer, LayerState state)
+{
+	stateOf(layer).content = newState(layer, std::move(state));
 }
 
 vcg::Point3d toDouble(const Point3m& p)
@@ -609,6 +630,8 @@ DocumentEdit::~DocumentEdit()
 {
 	if (committed)
 		return;
+	for (const NewAttribute& attribute : newAttributes)
+		removeAttribute(attribute.layer->cm.vert_attr, attribute.name);
 	for (int id : added)
 		host::removeLayer(document, id);
 	if (previousLayer >= 0)
@@ -630,6 +653,7 @@ MeshModel& DocumentEdit::addLayer(const SurfaceLink& surface, const QString& lab
 
 MeshModel& DocumentEdit::addLayer(const Matrix44m& frame, const QString& label)
 {
+	added.reserve(added.size() + 1); // nothing may fail between the two
 	MeshModel& layer = *document.addNewMesh("", label, false);
 	added.push_back(layer.id());
 	layer.cm.Tr = frame;
@@ -723,40 +747,63 @@ MeshModel& DocumentEdit::addStage(const QString& label, std::shared_ptr<const mc
 	return layer;
 }
 
-void DocumentEdit::attachSurface(MeshModel& layer, const SurfaceLayer& surface)
+void DocumentEdit::noteNew(MeshModel& layer, const char* attribute)
+{
+	if (!findAttribute(layer.cm.vert_attr, attribute))
+		newAttributes.push_back({&layer, attribute});
+}
+
+void DocumentEdit::changeState(
+	MeshModel& layer, const SurfaceLayer& surface, std::shared_ptr<const mcf::PoleSet> poles)
 {
 	LayerState state;
 	state.surface = surface;
 	state.surface.notes.clear();
-	setState(layer, std::move(state));
+	state.poles = std::move(poles);
+	noteNew(layer, stateAttribute);
+	StateAttribute& attribute = stateOf(layer);
+	StatePointer after = newState(layer, std::move(state));
+	changes.push_back([&attribute, after = std::move(after)] { attribute.content = after; });
+}
+
+void DocumentEdit::attachSurface(MeshModel& layer, const SurfaceLayer& surface)
+{
+	changeState(layer, surface, nullptr);
 }
 
 void DocumentEdit::writePoles(
 	MeshModel& layer, const SurfaceLayer& surface, std::shared_ptr<const mcf::PoleSet> poles)
 {
+	noteNew(layer, poleAttribute);
+	noteNew(layer, poleRadiusAttribute);
 	auto centre = vertexAttribute<Point3m>(layer, poleAttribute);
 	auto radius = vertexAttribute<Scalarm>(layer, poleRadiusAttribute);
-	for (size_t slot = 0; slot < layer.cm.vert.size(); ++slot) {
-		const int v = (*surface.vertexOfSlot)[slot];
-		const bool has = v >= 0 && poles->has(v);
-		// A vertex without a pole shows itself: readers that ignore the radius stay inside the box.
-		centre[slot] = has ? toHost(poles->centre[size_t(v)]) : layer.cm.vert[slot].cP();
-		radius[slot] = has ? Scalarm(poles->radius[size_t(v)]) : Scalarm(-1);
-	}
-	LayerState state;
-	state.surface = surface;
-	state.surface.notes.clear();
-	state.poles = std::move(poles);
-	setState(layer, std::move(state));
+	changes.push_back(
+		[&layer, centre, radius, vertexOfSlot = surface.vertexOfSlot, poles]() mutable {
+			for (size_t slot = 0; slot < layer.cm.vert.size(); ++slot) {
+				const int v = (*vertexOfSlot)[slot];
+				const bool has = v >= 0 && poles->has(v);
+				// A vertex without a pole shows itself: readers that ignore the radius stay inside the box.
+				centre[slot] = has ? toHost(poles->centre[size_t(v)]) : layer.cm.vert[slot].cP();
+				radius[slot] = has ? Scalarm(poles->radius[size_t(v)]) : Scalarm(-1);
+			}
+		});
+	changeState(layer, surface, std::move(poles));
 }
 
 void DocumentEdit::writeNodes(
 	MeshModel& layer, const std::vector<int>& vertexOfSlot, const std::vector<int>& node)
 {
+	noteNew(layer, nodeAttribute);
 	auto attribute = vertexAttribute<Scalarm>(layer, nodeAttribute);
-	for (size_t slot = 0; slot < vertexOfSlot.size(); ++slot)
-		attribute[slot] =
-			vertexOfSlot[slot] < 0 ? Scalarm(-1) : Scalarm(node[size_t(vertexOfSlot[slot])]);
+	std::vector<Scalarm> values;
+	values.reserve(vertexOfSlot.size());
+	for (int v : vertexOfSlot)
+		values.push_back(v < 0 ? Scalarm(-1) : Scalarm(node[size_t(v)]));
+	changes.push_back([attribute, values = std::move(values)]() mutable {
+		for (size_t slot = 0; slot < values.size(); ++slot)
+			attribute[slot] = values[slot];
+	});
 }
 
 void DocumentEdit::writeNodes(const SurfaceLink& surface, const std::vector<int>& node)
@@ -768,12 +815,19 @@ void DocumentEdit::writeNodes(const SurfaceLink& surface, const std::vector<int>
 
 void DocumentEdit::commit()
 {
+	for (const std::function<void()>& change : changes)
+		change();
 	committed = true;
 	if (added.empty())
 		return;
 	document.setCurrentMesh(added.back());
-	if (host::hasWindow())
-		present();
+	try {
+		if (host::hasWindow())
+			present();
+	}
+	catch (const std::bad_alloc&) {
+		// The results are there, if not as they are best seen.
+	}
 }
 
 void DocumentEdit::present()

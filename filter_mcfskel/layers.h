@@ -24,6 +24,7 @@
 #include <QString>
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -132,7 +133,8 @@ std::shared_ptr<const vcg::tri::mcf::PoleSet> readPoles(
 	const MeshModel& layer, const SurfaceLayer& surface, const vcg::tri::mcf::Progress& progress);
 
 /**
- * Changes to a document, all or none: what was added is removed again unless commit() is reached.
+ * Changes to a document, all or none: what was added is removed again unless commit() is reached, and what
+ * was there is not changed before.
  * Layers that were there before must have gone through readSurface() or readStage().
  */
 class DocumentEdit
@@ -190,7 +192,8 @@ public:
 	void writeNodes(const SurfaceLink& surface, const std::vector<int>& node);
 
 	/**
-	 * Keeps the changes and makes the layer added last the current one. In MeshLab's window that one
+	 * Comes last in a filter: whatever else may fail, such as the memory for its results, has been done. Keeps
+	 * the changes and makes the layer added last the current one. In MeshLab's window that one
 	 * is seen at once: it lies inside the layers that it was made from, so these are hidden, and so
 	 * are the other new ones; curves and points are coloured by their quality, and not shaded. Where
 	 * there is no window nothing of this is done: scripts use visibility to say which layers a filter
@@ -199,14 +202,28 @@ public:
 	void commit();
 
 private:
+	/// An attribute that a layer did not have.
+	struct NewAttribute
+	{
+		MeshModel* layer;
+		const char* name;
+	};
+
 	MeshModel& addLayer(const MeshModel& source, const QString& label);
 	MeshModel& addLayer(const SurfaceLink& surface, const QString& label);
 	MeshModel& addLayer(const Matrix44m& frame, const QString& label);
+	/// To be called before an attribute is made.
+	void noteNew(MeshModel& layer, const char* attribute);
+	void changeState(MeshModel& layer, const SurfaceLayer& surface,
+		std::shared_ptr<const vcg::tri::mcf::PoleSet> poles);
 	void present();
 
 	MeshDocument& document;
 	int previousLayer;
 	std::vector<int> added;
+	std::vector<NewAttribute> newAttributes;
+	/// What commit() does to layers that may have been there before. It cannot fail: memory is had by then.
+	std::vector<std::function<void()>> changes;
 	/// The layers that the added ones were made from.
 	std::vector<int> sources;
 	bool committed = false;

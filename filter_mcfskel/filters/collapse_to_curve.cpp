@@ -31,8 +31,9 @@ Results run(FilterRun& run)
 		DocumentEdit edit(run.document);
 		edit.addMesoSkeleton(run.layer(), baseName(run.layer()) + "_skeleton", collapse.skeleton);
 		edit.writeNodes(found.surface, collapse.skeleton.node);
+		const Results results = sheetResults(collapse);
 		edit.commit();
-		return sheetResults(collapse);
+		return results;
 	}
 	const mcf::CurveSkeleton skeleton = mcf::collapseToCurve(*found.stage, epsilon, run.progress);
 
@@ -41,8 +42,9 @@ Results run(FilterRun& run)
 	edit.addCurve(run.layer(), baseName(run.layer()) + "_skeleton",
 		{skeleton, found.surface, surface ? surface->label() : QString()});
 	edit.writeNodes(found.surface, skeleton.node);
+	const Results results = curveResults(skeleton);
 	edit.commit();
-	return curveResults(skeleton);
+	return results;
 }
 
 } // namespace

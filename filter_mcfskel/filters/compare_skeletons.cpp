@@ -50,15 +50,16 @@ Results run(FilterRun& run)
 		mcf::distanceToSkeleton(mine.skeleton, other.skeleton, spacing, run.progress.part(0, 0.5));
 	const mcf::SkeletonDistance back =
 		mcf::distanceToSkeleton(other.skeleton, mine.skeleton, spacing, run.progress.part(0.5, 1));
-	setVertexQuality(run.layer(), there.ofNode);
-	setVertexColours(run.layer(), there.ofNode, 0, there.greatest);
-	return {
+	Results results = {
 		{"distance_mean", there.mean / diagonal},
 		{"distance_max", there.greatest / diagonal},
 		{"distance_mean_back", back.mean / diagonal},
 		{"distance_max_back", back.greatest / diagonal},
 		{"diagonal", diagonal},
 	};
+	setVertexQuality(run.layer(), there.ofNode);
+	setVertexColours(run.layer(), there.ofNode, 0, there.greatest);
+	return results;
 }
 
 } // namespace

@@ -95,8 +95,9 @@ Results run(FilterRun& run)
 	if (start.surface.computed)
 		edit.writePoles(source, start.surface.surface, start.surface.poles);
 	edit.writeNodes(start.link, last->node);
+	const Results results = stageResults(*last);
 	edit.commit();
-	return stageResults(*last);
+	return results;
 }
 
 } // namespace

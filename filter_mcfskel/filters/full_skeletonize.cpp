@@ -99,8 +99,9 @@ Results run(FilterRun& run)
 	edit.writeNodes(*surface, *contracted.vertexOfSlot, result.nodeOfSurface());
 	if (parameters.resample)
 		edit.writeNodes(input, *read.vertexOfSlot, result.node);
+	Results results = resultsOf(result, parameters.keepSheets);
 	edit.commit();
-	return resultsOf(result, parameters.keepSheets);
+	return results;
 }
 
 } // namespace

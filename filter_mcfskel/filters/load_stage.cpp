@@ -33,8 +33,9 @@ Results loadStage(FilterRun& run, const mcf::PlyFile& ply, const QString& name)
 	edit.addStage(
 		stageLabel(baseName(name), *stage), stage, fields, link, run.progress.part(0.75, 1));
 	edit.writeNodes(link, stage->node);
+	const Results results = stageResults(*stage);
 	edit.commit();
-	return stageResults(*stage);
+	return results;
 }
 
 Results loadSkeleton(FilterRun& run, const mcf::PlyFile& ply, const QString& name)

@@ -22,8 +22,6 @@ Results run(FilterRun& run)
 	const mcf::SkeletonMeasures m =
 		mcf::skeletonMeasures(curve.skeleton, *surface.surface.mesh, {}, run.progress.part(0.1, 1));
 	const auto& distance = m.nodeMedialDistance;
-	setVertexQuality(run.layer(), distance);
-	setVertexColours(run.layer(), distance, 0, *std::max_element(distance.begin(), distance.end()));
 	Results results = curveResults(curve.skeleton);
 	results.merge(Results {
 		{"inside_fraction", m.insideFraction},
@@ -40,6 +38,8 @@ Results run(FilterRun& run)
 		{"ball_volume_fraction", m.volumeFraction},
 		{"spurs", m.spurs},
 	});
+	setVertexQuality(run.layer(), distance);
+	setVertexColours(run.layer(), distance, 0, *std::max_element(distance.begin(), distance.end()));
 	return results;
 }
 

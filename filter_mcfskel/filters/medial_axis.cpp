@@ -40,13 +40,14 @@ Results run(FilterRun& run)
 	setVertexColours(layer, medial.radius, 0, largest);
 	if (poled.computed)
 		edit.writePoles(source, poled.surface, poled.poles);
-	edit.commit();
-	return {
+	Results results = {
 		{"vertices", int(medial.position.size())},
 		{"faces", int(medial.triangles.size())},
 		{"radius_min", *std::min_element(medial.radius.begin(), medial.radius.end())},
 		{"radius_max", largest},
 	};
+	edit.commit();
+	return results;
 }
 
 } // namespace

@@ -56,7 +56,6 @@ Results run(FilterRun& run)
 	DocumentEdit edit(run.document);
 	MeshModel& layer = edit.addPoints(source, baseName(source) + "_balls", soup.points);
 	addFaces(layer, soup.triangles);
-	edit.commit();
 	Results results = {
 		{"balls", int(balls.position.size())},
 		{"vertices", int(soup.points.size())},
@@ -65,6 +64,7 @@ Results run(FilterRun& run)
 	};
 	if (surface)
 		results["volume_fraction"] = volume / whole;
+	edit.commit();
 	return results;
 }
 

@@ -31,8 +31,9 @@ Results run(FilterRun& run)
 	}
 	MeshModel& layer = run.layer();
 	edit.writePoles(layer, surface, poles);
+	Results results = {{"poles", found}, {"without_pole", without}};
 	edit.commit();
-	return {{"poles", found}, {"without_pole", without}};
+	return results;
 }
 
 } // namespace

@@ -32,9 +32,10 @@ Results run(FilterRun& run)
 	MeshModel& layer = edit.addSurface(
 		run.layer(), baseName(run.layer()) + "_resampled", mesh, run.progress.part(1, 1));
 	edit.attachSurface(layer, resampled);
-	edit.commit();
-	return {{"vertices", mesh.vertexCount()}, {"faces", mesh.faceCount()},
+	Results results = {{"vertices", mesh.vertexCount()}, {"faces", mesh.faceCount()},
 		{"edge_length_mean", mcf::meanEdgeLength(mesh)}};
+	edit.commit();
+	return results;
 }
 
 } // namespace

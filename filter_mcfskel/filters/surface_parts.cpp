@@ -53,10 +53,8 @@ Results run(FilterRun& run)
 	const std::vector<int> ofSlot =
 		facePartsOfSlots(*target.layer, target.surface, parts.ofFace, run.progress.part(0.9, 1));
 
-	setFaceParts(*target.layer, ofSlot);
-	setVertexQuality(*target.layer, target.surface, parts.distance);
 	const size_t n = branches.size();
-	return {
+	Results results = {
 		{"branches", int(n)},
 		{"parts", int(std::count_if(area.begin(), area.end(), [](double a) { return a > 0; }))},
 		{"branch_length", column(n, [&](size_t i) { return branches[i].length; })},
@@ -67,6 +65,9 @@ Results run(FilterRun& run)
 		{"branch_first_kind", column(n, [&](size_t i) { return int(branches[i].first); })},
 		{"branch_last_kind", column(n, [&](size_t i) { return int(branches[i].last); })},
 	};
+	setFaceParts(*target.layer, ofSlot);
+	setVertexQuality(*target.layer, target.surface, parts.distance);
+	return results;
 }
 
 } // namespace

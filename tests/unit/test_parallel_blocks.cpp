@@ -8,9 +8,12 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/resource.h>
+
 #include <atomic>
 #include <chrono>
 #include <mutex>
+#include <new>
 #include <set>
 #include <string>
 #include <thread>
@@ -113,4 +116,42 @@ TEST(ForEachPart, ThrowsWhatAPartThrows)
 		EXPECT_THROW(run(Progress()), SolverError);
 		EXPECT_THROW(run(Progress([](int, const char*) { return true; })), SolverError);
 	}
+}
+
+TEST(ForEachBlock, ThrowsWhatABlockThrowsAndIsUsableAgain)
+{
+	for (int threads : {1, 3}) {
+		const ThreadCount limit(threads);
+		for (int bad : {0, 256 * 5, 256 * 40})
+			EXPECT_THROW(forEachBlock(256 * 50, Progress(), "work",
+							 [&](int begin, int) {
+								 if (begin == bad)
+									 throw std::bad_alloc();
+							 }),
+				std::bad_alloc);
+		std::atomic<int> done = 0;
+		forEachBlock(1000, Progress(), "work", [&](int begin, int end) { done += end - begin; });
+		EXPECT_EQ(done, 1000);
+	}
+}
+
+TEST(ForEachBlock, DoesWithOneThreadWhereTheSystemRefusesMore)
+{
+	std::atomic<int> done = 0, byOthers = 0;
+	// In a thread of its own, which has none yet that wait for work.
+	std::thread([&] {
+		const ThreadCount limit(100); // more than the C library keeps memory for
+		const std::thread::id caller = std::this_thread::get_id();
+		rlimit before;
+		ASSERT_EQ(getrlimit(RLIMIT_AS, &before), 0);
+		const rlimit none {1 << 20, before.rlim_max};
+		ASSERT_EQ(setrlimit(RLIMIT_AS, &none), 0);
+		forEachBlock(256 * 50, Progress(), "work", [&](int begin, int end) {
+			done += end - begin;
+			byOthers += std::this_thread::get_id() != caller;
+		});
+		ASSERT_EQ(setrlimit(RLIMIT_AS, &before), 0);
+	}).join();
+	EXPECT_EQ(done, 256 * 50);
+	EXPECT_EQ(byOthers, 0);
 }

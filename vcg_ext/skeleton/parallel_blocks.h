@@ -11,7 +11,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <cstdlib>
 #include <exception>
+#include <mutex>
 #include <numeric>
 #include <thread>
 #include <vector>
@@ -22,14 +24,87 @@
 
 namespace vcg::tri::mcf {
 
+namespace detail {
+
+/// Whether that many threads can be started now. Their memory stays with the system's library for the next ones.
+inline bool canStartThreads(int count)
+{
+	std::mutex all;
+	std::vector<std::thread> threads;
+	bool started = true;
+	{
+		const std::lock_guard<std::mutex> untilAllRun(all);
+		try {
+			threads.reserve(size_t(count));
+			for (int i = 0; i < count; ++i)
+				threads.emplace_back([&all] { const std::lock_guard<std::mutex> wait(all); });
+		}
+		catch (const std::exception&) { // std::system_error, std::bad_alloc
+			started = false;
+		}
+	}
+	for (std::thread& thread : threads)
+		thread.join();
+	return started;
+}
+
+/// Whether there is memory for the small things without which OpenMP and the loader end the process.
+inline bool hasReserve()
+{
+	constexpr size_t reserve = 1 << 20;
+	void* const volatile block = std::malloc(reserve); // volatile: else the compiler leaves it out
+	std::free(block);
+	return block != nullptr;
+}
+
+/**
+ * The number of threads for a loop: OpenMP's, or 1 where the system refuses that many.
+ *
+ * GCC's OpenMP ends the process where it cannot start a thread. It keeps its threads for the next loop with
+ * as many, so that only a change of their number has to be tried out.
+ */
+inline int threadsForLoop()
+{
+#ifdef _OPENMP
+	const int wanted = omp_in_parallel() ? 1 : omp_get_max_threads();
+	if (wanted <= 1 || !hasReserve())
+		return 1;
+	static thread_local int running = 1;
+	if (wanted != running) {
+		if (!canStartThreads(wanted - 1))
+			return 1;
+		running = wanted;
+	}
+	return wanted;
+#else
+	return 1;
+#endif
+}
+
+/// Calls work(whether this is the calling thread) on several threads at once. @pre work throws nothing.
+template <class Work>
+void onThreads([[maybe_unused]] int threads, const Work& work)
+{
+#ifdef _OPENMP
+	// A team of one would take the place of the others, which are kept for the next loop.
+	if (threads > 1) {
+#pragma omp parallel num_threads(threads)
+		work(omp_get_thread_num() == 0);
+		return;
+	}
+#endif
+	work(true);
+}
+
+} // namespace detail
+
 /**
  * Calls body(begin, end) for consecutive blocks of [0, count), several at once.
  *
  * The blocks do not depend on the number of threads, so that a body whose result depends on its
  * block alone gives the same bits on any machine. The calling thread reports in between.
  * @param blocksPerReport  fewer where a round takes more than some 10 us.
- * @pre body throws nothing.
- * @throws Cancelled
+ * @throws what body throws for one of the blocks, such as std::bad_alloc; Cancelled.
  */
 template <class Body>
 void forEachBlock(int count, const Progress& progress, const char* what, const Body& body,
@@ -38,13 +113,24 @@ void forEachBlock(int count, const Progress& progress, const char* what, const B
 	constexpr int blockSize = 256;
 	progress.report(0, what);
 	const int blocks = (count + blockSize - 1) / blockSize;
+	const int threads = detail::threadsForLoop();
+	std::atomic<bool> failed = false;
+	std::exception_ptr error;
 	for (int first = 0; first < blocks; first += blocksPerReport) {
 		const int last = std::min(first + blocksPerReport, blocks);
-#ifdef _OPENMP
-#pragma omp parallel for schedule(dynamic)
-#endif
-		for (int block = first; block < last; ++block)
-			body(block * blockSize, std::min((block + 1) * blockSize, count));
+		std::atomic<int> next = first;
+		detail::onThreads(threads, [&](bool) {
+			try {
+				for (int block; !failed && (block = next++) < last;)
+					body(block * blockSize, std::min((block + 1) * blockSize, count));
+			}
+			catch (...) {
+				if (!failed.exchange(true))
+					error = std::current_exception();
+			}
+		});
+		if (error)
+			std::rethrow_exception(error);
 		progress.report(double(last) / blocks, what);
 	}
 }
@@ -98,12 +184,7 @@ void forEachPart(
 			std::this_thread::yield();
 		}
 	};
-#ifdef _OPENMP
-#pragma omp parallel if (total >= leastForTeam)
-	work(omp_get_thread_num() == 0);
-#else
-	work(true);
-#endif
+	detail::onThreads(total >= leastForTeam ? detail::threadsForLoop() : 1, work);
 	std::exception_ptr cancelled;
 	for (const std::exception_ptr& error : errors)
 		if (error)
