@@ -4,8 +4,9 @@
 /// @file Runs an .mlx script on a mesh with the library of a built MeshLab, as its window does, and
 /// saves the layer that is current in the end: run_script IO_BASE PLUGIN SCRIPT MESH OUTPUT...
 /// With --cancel in place of the outputs each filter is first cancelled at its first report of progress,
-/// then at its second, and so on, until it comes to its end; a document that a cancelled filter has changed
-/// is an error. The number of cancellings is printed.
+/// then at its second, and so on, until it comes to its end; from the 200th on it is at reports further and
+/// further apart, by chance. A document, or a file to write, that a cancelled filter has changed is an error.
+/// The number of cancellings is printed.
 
 #include <common/filterscript.h>
 #include <common/globals.h>
@@ -16,9 +17,11 @@
 #include <common/utilities/load_save.h>
 
 #include <QApplication>
+#include <QFile>
 
 #include <cstdint>
 #include <cstdio>
+#include <random>
 #include <string>
 #include <string_view>
 
@@ -58,6 +61,17 @@ std::string contents(const MeshDocument& document)
 	return text;
 }
 
+/// What is in the file that a step writes, if it writes one.
+std::string fileContents(const FilterNameParameterValuesPair& step)
+{
+	for (const RichParameter& given : step.second)
+		if (given.name() == "file") {
+			QFile file(given.value().getString());
+			return file.open(QIODevice::ReadOnly) ? file.readAll().toStdString() : "none";
+		}
+	return "";
+}
+
 /// The reports that are left until a filter is cancelled; none: it is not.
 int reportsLeft = 0;
 
@@ -72,6 +86,7 @@ void runScript(const QString& file, MeshDocument& document, GLLogStream& log, bo
 	FilterScript script;
 	if (!script.open(file))
 		throw MLException("cannot read " + file);
+	std::mt19937 random;
 	for (const FilterNameParameterValuesPair& step : script) {
 		QAction* action = plugins.filterAction(step.filterName());
 		if (!action)
@@ -82,10 +97,11 @@ void runScript(const QString& file, MeshDocument& document, GLLogStream& log, bo
 		for (const RichParameter& given : step.second)
 			parameters.setValue(given.name(), given.value());
 		unsigned int changed = 0;
-		const std::string before = contents(document);
-		int cancelled = 0;
+		const std::string before = contents(document) + fileContents(step);
+		int cancelled = 0, at = 0;
 		for (bool done = false; !done;) {
-			reportsLeft = cancelling ? cancelled + 1 : 0;
+			at += at < 200 ? 1 : 1 + int(random() % unsigned(at / 50));
+			reportsLeft = cancelling ? at : 0;
 			try {
 				filter->applyFilter(action, parameters, document, changed, report);
 				done = true;
@@ -93,11 +109,11 @@ void runScript(const QString& file, MeshDocument& document, GLLogStream& log, bo
 			catch (const MLException& error) {
 				if (reportsLeft > 0 || !QString(error.what()).startsWith("Cancelled"))
 					throw;
-				if (contents(document) != before)
+				if (contents(document) + fileContents(step) != before)
 					throw MLException(
-						QString("%1, cancelled at its report %2, has changed the document")
+						QString("%1, cancelled at its report %2, has changed something")
 							.arg(step.filterName())
-							.arg(cancelled + 1));
+							.arg(at));
 				++cancelled;
 			}
 		}

@@ -17,8 +17,17 @@ STEPS = {
         ("Resample", {"target_length": ("RichFloat", 0.08)}), ("Medial Poles", {}),
         ("Contraction Step", {"steps": ("RichInt", 2)}),
         ("Contraction Step", {"steps": ("RichInt", 40)}), ("Collapse to Curve", {}),
-        ("Refine Skeleton", {}), ("Prune Skeleton", {}), ("Parts of the Surface", {}),
-        ("Medial Balls", {})]),
+        ("Refine Skeleton", {}), ("Save Skeleton", {"file": ("RichFileSave", "FOLDER/s.json")}),
+        ("Save Stage", {"file": ("RichFileSave", "FOLDER/s.ply")}), ("Prune Skeleton", {}),
+        ("Resample and Smooth Skeleton", {}), ("Compare Skeletons", {"other": ("RichMesh", 4)}),
+        ("Measure Skeleton", {}), ("Parts of the Surface", {}), ("Medial Balls", {})]),
+    "poles by balls": ("bent_tube", [
+        ("Medial Poles", {"pole_method": ("RichEnum", 1)}), ("Medial Axis", {})]),
+    "files": ("bent_tube", [
+        ("Contraction Step", {"steps": ("RichInt", 2)}),
+        ("Save Stage", {"file": ("RichFileSave", "FOLDER/s.ply")}),
+        ("Load Stage", {"file": ("RichFileOpen", "FOLDER/s.ply")})]),
+    "at once": ("bent_tube", [("Full Skeletonize", {})]),
     "stages kept": ("bent_tube", [("Full Skeletonize", {"keep_stages": ("RichInt", 1)})]),
     "sheets": ("slab", [("Full Skeletonize", {"keep_sheets": ("RichBool", "true")})]),
 }
@@ -29,7 +38,8 @@ def script(filters: list[tuple[str, dict]], path: Path) -> Path:
     for name, parameters in filters:
         step = ElementTree.SubElement(tree, "filter", name=PREFIX + name)
         for parameter, (kind, value) in parameters.items():
-            ElementTree.SubElement(step, "Param", name=parameter, value=str(value), type=kind)
+            ElementTree.SubElement(step, "Param", name=parameter, type=kind,
+                                   value=str(value).replace("FOLDER", str(path.parent)))
     path.write_text("<!DOCTYPE FilterScript>\n" + ElementTree.tostring(tree, encoding="unicode"))
     return path
 
@@ -38,6 +48,8 @@ def script(filters: list[tuple[str, dict]], path: Path) -> Path:
 def test_nothing_is_changed(name, tmp_path):
     meshlab = host("meshlab-2025.07")
     mesh, filters = STEPS[name]
+    for file in ["s.json", "s.ply"]:
+        (tmp_path / file).write_text("what was there before")
     run = subprocess.run(
         [meshlab.plugin.parents[1] / "tests/hosts/run_script",
          meshlab.folder / "bin/plugins/libio_base.so", meshlab.plugin,
@@ -47,4 +59,6 @@ def test_nothing_is_changed(name, tmp_path):
     cancelled = [line.removeprefix(PREFIX).rpartition(": ")
                  for line in run.stdout.splitlines() if line.startswith(PREFIX)]
     assert [step for step, _, _ in cancelled] == [step for step, _ in filters]
-    assert all(int(count) > 0 for _, _, count in cancelled)
+    # A skeleton is written at once.
+    assert all(int(count) > 0 for step, _, count in cancelled if step != "Save Skeleton")
+    assert not list(tmp_path.glob(".mcfskel-*"))
