@@ -4,11 +4,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
-from .primitives import Mesh, component_of_vertices, diagonal, genus
+from .primitives import Mesh, component_of_vertices
 
 REFUSED = "refused"    # there must be an error
 SKELETON = "skeleton"  # there must be a skeleton
@@ -35,16 +35,19 @@ class Expectation:
     embedded: bool = False
     extent: float = 0.0
     why: str = ""
-    notes: list[str] = field(default_factory=list)
 
 
 @dataclass
 class Hostile:
-    """A mesh and what is expected of it."""
+    """A mesh and what is expected of it.
+
+    solid  the sound surface that the mesh stands for, where its own faces have to be mended first.
+    """
 
     vertices: np.ndarray
     faces: np.ndarray
     expected: Expectation
+    solid: Mesh | None = None
 
 
 def refused(mesh: Mesh) -> Hostile:
@@ -86,5 +89,7 @@ def skeleton_if(clear: bool, mesh: Mesh, why: str, **known: object) -> Hostile:
     return skeleton(mesh, **known) if clear else either(mesh, why, **known)  # type: ignore[arg-type]
 
 
-__all__ = ["EITHER", "REFUSED", "SKELETON", "Expectation", "Hostile", "diagonal", "either", "genus",
-           "refused", "skeleton", "skeleton_if", "sum_of_diagonals"]
+def standing_for(made: Hostile, solid: Mesh) -> Hostile:
+    """The same, with the sound surface that it stands for."""
+    made.solid = solid
+    return made

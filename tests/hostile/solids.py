@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .expectation import Hostile, either, skeleton, skeleton_if
+from .expectation import Hostile, either, skeleton, skeleton_if, standing_for
 from .primitives import (Mesh, Rng, box, cell_surface, component_of_vertices, diagonal, filled_to_manifold, genus, halved, hull,
                          joined, log_uniform, prism, revolved, rotation, sphere, tube, turned)
 
@@ -433,11 +433,11 @@ def inside_out(rng: Rng) -> Hostile:
 
 def partly_turned(rng: Rng) -> Hostile:
     """Some faces turned."""
-    vertices, faces = ball(rng)
+    solid = vertices, faces = ball(rng)
     mask = rng.random(len(faces)) < rng.uniform(0, 1)
     faces = faces.copy()
     faces[mask] = faces[mask][:, ::-1]
-    return skeleton((vertices, faces))
+    return standing_for(skeleton((vertices, faces)), solid)
 
 
 def nested(rng: Rng) -> Hostile:
@@ -535,26 +535,27 @@ def stranger(rng: Rng) -> Hostile:
 
 def facet_soup(rng: Rng) -> Hostile:
     """A closed body in triangles that share no vertices, as STL has it."""
-    vertices, faces = ball(rng) if rng.random() < 0.7 else hull(cloud(rng, 30))
+    solid = vertices, faces = ball(rng) if rng.random() < 0.7 else hull(cloud(rng, 30))
     order = rng.permutation(len(faces))
-    return skeleton((vertices[faces[order]].reshape(-1, 3), np.arange(3 * len(faces)).reshape(-1, 3)),
-                    extent=diagonal(vertices))
+    made = skeleton((vertices[faces[order]].reshape(-1, 3), np.arange(3 * len(faces)).reshape(-1, 3)))
+    made.expected.extent = diagonal(vertices)
+    return standing_for(made, solid)
 
 
 def copied_faces(rng: Rng) -> Hostile:
     """Faces that are there twice or more."""
-    vertices, faces = ball(rng)
+    solid = vertices, faces = ball(rng)
     again = faces[rng.integers(len(faces), size=int(rng.integers(1, 40)))]
     again = np.roll(again, int(rng.integers(3)), axis=1)
-    return skeleton((vertices, np.vstack([faces, again])))
+    return standing_for(skeleton((vertices, np.vstack([faces, again]))), solid)
 
 
 def degenerate_faces(rng: Rng) -> Hostile:
     """Faces that use a vertex twice, among sound ones."""
-    vertices, faces = ball(rng)
+    solid = vertices, faces = ball(rng)
     bad = rng.integers(len(vertices), size=(int(rng.integers(1, 20)), 3))
     bad[:, 1] = bad[:, 0]
-    return skeleton((vertices, rng.permutation(np.vstack([faces, bad]))))
+    return standing_for(skeleton((vertices, rng.permutation(np.vstack([faces, bad])))), solid)
 
 
 def self_crossing_spiral(rng: Rng) -> Hostile:
@@ -614,7 +615,7 @@ def bent_sheet(rng: Rng) -> Hostile:
     if rng.random() < 0.5:
         path = np.column_stack([4 * t, 0.4 * np.sin(rng.uniform(0.5, 2) * 2 * np.pi * t), np.zeros(n)])
     else:
-        phase = rng.uniform(1, 6) * t
+        phase = rng.uniform(1, 5) * t
         path = np.column_stack([np.cos(phase), np.sin(phase), np.zeros(n)])
     section = np.array([(1, thickness), (-1, thickness), (-1, -thickness), (1, -thickness)])
     # The first normal is across the plane of the path or in it: try both.
