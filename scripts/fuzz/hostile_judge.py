@@ -55,7 +55,8 @@ class Judge:
         self.expected = mesh.expected
         given = np.asarray(mesh.vertices, float)
         vertices, faces = mesh.solid if mesh.solid is not None else (given, mesh.faces)
-        self.finite = bool(len(faces)) and bool(np.isfinite(vertices[np.unique(faces)]).all())
+        self.finite = (len(faces) > 0 and 0 <= np.min(faces) and np.max(faces) < len(vertices)
+                       and bool(np.isfinite(vertices[np.unique(faces)]).all()))
         if not self.finite:
             return
         used = vertices[np.unique(faces)]
@@ -91,7 +92,7 @@ class Judge:
                  topology: bool = True) -> list[Finding]:
         """Findings on a skeleton: a curve, or one with sheets."""
         if not self.finite:
-            return [("accepted", "a mesh with coordinates that are not finite")]
+            return [("accepted", "a mesh without faces, or not of finite points")]
         if len(nodes) == 0:
             return [("topology", "no nodes")]
         if not np.isfinite(nodes).all():

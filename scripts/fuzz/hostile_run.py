@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs whole jobs on hostile meshes in limited processes, and judges what comes of them.
 
-Each mesh of tests/hostile comes with the answer that it must get. Jobs: default, raw and the tools on its
-result, sheets, the stages one by one, resample; with --full also poles by Voronoi cells, sheets on the
-resampled surface, measures and balls. Each filter has 20 seconds of one core and 2 GB. A failing case is
-reduced and saved. Exit status 1 if there is one.
+Each mesh of tests/hostile comes with the answer that it must get. Jobs: default; raw (as it is, unrefined)
+and the tools on its result; and in turn sheets, the stages one by one, or resample. With --full each mesh
+goes through all of them, and through poles by Voronoi cells, sheets on the resampled surface, measures
+and balls. Each filter has 20 seconds of one core and 2 GB. A failing case is reduced and saved. Exit
+status 1 if there is one.
 """
 
 from __future__ import annotations
@@ -40,8 +41,9 @@ WALL_SECONDS = 300.0
 MESHES_PER_WORKER = 40
 WORKER_MEGABYTES = 900
 
-QUICK_JOBS = ["default", "raw", "sheets", "steps", "resample"]
-FULL_JOBS = QUICK_JOBS + ["voronoi", "sheets_default"]
+JOBS = ["default", "raw", "sheets", "steps", "resample", "voronoi", "sheets_default"]
+# What each mesh goes through in a quick run, and what one in three of them does besides.
+QUICK_JOBS, QUICK_IN_TURN = ["default", "raw"], ["sheets", "steps", "resample"]
 FAILURES = ["crash", "hang", "memory", "explosion", "outside", "topology", "not finite", "accepted",
             "good refused", "document changed", "bad message", "wrong"]
 
@@ -134,6 +136,8 @@ class Worker:
                 code = self.process.returncode
                 said = (self.process.stderr.read() or b"").decode(errors="replace").strip()
                 kind = "memory" if "bad_alloc" in said or "MemoryError" in said else "crash"
+                if "Traceback" in said and kind == "crash":
+                    raise RuntimeError(f"the worker's own error: {said}")
                 return (kind, f"exit status {code}: {said[-400:]}"), step
             for message in messages:
                 last = time.monotonic()
@@ -162,9 +166,14 @@ class Worker:
                 return ("wrong", "the judge did not come to an end"), step
 
 
-def run_meshes(plugin: Path, meshes: list[tuple[str, int]], jobs: list[str], full: bool, workers: int,
-               budget: float | None = None, progress: bool = True) -> list[dict[str, Any]]:
-    """Runs the jobs on all meshes; results in the order of the meshes."""
+def run_meshes(plugin: Path, meshes: list[tuple[str, int]], jobs: list[str] | None, full: bool,
+               workers: int, budget: float | None = None, log: Path | None = None) -> list[dict[str, Any]]:
+    """Runs the jobs on all meshes; results in the order of the meshes.
+
+    jobs    by name; None: the quick ones, or all of them if `full`.
+    budget  seconds after which no further mesh is begun.
+    log     each result is added to this file, one line each, as soon as it is there.
+    """
     waiting: queue.SimpleQueue[int] = queue.SimpleQueue()
     for i in range(len(meshes)):
         waiting.put(i)
@@ -182,14 +191,18 @@ def run_meshes(plugin: Path, meshes: list[tuple[str, int]], jobs: list[str], ful
                 except queue.Empty:
                     return
                 family, seed = meshes[i]
-                steps = worker.run({"family": family, "seed": seed, "jobs": jobs, "full": full})
+                steps = worker.run({"family": family, "seed": seed, "full": full, "jobs": jobs or (
+                    JOBS if full else QUICK_JOBS + [QUICK_IN_TURN[(i + i // len(FAMILIES)) % 3]])})
                 results[i] = {"family": family, "seed": seed, "steps": steps}
                 with lock:
                     done[0] += 1
                     done[1] += bool(failures(results[i]))
-                    if progress and done[0] % 20 == 0:
-                        print(f"{done[0]} of {len(meshes)} meshes, {done[1]} with a failure, "
-                              f"{time.monotonic() - started:.0f} s", file=sys.stderr, flush=True)
+                    if log is not None:
+                        with log.open("a") as file:
+                            file.write(json.dumps(results[i]) + "\n")
+                        if done[0] % 20 == 0:
+                            print(f"{done[0]} of {len(meshes)} meshes, {done[1]} with a failure, "
+                                  f"{time.monotonic() - started:.0f} s", file=sys.stderr, flush=True)
         finally:
             worker.stop()
 
@@ -284,7 +297,7 @@ def parse_arguments(arguments: list[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--output", type=Path, default=Path("out/fuzz"), metavar="FOLDER",
                         help="results.json, and the failing cases (out/fuzz)")
     parser.add_argument("--full", action="store_true", help="all jobs and all tools, those that take long too")
-    parser.add_argument("--jobs", nargs="+", choices=FULL_JOBS, help="these jobs only")
+    parser.add_argument("--jobs", nargs="+", choices=JOBS, help="these jobs only")
     parser.add_argument("--families", nargs="+", choices=list(FAMILIES), metavar="FAMILY",
                         help="these families only")
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1, help="processes at a time")
@@ -302,10 +315,10 @@ def main() -> int:
     if options.families:
         meshes = [(options.families[i % len(options.families)],
                    options.seed * 1_000_003 + i // len(options.families)) for i in range(options.count)]
-    jobs = options.jobs or (FULL_JOBS if options.full else QUICK_JOBS)
     options.output.mkdir(parents=True, exist_ok=True)
     started = time.monotonic()
-    results = run_meshes(options.plugin, meshes, jobs, options.full, options.workers, options.seconds)
+    results = run_meshes(options.plugin, meshes, options.jobs, options.full, options.workers, options.seconds,
+                         options.output / "progress.jsonl")
     (options.output / "results.json").write_text(json.dumps(results, indent=0) + "\n")
     print(table(results))
     slowest = max(((step["seconds"], result["family"], result["seed"], step["end"])

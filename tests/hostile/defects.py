@@ -6,8 +6,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .expectation import Hostile, either, refused
-from .primitives import Mesh, Rng, box, compact, edges, halved, hull, joined, log_uniform, sphere, turned
+from .expectation import Hostile, either, refused, standing_for
+from .primitives import Mesh, Rng, box, compact, diagonal, edges, halved, hull, joined, log_uniform, sphere, turned
 from .solids import ball, cloud
 
 NOWHERE = np.zeros((0, 3), int)
@@ -225,7 +225,9 @@ def half_copied(rng: Rng) -> Hostile:
     """A body and some of its faces once more, on vertices of their own: an open piece on a closed one."""
     vertices, faces = ball(rng)
     piece = compact(vertices, faces[: int(rng.integers(1, len(faces) - 1))])
-    return refused(joined((vertices, faces), piece))
+    made = either(joined((vertices, faces), piece), embedded=True, extent=diagonal(vertices),
+                  why="vertices in one place may be merged, and the second faces left out as copies")
+    return standing_for(made, (vertices, faces))
 
 
 def book(rng: Rng) -> Hostile:
