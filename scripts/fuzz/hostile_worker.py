@@ -150,9 +150,7 @@ class Job:
         self.answer({"judging": step})
         findings: list[Finding] = []
         if error is not None:
-            details = error.split("Details: ", 1)[1] if "Details: " in error else ""
-            if "Failed to apply filter" not in error:
-                details = error
+            details = error.split("Details: ", 1)[-1]  # without: the host itself has refused the layer
             if MEMORY.search(details):
                 findings.append(("memory", details))
             findings += message_findings(details)
