@@ -293,11 +293,14 @@ def parse_arguments(arguments: list[str] | None = None) -> argparse.Namespace:
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("count", nargs="?", type=int, default=300, help="how many meshes (300)")
     parser.add_argument("seed", nargs="?", type=int, default=1, help="of the first ones (1)")
-    parser.add_argument("--plugin", type=Path, required=True, help="the plugin for pymeshlab")
+    parser.add_argument("--plugin", type=Path, default=os.environ.get("MCFSKEL_PLUGIN"),
+                        help="the plugin for pymeshlab (default: $MCFSKEL_PLUGIN)")
     parser.add_argument("--output", type=Path, default=Path("out/fuzz"), metavar="FOLDER",
                         help="results.json, and the failing cases (out/fuzz)")
     parser.add_argument("--full", action="store_true", help="all jobs and all tools, those that take long too")
     parser.add_argument("--jobs", nargs="+", choices=JOBS, help="these jobs only")
+    parser.add_argument("--mesh", nargs=2, metavar=("FAMILY", "NUMBER"),
+                        help="this one only, as a table or a test names it")
     parser.add_argument("--families", nargs="+", choices=list(FAMILIES), metavar="FAMILY",
                         help="these families only")
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1, help="processes at a time")
@@ -306,7 +309,11 @@ def parse_arguments(arguments: list[str] | None = None) -> argparse.Namespace:
                         help="time for making a failing case smaller; 0: as it is (20)")
     parser.add_argument("--max-cases", type=int, default=40,
                         help="reduce no more than so many, one of each family, step and kind first (40)")
-    return parser.parse_args(arguments)
+    options = parser.parse_args(arguments)
+    if not options.plugin:
+        parser.error("--plugin, or the environment variable MCFSKEL_PLUGIN, is needed")
+    options.plugin = Path(options.plugin).resolve()
+    return options
 
 
 def main() -> int:
@@ -315,10 +322,15 @@ def main() -> int:
     if options.families:
         meshes = [(options.families[i % len(options.families)],
                    options.seed * 1_000_003 + i // len(options.families)) for i in range(options.count)]
+    if options.mesh:
+        meshes = [(options.mesh[0], int(options.mesh[1]))]
     options.output.mkdir(parents=True, exist_ok=True)
+    log = options.output / "progress.jsonl"
+    log.unlink(missing_ok=True)
     started = time.monotonic()
     results = run_meshes(options.plugin, meshes, options.jobs, options.full, options.workers, options.seconds,
-                         options.output / "progress.jsonl")
+                         log)
+    log.unlink(missing_ok=True)
     (options.output / "results.json").write_text(json.dumps(results, indent=0) + "\n")
     print(table(results))
     slowest = max(((step["seconds"], result["family"], result["seed"], step["end"])
