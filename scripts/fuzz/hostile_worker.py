@@ -179,7 +179,7 @@ class Job:
         self.answer({"end": step, "outcome": "failed" if findings else outcome,
                      "findings": findings, "seconds": seconds,
                      "error": error.split("Details: ", 1)[-1] if error is not None else None})
-        if error is not None:
+        if error is not None or expected == REFUSED:
             raise Stop
         return results
 
@@ -216,7 +216,7 @@ class Job:
     def stage(self, _: dict[str, Any] | None = None) -> list[Finding]:
         """A surface or stage: within the bounding box, of the right topology."""
         mesh = self.layers.current_mesh()
-        findings = self.judge.points(mesh.vertex_matrix(), "stage", margin=0.05)
+        findings = self.judge.points(mesh.vertex_matrix(), "stage", self.margin())
         faces = mesh.face_matrix()
         if not findings and len(faces):
             vertices, faces = compact(mesh.vertex_matrix(), faces)
@@ -232,7 +232,12 @@ class Job:
         mesh = self.layers.mesh(self.surface)
         radius = mesh.vertex_custom_scalar_attribute_array("mcfskel_pole_radius")
         pole = mesh.vertex_custom_point_attribute_matrix("mcfskel_pole")
-        return self.judge.points(pole[radius >= 0], "poles", margin=0.01)
+        return self.judge.points(pole[radius >= 0], "poles", self.margin())
+
+    def margin(self) -> float:
+        """How far poles and stages may be beyond the bounding box, in diagonals. Balls within a part that is
+        inside out, as there may be where a surface meets itself, are on its other side."""
+        return 0.01 if self.mesh.expected.embedded else 1.0
 
     # The jobs.
 
@@ -287,7 +292,7 @@ class Job:
         """The stages one by one; the last one saved, loaded and carried on."""
         self.step("poles", POLES, self.poles, pole_method="balls")
         self.try_step("medial_axis", MEDIAL_AXIS, lambda _: self.judge.points(
-            self.layers.current_mesh().vertex_matrix(), "medial axis", margin=0.01),
+            self.layers.current_mesh().vertex_matrix(), "medial axis", self.margin()),
             may_refuse=True)  # a shape may have no pole with an angle of 60 degrees
         self.layers.set_current_mesh(self.surface)
         self.step("step", STEP, self.stage, steps=2)
