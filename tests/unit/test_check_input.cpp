@@ -87,7 +87,7 @@ TEST(CheckInput, RefusesAPointCloud)
 {
 	shapes::Soup cloud = shapes::sphere();
 	cloud.triangles.clear();
-	EXPECT_TRUE(says(refusal(cloud), {"no faces", "Screened Poisson"}));
+	EXPECT_TRUE(says(refusal(cloud), {"no faces", "cloud of points"}));
 }
 
 TEST(CheckInput, RefusesOneTriangle)
@@ -96,17 +96,17 @@ TEST(CheckInput, RefusesOneTriangle)
 	one.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
 	one.triangles = {{0, 1, 2}};
 	EXPECT_TRUE(
-		says(refusal(one), {"not watertight", "3 border edges", "(0.5 0 0)", "Close Holes"}));
+		says(refusal(one), {"not watertight", "3 border edges", "(0.5 0 0)", "Fill the holes"}));
 }
 
 TEST(CheckInput, RefusesAnOpenMeshWithCountPlaceAndCure)
 {
 	EXPECT_TRUE(says(refusal(shapes::opened(shapes::box())),
-		{"not watertight", "3 border edges", "Close Holes"}));
+		{"not watertight", "3 border edges", "Fill the holes"}));
 	shapes::Soup many = shapes::torus();
 	many.triangles.resize(many.triangles.size() / 2);
 	const std::string text = refusal(many);
-	EXPECT_TRUE(says(text, {"not watertight", "border edges", "...", "Close Holes"}));
+	EXPECT_TRUE(says(text, {"not watertight", "border edges", "...", "Fill the holes"}));
 	EXPECT_LT(text.size(), 300u); // the first few places, not all
 }
 
@@ -125,13 +125,13 @@ TEST(CheckInput, RefusesTetrahedraThatShareAnEdge)
 {
 	EXPECT_TRUE(says(refusal(shapes::tetrahedraSharingEdge()),
 		{"not two-manifold", "1 edge with more than two faces", "(0.5 0 0)",
-			"Repair non Manifold Edges"}));
+			"Split the mesh apart"}));
 }
 
 TEST(CheckInput, RefusesTetrahedraThatShareAVertex)
 {
 	EXPECT_TRUE(says(refusal(shapes::tetrahedraSharingVertex()),
-		{"not two-manifold", "1 vertex", "(0 0 0)", "Repair non Manifold Vertices"}));
+		{"not two-manifold", "1 vertex", "(0 0 0)", "Split the mesh apart"}));
 }
 
 TEST(CheckInput, RefusesCoordinatesThatAreNoNumbers)
@@ -166,7 +166,8 @@ TEST(CheckInput, RefusesWhatEnclosesNoVolume)
 	const shapes::Soup one =
 		shapes::joined({shapes::sphere(1), shapes::moved(shapes::box(1, 1, 0), {3, 0, 0})});
 	EXPECT_TRUE(says(refusal(one),
-		{"of 2 connected components, 1 encloses no volume", "(3.5 0.5 0)", "Remove Isolated"}));
+		{"of 2 connected components, 1 encloses no volume", "(3.5 0.5 0)",
+			"remove the flat part"}));
 }
 
 TEST(CheckInput, RefusesOnlyDegenerateFaces)
@@ -181,8 +182,8 @@ TEST(CheckInput, NamesBothDefectsIfThereAreBoth)
 {
 	shapes::Soup soup = shapes::joined(
 		{shapes::tetrahedraSharingEdge(), shapes::moved(shapes::opened(shapes::box()), {5, 0, 0})});
-	EXPECT_TRUE(
-		says(refusal(soup), {"1 edge with more than two faces", "3 border edges", "Close Holes"}));
+	EXPECT_TRUE(says(
+		refusal(soup), {"1 edge with more than two faces", "3 border edges", "fill the holes"}));
 }
 
 // What is repaired, and said.
