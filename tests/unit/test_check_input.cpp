@@ -78,7 +78,7 @@ TEST(CheckInput, AnyScaleAndPlaceIsTaken)
 
 // What is refused, with the count, the place and the cure.
 
-TEST(CheckInput, RefusesAnEmptyLayer)
+TEST(CheckInput, RefusesAnEmptyMesh)
 {
 	EXPECT_TRUE(says(refusal({}), {"empty", "closed triangle mesh"}));
 }
