@@ -63,9 +63,9 @@ std::string difference(const Stage& a, const Stage& b)
 	return "";
 }
 
-std::string fileOf(const Stage& stage)
+std::string fileOf(const Stage& stage, const std::vector<int>& vertexOfSlot = {})
 {
-	return written([&](std::ostream& out) { writeStagePly(out, {stage, 0, {}}); });
+	return written([&](std::ostream& out) { writeStagePly(out, {stage, 0, vertexOfSlot}); });
 }
 
 StageFile readStage(const std::string& file)
@@ -101,8 +101,12 @@ const Stage& smallStage()
 /// The file of a small stage with something changed in its tables.
 std::string changed(const std::function<void(PlyFile&)>& change)
 {
-	std::istringstream in(fileOf(smallStage()));
+	std::istringstream in(fileOf(smallStage(), {0, 1, 2}));
 	PlyFile ply = readBinaryPly(in);
+	// In double, any value can be written anywhere.
+	for (PlyElement& element : ply.elements)
+		for (PlyColumn& column : element.columns)
+			column.type = PlyType::Double;
 	change(ply);
 	return written([&](std::ostream& out) { writeBinaryPly(out, ply); });
 }
@@ -197,18 +201,60 @@ TEST(StagePly, RefusesValuesThatCannotBe)
 			{"vertex", "mcfskel_held", 4, 2},
 			{"vertex", "mcfskel_sheet", 4, -1},
 			{"mcfskel_stage", "epsilon", 0, -1},
+			{"vertex", "z", 5, 1e228},
+			{"vertex", "x", 5, 1000},
+			{"vertex", "mcfskel_pole_x", 1, -1e228},
+			{"vertex", "mcfskel_pole_x", 1, 1000},
+			{"vertex", "mcfskel_pole_radius", 7, 1e100},
 			{"mcfskel_surface", "node", 2, 1 << 30},
+			{"mcfskel_surface", "node", 2, -1},
+			{"mcfskel_surface", "x", 3, 1e228},
+			{"mcfskel_slot", "vertex", 1, -2},
+			{"mcfskel_slot", "vertex", 1, 240},
 			{"mcfskel_surface", "y", 6, std::nan("")},
 			{"mcfskel_component", "initial_area", 0, 0},
+			{"mcfskel_component", "initial_area", 0, std::nan("")},
+			{"mcfskel_component", "area", 0, -1},
 			{"mcfskel_component", "diagonal", 0, -1},
+			{"mcfskel_component", "diagonal", 0, 1e-300},
+			{"mcfskel_component", "diagonal", 0, 1e3},
+			{"mcfskel_component", "diagonal", 0, 1e-3},
 			{"mcfskel_stage", "iteration", 0, -1},
+			{"mcfskel_stage", "iteration", 0, 2147483647},
+			{"mcfskel_stage", "epsilon", 0, 0},
+			{"mcfskel_stage", "epsilon", 0, 0.11},
+			{"mcfskel_stage", "epsilon", 0, std::nan("")},
+			{"mcfskel_stage", "initial_volume", 0, 0},
+			{"mcfskel_stage", "initial_volume", 0, -1},
+			{"mcfskel_stage", "initial_volume", 0, 1e-310},
 			{"mcfskel_stage", "volume", 0, std::nan("")},
+			{"mcfskel_stage", "volume", 0, 1e308},
+			{"mcfskel_stage", "fingerprint_low", 0, 4294967296.0},
 			{"mcfskel_stage", "converged", 0, 7},
 		})
 		EXPECT_NE(with(element, column, row, value)
 					  .find("Element '" + element + "', row " + std::to_string(row)),
 			std::string::npos)
 			<< column;
+}
+
+TEST(StagePly, SaysHowManyRowsAreWrong)
+{
+	const std::string text = refusal(changed([](PlyFile& ply) {
+		for (PlyElement& element : ply.elements)
+			if (element.name == "vertex")
+				for (size_t row : {9, 4, 7})
+					element.columns[0].values[row] = std::nan("");
+	}));
+	EXPECT_NE(text.find("row 4"), text.npos) << text;
+	EXPECT_NE(text.find("3 such rows"), text.npos) << text;
+}
+
+TEST(StagePly, WritesNothingThatItWouldNotRead)
+{
+	Stage stage = smallStage();
+	stage.node[3] = -1;
+	EXPECT_THROW(fileOf(stage), InvalidStage);
 }
 
 TEST(StagePly, RefusesMeshesThatAreNoClosedManifold)
@@ -244,7 +290,7 @@ TEST(StagePly, DamagedFilesAreReadOrRefused)
 		try {
 			const Stage stage = readStagePly(readBinaryPly(in)).stage;
 			EXPECT_EQ(stage.mesh.eulerCharacteristic() % 2, 0);
-			step(stage, Parameters());
+			EXPECT_NO_THROW(checkStage(step(stage, Parameters())));
 		}
 		catch (const FormatError&) {
 			++refusals;

@@ -12,6 +12,7 @@
 #ifndef VCG_MCF_STAGE_PLY_H
 #define VCG_MCF_STAGE_PLY_H
 
+#include "../skeleton/check_stage.h"
 #include "../skeleton/stage.h"
 #include "ply_tables.h"
 
@@ -58,15 +59,20 @@ inline PlyElement stageRow(const StageFile& file)
 
 } // namespace detail
 
-/// Writes a stage. @pre its mesh is compact, as between steps. @throws Cancelled
-/// Complexity: O(V + surface).
+/**
+ * Writes a stage. Nothing is written that readStagePly() would refuse.
+ * @pre its mesh is compact, as between steps.
+ * @throws InvalidStage, see checkStage(); Cancelled.
+ * Complexity: O(V + surface).
+ */
 inline void writeStagePly(
 	std::ostream& out, const StageFile& file, const Progress& progress = Progress())
 {
 	const char* const what = "Writing the file";
 	const Stage& stage = file.stage;
-	const std::vector<Triangle> triangles = stage.mesh.triangles(progress.part(0, 0.1));
-	const std::vector<double> radius = stageRadius(stage, progress.part(0.1, 0.3));
+	checkStage(stage, progress.part(0, 0.1));
+	const std::vector<Triangle> triangles = stage.mesh.triangles(progress.part(0.1, 0.15));
+	const std::vector<double> radius = stageRadius(stage, progress.part(0.15, 0.3));
 	const size_t n = size_t(stage.mesh.vertexSlots());
 
 	PlyElement vertex {"vertex", n, {}};
@@ -107,84 +113,68 @@ inline void writeStagePly(
 
 namespace detail {
 
-/// @throws FormatError unless the triangles are a closed two-manifold without double edges; Cancelled.
-inline SurfaceMesh checkedStageMesh(
+/// The mesh of a stage; checkStage() sees whether it is a manifold.
+/// @throws FormatError unless each edge has a twin; Cancelled.
+inline SurfaceMesh stageMesh(
 	std::vector<Point3d> points, const std::vector<Triangle>& triangles, const Progress& progress)
 {
-	const int n = int(points.size());
-	std::vector<int> corners(size_t(n), 0);
 	for (size_t f = 0; f < triangles.size(); ++f) {
 		const auto& [a, b, c] = triangles[f];
 		if (a == b || b == c || c == a)
 			throw FormatError::atRow("face", f, "two corners are the same vertex.");
-		for (int v : triangles[f])
-			++corners[size_t(v)];
 	}
-	for (int v = 0; v < n; ++v)
-		if (!corners[size_t(v)])
-			throw FormatError::atRow("vertex", size_t(v), "no face has this vertex.");
 	try {
-		SurfaceMesh mesh(std::move(points), triangles, progress);
-		std::vector<int> seenFrom(size_t(n), -1);
-		for (int v = 0; v < n; ++v) {
-			if (mesh.valence(v) != corners[size_t(v)])
-				throw FormatError::atRow("vertex", size_t(v), "the surface is pinched here.");
-			mesh.forEachOutgoing(v, [&](int h) {
-				int& seen = seenFrom[size_t(mesh.target(h))];
-				if (seen == v)
-					throw FormatError::atRow("vertex", size_t(v), "a double edge starts here.");
-				seen = v;
-			});
-		}
-		return mesh;
+		return SurfaceMesh(std::move(points), triangles, progress);
 	}
 	catch (const InvalidInput& error) {
 		throw FormatError::atRow("face", 0, error.what());
 	}
 }
 
+/// checkStage(), in terms of the file.
+inline void checkReadStage(const Stage& stage, const Progress& progress)
+{
+	try {
+		checkStage(stage, progress);
+	}
+	catch (const InvalidStage& error) {
+		const char* const elements[] = {
+			"vertex", "face", "mcfskel_component", "mcfskel_surface", "mcfskel_stage"};
+		throw FormatError::atRow(elements[size_t(error.part())], error.row(),
+			error.reason()
+				+ (error.count() > 1 ? " There are " + std::to_string(error.count()) + " such rows."
+									 : ""));
+	}
+}
+
 inline std::uint64_t fingerprintHalf(const PlyTable& row, const char* name)
 {
 	const double value = row.reals(name, 0)[0];
-	if (value > 0xFFFFFFFFu)
-		throw row.error(0, std::string("'") + name + "' has more than 32 bits.");
+	if (value > 0xFFFFFFFFu || value != std::floor(value))
+		throw row.error(0, std::string("'") + name + "' is no integer of 32 bits.");
 	return std::uint64_t(value);
 }
 
 inline void readComponents(const PlyTable& table, Stage& stage)
 {
-	stage.diagonal = table.reals("diagonal", 0);
-	stage.initialArea = table.reals("initial_area", 0);
-	stage.area = table.reals("area", 0);
-	for (size_t c = 0; c < table.rows(); ++c)
-		if (stage.diagonal[c] <= 0 || stage.initialArea[c] <= 0)
-			throw table.error(c, "a component without extent.");
+	stage.diagonal = table.anyReals("diagonal");
+	stage.initialArea = table.anyReals("initial_area");
+	stage.area = table.anyReals("area");
 }
 
 inline void readVertices(const PlyTable& table, int components, Stage& stage)
 {
 	stage.pole = table.anyPoints("mcfskel_pole_");
-	stage.poleRadius = table.reals("mcfskel_pole_radius");
-	for (size_t v = 0; v < table.rows(); ++v)
-		for (int k = 0; k < 3; ++k)
-			if (stage.poleRadius[v] >= 0 && !std::isfinite(stage.pole[v][k]))
-				throw table.error(v, "the pole is not finite.");
-	const std::vector<int> fixed = table.integers("mcfskel_fixed", 0, 1);
-	stage.fixed.assign(fixed.begin(), fixed.end());
-	stage.held.assign(fixed.size(), 0);
-	if (table.has("mcfskel_held")) {
-		const std::vector<int> held = table.integers("mcfskel_held", 0, 1);
-		for (size_t v = 0; v < held.size(); ++v) {
-			if (held[v] && !fixed[v])
-				throw table.error(v, "held, but not fixed.");
-			stage.held[v] = char(held[v]);
-		}
-	}
-	stage.sheet.assign(fixed.size(), 0);
-	if (table.has("mcfskel_sheet")) {
-		const std::vector<int> sheet = table.integers("mcfskel_sheet", 0, 1);
-		stage.sheet.assign(sheet.begin(), sheet.end());
-	}
+	stage.poleRadius = table.anyReals("mcfskel_pole_radius");
+	const auto flags = [&](const char* name) {
+		const std::vector<int> values = table.integers(name, 0, 1);
+		return std::vector<char>(values.begin(), values.end());
+	};
+	stage.fixed = flags("mcfskel_fixed");
+	// Files of earlier releases have neither.
+	const std::vector<char> none(table.rows(), 0);
+	stage.held = table.has("mcfskel_held") ? flags("mcfskel_held") : none;
+	stage.sheet = table.has("mcfskel_sheet") ? flags("mcfskel_sheet") : none;
 	stage.component = table.integers("mcfskel_component", 0, components - 1);
 }
 
@@ -200,12 +190,12 @@ inline bool isStagePly(const PlyFile& ply)
 /**
  * Reads a stage that writeStagePly() wrote. Further properties and elements are ignored.
  * @throws FormatError: see readBinaryPly(); also for an element or property that is missing, a value
- *         out of its range, a mesh that is no closed two-manifold. Cancelled.
+ *         that its type cannot have, and for whatever checkStage() refuses. Cancelled.
  */
 inline StageFile readStagePly(const PlyFile& ply, const Progress& progress = Progress())
 {
 	const char* const what = "Reading the file";
-	constexpr int most = std::numeric_limits<int>::max();
+	constexpr int maxInt = std::numeric_limits<int>::max();
 	if (!isStagePly(ply))
 		throw FormatError::atLine(1,
 			std::string("the header has no comment '") + detail::stageComment
@@ -217,12 +207,12 @@ inline StageFile readStagePly(const PlyFile& ply, const Progress& progress = Pro
 		slot(ply, "mcfskel_slot");
 	if (row.rows() != 1)
 		throw row.error(0, "expected one row.");
-	stage.iteration = row.integers("iteration", 0, most)[0];
+	stage.iteration = row.integers("iteration", 0, maxInt)[0];
 	stage.converged = row.integers("converged", 0, 1)[0] == 1;
 	if (row.has("epsilon"))
-		stage.epsilon = row.reals("epsilon", 0)[0];
-	stage.initialVolume = row.reals("initial_volume")[0];
-	stage.volume = row.reals("volume")[0];
+		stage.epsilon = row.anyReals("epsilon")[0];
+	stage.initialVolume = row.anyReals("initial_volume")[0];
+	stage.volume = row.anyReals("volume")[0];
 	file.surfaceFingerprint = detail::fingerprintHalf(row, "fingerprint_low")
 		| detail::fingerprintHalf(row, "fingerprint_high") << 32;
 
@@ -232,18 +222,15 @@ inline StageFile readStagePly(const PlyFile& ply, const Progress& progress = Pro
 	progress.report(0.2, what);
 	const std::vector<Triangle> triangles =
 		face.tuples<3>("vertex_indices", 0, int(vertex.rows()) - 1);
-	for (size_t f = 0; f < triangles.size(); ++f)
-		for (int v : triangles[f])
-			if (stage.component[size_t(v)] != stage.component[size_t(triangles[f][0])])
-				throw face.error(f, "the corners are in different components.");
-	stage.mesh = detail::checkedStageMesh(vertex.points(""), triangles, progress.part(0.3, 0.7));
+	stage.mesh = detail::stageMesh(vertex.anyPoints(""), triangles, progress.part(0.2, 0.5));
 
+	progress.report(0.5, what);
+	stage.surface = std::make_shared<const std::vector<Point3d>>(surface.anyPoints(""));
+	progress.report(0.6, what);
+	stage.node = surface.integers("node", 0, int(vertex.rows()) - 1);
 	progress.report(0.7, what);
-	stage.surface = std::make_shared<const std::vector<Point3d>>(surface.points(""));
-	progress.report(0.8, what);
-	stage.node = surface.integers("node", -1, int(vertex.rows()) - 1);
-	progress.report(0.9, what);
 	file.vertexOfSlot = slot.integers("vertex", -1, int(surface.rows()) - 1);
+	detail::checkReadStage(stage, progress.part(0.8, 1));
 	progress.report(1, what);
 	return file;
 }

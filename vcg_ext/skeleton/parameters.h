@@ -33,8 +33,9 @@ struct Parameters
 	double wH = 20;
 	/// Medial weight w_M (Eq. 6), in the paper's units; >= 0. 0: plain mean curvature skeleton.
 	double wM = 40;
-	/// Edges shorter than this are collapsed (Sec. 4.3); fraction of the diagonal, in (0, 0.1].
+	/// Edges shorter than this are collapsed (Sec. 4.3); fraction of the diagonal, in (0, maxEpsilon].
 	double epsilon = 0.002;
+	static constexpr double maxEpsilon = 0.1;
 	/// An edge whose two opposite angles are wider is split (Sec. 4.3); degrees, in [60, 180).
 	double splitAngle = 110;
 	/// The flow stops after this many iterations even if it has not converged; >= 0.
@@ -62,7 +63,8 @@ struct Parameters
 		require(wL > 0 && std::isfinite(wL), "w_l", "greater than 0");
 		require(wH > 0 && std::isfinite(wH), "w_h", "greater than 0");
 		require(wM >= 0 && std::isfinite(wM), "w_m", "at least 0");
-		require(epsilon > 0 && epsilon <= 0.1, "epsilon", "between 0 and 10 % of the diagonal");
+		require(
+			epsilon > 0 && epsilon <= maxEpsilon, "epsilon", "between 0 and 10 % of the diagonal");
 		require(splitAngle >= 60 && splitAngle < 180, "split_angle", "in [60, 180) degrees");
 		require(maxIterations >= 0, "max_iterations", "at least 0");
 		require(sheetThreshold >= 0 && sheetThreshold <= 1, "sheet_threshold", "between 0 and 1");
