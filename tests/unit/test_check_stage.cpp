@@ -24,7 +24,7 @@ const Stage& twoBodies()
 {
 	static const Stage stage = [] {
 		Stage s = firstStage(shapes::joined({shapes::torus(1, 0.3, 24, 10),
-								 shapes::moved(shapes::sphere(2), {9, 0, 0})})
+												shapes::moved(shapes::sphere(2), {9, 0, 0})})
 								 .mesh(),
 			Parameters());
 		for (int i = 0; i < 2; ++i)
@@ -64,11 +64,10 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 TEST(CheckStage, PassesWhateverTheFlowMakesAtAnyScale)
 {
 	for (double scale : {1e-30, 1.0, 1e30}) {
-		Stage stage = firstStage(
-			shapes::scaled(shapes::joined({shapes::torus(1, 0.3, 24, 10),
-							   shapes::moved(shapes::sphere(2), {9, 0, 0})}),
-				scale)
-				.mesh(),
+		Stage stage = firstStage(shapes::scaled(shapes::joined({shapes::torus(1, 0.3, 24, 10),
+													shapes::moved(shapes::sphere(2), {9, 0, 0})}),
+									 scale)
+									 .mesh(),
 			Parameters());
 		EXPECT_NO_THROW(checkStage(stage)) << scale;
 		while (!stage.converged && stage.iteration < 100) {
@@ -177,7 +176,8 @@ TEST(CheckStage, RefusesACorrespondenceThatLeadsNowhere)
 	EXPECT_EQ(found([](Stage& s) { s.surface = nullptr; }).part, Part::Stage);
 	const Wrong alone = found([](Stage& s) {
 		// All of the surface belongs to one body.
-		const int v = int(std::find(s.component.begin(), s.component.end(), 0) - s.component.begin());
+		const int v =
+			int(std::find(s.component.begin(), s.component.end(), 0) - s.component.begin());
 		std::fill(s.node.begin(), s.node.end(), v);
 	});
 	EXPECT_EQ(alone.part, Part::Component);

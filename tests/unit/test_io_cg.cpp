@@ -64,6 +64,7 @@ TEST(Cg, ErrorsCarryTheirLine)
 	EXPECT_EQ(lineOfError("# D:3 NV:2 NE:99999999999\n"), 1u);
 	EXPECT_EQ(lineOfError(header + "v 0 0\nv 1 0 0\ne 1 2\n"), 2u) << "a missing coordinate";
 	EXPECT_EQ(lineOfError(header + "v 0 0 0\nv 1 0 nan\ne 1 2\n"), 3u);
+	EXPECT_EQ(lineOfError(header + "v 0 0 0\nv 1 0 1e228\ne 1 2\n"), 3u);
 	EXPECT_EQ(lineOfError(header + "v 0 0 0\nv 1 0 1e999\ne 1 2\n"), 3u);
 	EXPECT_EQ(lineOfError(header + "v 0 0 0\nv 1 0 0x\ne 1 2\n"), 3u);
 	EXPECT_EQ(lineOfError(header + "v 0 0 0\nv 1 0 0\ne 1 3\n"), 4u) << "no node 3";

@@ -73,10 +73,20 @@ TEST(GraphFormats, LeaveOutWhatIsNotKnown)
 	}
 }
 
-TEST(GraphFormats, RefuseWhatIsNotFinite)
+TEST(GraphFormats, RefuseRadiiAndCoordinatesThatCannotBe)
 {
-	CurveSkeleton s = ringWithTailAndY();
-	s.radius[4] = INFINITY;
-	EXPECT_THROW(graphml(s), InvalidInput);
-	EXPECT_THROW(json(s), InvalidInput);
+	const auto refused = [](const CurveSkeleton& s) {
+		EXPECT_THROW(graphml(s), InvalidInput);
+		EXPECT_THROW(json(s), InvalidInput);
+	};
+	for (double value : {double(INFINITY), double(NAN), -1.0, 1e37}) {
+		CurveSkeleton s = ringWithTailAndY();
+		s.radius[4] = value;
+		refused(s);
+	}
+	for (double value : {double(INFINITY), double(NAN), -1e37}) {
+		CurveSkeleton s = ringWithTailAndY();
+		s.position[4][1] = value;
+		refused(s);
+	}
 }

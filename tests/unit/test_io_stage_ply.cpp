@@ -312,6 +312,37 @@ TEST(SkeletonPly, ReadsBackToTheLastBit)
 	EXPECT_EQ(file.skeleton.node, s.node);
 }
 
+TEST(SkeletonPly, RefusesValuesThatCannotBe)
+{
+	const auto with = [](const std::string& element, const std::string& column, double value) {
+		std::istringstream in(
+			written([](std::ostream& out) { writeSkeletonPly(out, ringWithTailAndY()); }));
+		PlyFile ply = readBinaryPly(in);
+		for (PlyElement& e : ply.elements)
+			for (PlyColumn& c : e.columns)
+				if (e.name == element && c.name == column)
+					c.values.at(2) = value;
+		try {
+			readSkeletonPly(ply);
+		}
+		catch (const FormatError& error) {
+			return std::string(error.what());
+		}
+		return std::string();
+	};
+	EXPECT_EQ(with("vertex", "mcfskel_radius", 0), "");
+	for (double value : {-1.0, -1e-300, double(NAN), double(INFINITY), 1e37})
+		EXPECT_NE(with("vertex", "mcfskel_radius", value).find("row 2: 'mcfskel_radius' is"),
+			std::string::npos)
+			<< value;
+	for (double value : {1e37, -1e228, double(NAN), -double(INFINITY)})
+		EXPECT_NE(with("vertex", "y", value).find("row 2"), std::string::npos) << value;
+	for (double value : {-1.0, 11.0, 0.5})
+		EXPECT_NE(with("edge", "vertex1", value).find("row 2"), std::string::npos) << value;
+	for (double value : {-2.0, 11.0})
+		EXPECT_NE(with("mcfskel_surface", "node", value).find("row 2"), std::string::npos) << value;
+}
+
 TEST(SkeletonPly, DamagedFilesAreReadOrRefused)
 {
 	const std::string file =
@@ -324,6 +355,19 @@ TEST(SkeletonPly, DamagedFilesAreReadOrRefused)
 		catch (const FormatError&) {
 		}
 	});
+}
+
+TEST(BinaryPly, HeadersOfManyNamesAreReadInTime)
+{
+	std::string header = "ply\nformat binary_little_endian 1.0\n";
+	for (int e = 0; e < 30000; ++e)
+		header += "element e" + std::to_string(e) + " 0\n";
+	for (int c = 0; c < 30000; ++c)
+		header += "property double c" + std::to_string(c) + "\n";
+	std::istringstream in(header + "end_header\n");
+	EXPECT_EQ(readBinaryPly(in).elements.size(), 30000u);
+	std::istringstream twice(header + "property double c0\nend_header\n");
+	EXPECT_EQ(errorLine([&](std::istream& file) { readBinaryPly(file); }, twice.str()), 60003u);
 }
 
 TEST(BinaryPly, HugeCountsDoNotTakeMemory)

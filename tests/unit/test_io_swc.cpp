@@ -152,7 +152,10 @@ TEST(Swc, ErrorsCarryTheirLine)
 	EXPECT_EQ(lineOfError(root + "2 0 1 0 0 1\n"), 3u) << "a field too few";
 	EXPECT_EQ(lineOfError(root + "2 0 1 0 0 1 1 1\n"), 3u) << "a field too many";
 	EXPECT_EQ(lineOfError(root + "2 0 1 0 inf 1 1\n"), 3u);
+	EXPECT_EQ(lineOfError(root + "2 0 1 0 1e37 1 1\n"), 3u) << "too far away to work with";
 	EXPECT_EQ(lineOfError(root + "2 0 1 0 0 -1 1\n"), 3u) << "a radius below 0";
+	EXPECT_EQ(lineOfError(root + "2 0 1 0 0 nan 1\n"), 3u);
+	EXPECT_EQ(lineOfError(root + "2 0 1 0 0 1e37 1\n"), 3u);
 	EXPECT_EQ(lineOfError(root + "1 0 1 0 0 1 1\n"), 3u) << "an id twice";
 	EXPECT_EQ(lineOfError(root + "-2 0 1 0 0 1 1\n"), 3u);
 	EXPECT_EQ(lineOfError(root + "2.5 0 1 0 0 1 1\n"), 3u);

@@ -24,7 +24,9 @@
 #include <istream>
 #include <limits>
 #include <ostream>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace vcg::tri::mcf {
@@ -192,6 +194,9 @@ struct PlyHeader
 	PlyFile file;
 	/// For each element the type of each column's count.
 	std::vector<std::vector<PlyType>> countTypes;
+	/// The names that there are: those of elements, and those of columns with the element's number.
+	std::set<std::string> elementNames;
+	std::set<std::pair<size_t, std::string>> columnNames;
 };
 
 inline PlyType plyTypeOf(const FieldReader& in, size_t i)
@@ -217,7 +222,7 @@ inline void readPlyProperty(const FieldReader& in, PlyHeader& header)
 	const PlyType countType = isList ? plyTypeOf(in, 2) : PlyType::UInt8;
 	if (countType == PlyType::Float || countType == PlyType::Double)
 		throw in.error("the length of a list is no integer.");
-	if (element.find(column.name))
+	if (!header.columnNames.emplace(header.file.elements.size(), column.name).second)
 		throw in.error("property '" + column.name + "' is given twice.");
 	element.columns.push_back(std::move(column));
 	header.countTypes.back().push_back(countType);
@@ -253,7 +258,7 @@ inline PlyHeader readPlyHeader(std::istream& stream)
 		}
 		else if (in[0] == "element") {
 			in.expectCount(3, "element NAME COUNT");
-			if (header.file.find(std::string(in[1])))
+			if (!header.elementNames.emplace(in[1]).second)
 				throw in.error("element '" + std::string(in[1]) + "' is given twice.");
 			PlyElement element;
 			element.name = std::string(in[1]);

@@ -55,8 +55,9 @@ inline int cgHeaderNumber(FieldReader& in, size_t i, std::string_view key)
  * Reads a .cg file. Blank lines and further comments are skipped; an edge that is given again counts
  * but is kept once, with a warning.
  * @return a skeleton without radius and correspondence.
- * @throws FormatError with the line: a bad header, a line of neither kind, a node that does not exist,
- *         an edge from a node to itself, or other counts than the header's.
+ * @throws FormatError with the line: a bad header, a line of neither kind, a coordinate that is not
+ *         finite or beyond maxCoordinate, a node that does not exist, an edge from a node to itself, or
+ *         other counts than the header's.
  */
 inline SkeletonFile readCg(std::istream& stream)
 {
@@ -77,8 +78,7 @@ inline SkeletonFile readCg(std::istream& stream)
 			in.expectCount(4, "v x y z");
 			if (int(skeleton.position.size()) == nodes)
 				throw in.error("more nodes than the header's NV:" + std::to_string(nodes) + ".");
-			skeleton.position.emplace_back(
-				in.real(1, "coordinate x"), in.real(2, "coordinate y"), in.real(3, "coordinate z"));
+			skeleton.position.push_back(pointAt(in, 1));
 		}
 		else if (in[0] == "e") {
 			in.expectCount(3, "e i j");

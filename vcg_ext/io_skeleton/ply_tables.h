@@ -83,19 +83,7 @@ public:
 		return checkedIntegers(scalars(name), 1, least, greatest);
 	}
 
-	/// Finite points from the columns PREFIXx, PREFIXy, PREFIXz.
-	std::vector<Point3d> points(const std::string& prefix) const
-	{
-		std::vector<Point3d> result(rows());
-		for (int axis = 0; axis < 3; ++axis) {
-			const std::vector<double> values = reals(prefix + "xyz"[axis]);
-			for (size_t row = 0; row < rows(); ++row)
-				result[row][axis] = values[row];
-		}
-		return result;
-	}
-
-	/// Points as they are, not finite ones included.
+	/// Points from the columns PREFIXx, PREFIXy, PREFIXz as they are, not finite ones included.
 	std::vector<Point3d> anyPoints(const std::string& prefix) const
 	{
 		std::vector<Point3d> result(rows());

@@ -42,7 +42,9 @@ inline void writeSkeletonPly(std::ostream& out, const CurveSkeleton& skeleton)
 /**
  * Reads a skeleton that writeSkeletonPly() wrote, or any binary PLY of vertices and edges. What the
  * file does not have (radius, correspondence) stays empty.
- * @throws FormatError: see readBinaryPly(); also for a value out of its range.
+ * @throws FormatError: see readBinaryPly(); also for a coordinate that is not finite or beyond
+ *         maxCoordinate, a radius that is or is below 0, an edge or a surface vertex whose node does not
+ *         exist, an edge from a vertex to itself.
  */
 inline SkeletonFile readSkeletonPly(const PlyFile& ply)
 {
@@ -50,9 +52,17 @@ inline SkeletonFile readSkeletonPly(const PlyFile& ply)
 	CurveSkeleton& skeleton = file.skeleton;
 	const PlyTable vertex(ply, "vertex"), edge(ply, "edge");
 	const int last = int(vertex.rows()) - 1;
-	skeleton.position = vertex.points("");
+	skeleton.position = vertex.anyPoints("");
+	for (size_t v = 0; v < vertex.rows(); ++v)
+		if (!isUsablePlace(skeleton.position[v]))
+			throw vertex.error(v, "a coordinate is " + outsideOfCoordinates() + ".");
 	if (vertex.has("mcfskel_radius"))
-		skeleton.radius = vertex.reals("mcfskel_radius");
+		skeleton.radius = vertex.anyReals("mcfskel_radius");
+	for (size_t v = 0; v < skeleton.radius.size(); ++v)
+		if (!isUsableRadius(skeleton.radius[v]))
+			throw vertex.error(v,
+				"'mcfskel_radius' is " + numberText(skeleton.radius[v]) + ", " + outsideOfRadii()
+					+ ".");
 	const std::vector<int> first = edge.integers("vertex1", 0, last);
 	const std::vector<int> second = edge.integers("vertex2", 0, last);
 	for (size_t e = 0; e < first.size(); ++e) {

@@ -94,8 +94,9 @@ inline void requireTrees(const std::vector<int>& parent, const std::vector<size_
  * Reads an SWC file: nodes in the order of their lines, an edge to each parent. Types are not kept.
  * A parent may come after its children.
  * @return a skeleton with radius and without correspondence.
- * @throws FormatError with the line: not seven fields, an id below 0 or given twice, a number that is
- *         not finite, a radius below 0, a parent that does not exist, a node that is its own ancestor.
+ * @throws FormatError with the line: not seven fields, an id below 0 or given twice, a coordinate that is
+ *         not finite or beyond maxCoordinate, a radius that is or is below 0, a parent that does not
+ *         exist, a node that is its own ancestor.
  */
 inline SkeletonFile readSwc(std::istream& stream)
 {
@@ -114,11 +115,8 @@ inline SkeletonFile readSwc(std::istream& stream)
 		if (!nodeOfId.emplace(id, int(skeleton.position.size())).second)
 			throw in.error("id " + std::to_string(id) + " is given twice.");
 		in.integer(1, std::numeric_limits<int>::min(), greatest, "type");
-		skeleton.position.emplace_back(
-			in.real(2, "coordinate x"), in.real(3, "coordinate y"), in.real(4, "coordinate z"));
-		skeleton.radius.push_back(in.real(5, "radius"));
-		if (skeleton.radius.back() < 0)
-			throw in.error("radius '" + std::string(in[5]) + "' is below 0.");
+		skeleton.position.push_back(pointAt(in, 2));
+		skeleton.radius.push_back(radiusAt(in, 5));
 		parentId.push_back(in.integer(6, -1, greatest, "parent"));
 		line.push_back(in.line());
 	}

@@ -64,9 +64,7 @@ namespace detail {
 class StageChecker
 {
 public:
-	StageChecker(const Stage& stage, const Progress& progress) : stage(stage), progress(progress)
-	{
-	}
+	StageChecker(const Stage& stage, const Progress& progress) : stage(stage), progress(progress) {}
 
 	void check()
 	{
@@ -121,8 +119,7 @@ private:
 				&& stage.held.size() == vertices() && stage.sheet.size() == vertices()
 				&& stage.component.size() == vertices(),
 			"what it knows is not of as many vertices as it has.");
-		require(
-			stage.initialArea.size() == components() && stage.area.size() == components(),
+		require(stage.initialArea.size() == components() && stage.area.size() == components(),
 			"it has not as many areas as components.");
 		require(stage.node.size() == stage.surface->size(),
 			"'node' has not an entry for each vertex of the surface.");
@@ -152,7 +149,8 @@ private:
 				return stage.initialArea[c] > minFraction * square
 					&& std::isfinite(stage.initialArea[c]);
 			});
-		requireEach(Part::Component, components(), progress.part(0, 0), "'area' is not finite, or below 0.",
+		requireEach(Part::Component, components(), progress.part(0, 0),
+			"'area' is not finite, or below 0.",
 			[&](size_t c) { return stage.area[c] >= 0 && std::isfinite(stage.area[c]); });
 		const double diagonal = *std::max_element(stage.diagonal.begin(), stage.diagonal.end());
 		require(stage.initialVolume > minFraction * diagonal * diagonal * diagonal
@@ -175,9 +173,10 @@ private:
 		each("'mcfskel_pole_radius' is not finite, or too large to work with.",
 			[&](size_t v) { return std::abs(stage.poleRadius[v]) <= maxCoordinate; });
 		const auto isFlag = [](char flag) { return flag == 0 || flag == 1; };
-		each("'mcfskel_fixed', 'mcfskel_held' or 'mcfskel_sheet' is neither 0 nor 1.", [&](size_t v) {
-			return isFlag(stage.fixed[v]) && isFlag(stage.held[v]) && isFlag(stage.sheet[v]);
-		});
+		each("'mcfskel_fixed', 'mcfskel_held' or 'mcfskel_sheet' is neither 0 nor 1.",
+			[&](size_t v) {
+				return isFlag(stage.fixed[v]) && isFlag(stage.held[v]) && isFlag(stage.sheet[v]);
+			});
 		each("held, but not fixed.", [&](size_t v) { return stage.fixed[v] || !stage.held[v]; });
 		// Once it has arrived, a sheet's vertex is put where its pole is.
 		each("of a sheet, but without a pole.",
@@ -256,9 +255,8 @@ private:
 		// by this, and so are the cells of grids and the splits of long edges.
 		constexpr double maxDistance = 100; // diagonals
 		std::vector<Box3d> box(components());
-		reportedLoop(int(stage.node.size()), part.part(0, 0.5), checking, [&](int s) {
-			box[stage.component[stage.node[s]]].Add((*stage.surface)[s]);
-		});
+		reportedLoop(int(stage.node.size()), part.part(0, 0.5), checking,
+			[&](int s) { box[stage.component[stage.node[s]]].Add((*stage.surface)[s]); });
 		requireEach(Part::Component, components(), part.part(0.5, 0.5),
 			"'diagonal' is not that of its vertices of the surface.", [&](size_t c) {
 				const double diagonal = box[c].IsNull() ? 0 : box[c].Diag();
