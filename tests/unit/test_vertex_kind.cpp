@@ -73,6 +73,13 @@ TEST(VertexKinds, APlateThatIsThickForEpsilonIsVolume)
 	EXPECT_GT(areaShare(stage, VertexKind::Sheet), 0.95);
 }
 
+TEST(VertexKinds, AnEpsilonFarBelowTheEdgesTakesNeitherHoursNorAllMemory)
+{
+	Stage stage = stageOf(shapes::sphere(2));
+	stage.epsilon = 1e-15;
+	EXPECT_EQ(share(vertexKinds(stage), VertexKind::Volume), 1);
+}
+
 TEST(VertexKinds, TheSameAtAnySizeAndForEachBodyAsAlone)
 {
 	const shapes::Soup plate = fineBox(1, 0.7, 1e-3), body = shapes::sphere(3);

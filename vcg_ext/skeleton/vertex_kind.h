@@ -73,7 +73,8 @@ public:
 	std::vector<Cell> cells;
 
 	/**
-	 * Each triangle is halved at its longest edge until none is longer than longestPiece, or 16 times.
+	 * Each triangle is halved at its longest edge until none is longer than longestPiece, or 16 times;
+	 * less often where that would give millions of pieces, as with an epsilon far below the edges.
 	 * @param box  of the grid; pieces whose middles are outside are left out.
 	 * @throws Cancelled
 	 */
@@ -82,9 +83,10 @@ public:
 			origin(box.Center())
 	{
 		const SurfaceMesh& mesh = stage.mesh;
+		const int halvings = mostHalvings(stage, progress.part(0, 0.05));
 		std::vector<Piece> unsorted;
 		unsorted.reserve(size_t(mesh.faceSlots()));
-		reportedLoop(mesh.faceSlots(), progress.part(0, 0.3), tellingKinds, [&](int f) {
+		reportedLoop(mesh.faceSlots(), progress.part(0.05, 0.3), tellingKinds, [&](int f) {
 			const Triangle t = mesh.triangle(f);
 			const std::array<Point3d, 3> corners = {
 				mesh.position[t[0]], mesh.position[t[1]], mesh.position[t[2]]};
@@ -93,7 +95,8 @@ public:
 			Piece whole {{0, 0, 0}, float(length / 2), {0, 0, 0}, f};
 			if (length > 0)
 				whole.normal = Point3f::Construct(areaVector / length);
-			addPieces(unsorted, whole, corners, longestPiece * epsilonAt(stage, t[0]), box, 16);
+			addPieces(
+				unsorted, whole, corners, longestPiece * epsilonAt(stage, t[0]), box, halvings);
 		});
 		const PointsByCell sorted(
 			int(unsorted.size()),
@@ -119,6 +122,31 @@ public:
 	}
 
 private:
+	/// How often a triangle may be halved: two halvings halve its longest edge.
+	static int mostHalvings(const Stage& stage, const Progress& progress)
+	{
+		constexpr int most = 16;
+		const double maxPieces = std::max(double(1 << 22), 64.0 * stage.mesh.faceSlots());
+		std::array<double, most + 1> triangles = {}; // by the halvings that they need
+		const SurfaceMesh& mesh = stage.mesh;
+		reportedLoop(mesh.faceSlots(), progress, tellingKinds, [&](int f) {
+			const double longest = std::sqrt(std::max({mesh.squaredLength(3 * f),
+				mesh.squaredLength(3 * f + 1), mesh.squaredLength(3 * f + 2)}));
+			const double ratio = longest / (longestPiece * epsilonAt(stage, mesh.origin(3 * f)));
+			++triangles[size_t(std::clamp(std::ceil(2 * std::log2(ratio)), 0.0, double(most)))];
+		});
+		const auto pieces = [&](int halvings) {
+			double count = 0;
+			for (int k = 0; k <= most; ++k)
+				count += triangles[size_t(k)] * std::exp2(std::min(k, halvings));
+			return count;
+		};
+		int halvings = most;
+		while (halvings > 0 && pieces(halvings) > maxPieces)
+			--halvings;
+		return halvings;
+	}
+
 	void addPieces(std::vector<Piece>& found, const Piece& whole,
 		const std::array<Point3d, 3>& corners, double longest, const Box3d& box, int halvings) const
 	{
