@@ -119,7 +119,17 @@ TEST_P(PointTreeAnywhere, FindsPointsOfSurfacesAndLines)
 
 INSTANTIATE_TEST_SUITE_P(Places, PointTreeAnywhere,
 	testing::Values(Placement {1, {0, 0, 0}}, Placement {1e-6, {1e-6, 0, 0}},
-		Placement {1e6, {0, -1e7, 0}}, Placement {1, {1e5, 0, 1e5}}));
+		Placement {1e6, {0, -1e7, 0}}, Placement {1, {1e5, 0, 1e5}},
+		Placement {1e-36, {0, 0, 1e-36}}, Placement {1e36, {1e36, 0, 0}}));
+
+TEST(PointTree, FindsPointsFromAnyDistance)
+{
+	const std::vector<Point3d> points = randomPoints(5000, 1, {0, 0, 0});
+	const PointTree tree(points);
+	for (double distance : {1e3, 1e17, 1e20, 1e36, 1e100})
+		for (const Point3d& x : randomPoints(5, distance, {0, 0, 0}))
+			EXPECT_EQ(tree.nearest(x), nearestByHand(points, x)) << distance;
+}
 
 TEST(PointTree, HoldsEachPointOnce)
 {

@@ -49,9 +49,11 @@ public:
 			samples.push_back({points[i], i});
 			box.Add(points[i]);
 		});
-		if (!points.empty())
+		if (!points.empty()) {
 			origin = box.Center();
-		slack = points.empty() ? 0 : FourBoxes::slack(box.Diag());
+			scale = scaleOf(box.Diag());
+		}
+		slack = points.empty() ? 0 : FourBoxes::slack(box.Diag() * scale);
 		size_t inner = 0, width = 1;
 		while (points.size() > LeafSize * width) {
 			inner += width;
@@ -69,7 +71,7 @@ public:
 			ids.push_back(samples[i].id);
 			sorted.push_back(samples[i].point);
 			for (int axis = 0; axis < 3; ++axis)
-				coordinate[axis].push_back(float(samples[i].point[axis] - origin[axis]));
+				coordinate[axis].push_back(float((samples[i].point[axis] - origin[axis]) * scale));
 		});
 		for (std::vector<float>& values : coordinate)
 			values.resize(points.size() + Lanes, std::numeric_limits<float>::infinity());
@@ -129,7 +131,7 @@ private:
 		}
 	};
 
-	/// A ball about the tree's origin in single precision, enlarged by what rounding may lose.
+	/// A ball about the tree's origin in single precision, scaled, enlarged by what rounding may lose.
 	struct SingleBall
 	{
 		float centre[3];
@@ -158,21 +160,35 @@ private:
 
 	std::vector<int> ids;
 	std::vector<Point3d> sorted;
-	/// Of the sorted points, from the origin; padded by infinities.
+	/// Of the sorted points, from the origin, scaled; padded by infinities.
 	std::array<std::vector<float>, 3> coordinate;
 	/// The inner nodes of a complete tree, the children of i from 4 i + 1 on. The leaves follow.
 	std::vector<Node> nodes;
 	std::vector<int> leafStart; ///< in `sorted`, and where the last one ends
 	Point3d origin = Point3d(0, 0, 0);
+	/// A power of two, which changes no digit: squares of any size fit into single precision.
+	double scale = 1;
 	double slack;
+
+	static double scaleOf(double diagonal)
+	{
+		constexpr int farthest = 300; // far beyond all that comes from single precision
+		return diagonal > 0 && std::isfinite(diagonal)
+			? std::exp2(-std::clamp(std::ilogb(diagonal), -farthest, farthest))
+			: 1;
+	}
 
 	SingleBall toSingle(const Point3d& centre, double reach) const
 	{
-		const Point3d c = centre - origin;
-		const double enlarged = reach * (1 + 8 * std::numeric_limits<float>::epsilon()) + slack;
+		// From farther away all points are as far: within reach, since their squares are numbers.
+		constexpr double farthest = 1e18;
 		constexpr double largest = std::numeric_limits<float>::max();
+		const Point3d c = (centre - origin) * scale;
+		const auto near = [&](double x) { return float(std::clamp(x, -farthest, farthest)); };
+		const double enlarged =
+			reach * (1 + 8 * std::numeric_limits<float>::epsilon()) * scale + slack;
 		return {
-			{float(c[0]), float(c[1]), float(c[2])}, float(std::min(enlarged * enlarged, largest))};
+			{near(c[0]), near(c[1]), near(c[2])}, float(std::min(enlarged * enlarged, largest))};
 	}
 
 	bool isLeaf(int node) const { return node >= int(nodes.size()); }
@@ -318,10 +334,11 @@ private:
 		for (int k = 0; k < 4; ++k) {
 			report(cuts[k]);
 			const Box3d quarter = bounds(samples, cuts[k], cuts[k + 1]);
-			nodes[node].boxes.set(k, quarter, origin);
+			nodes[node].boxes.set(
+				k, Box3d(quarter.min * scale, quarter.max * scale), origin * scale);
 			nodes[node].slabs.set(
-				k, cuts[k + 1] - cuts[k], [&](int i) { return samples[cuts[k] + i].point; }, origin,
-				slack);
+				k, cuts[k + 1] - cuts[k], [&](int i) { return samples[cuts[k] + i].point * scale; },
+				origin * scale, slack);
 			build(samples, quarter, 4 * node + 1 + k, cuts[k], cuts[k + 1], progress);
 		}
 	}
