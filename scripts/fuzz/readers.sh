@@ -58,7 +58,7 @@ run_target() {
 	while [ $((end - SECONDS)) -gt 0 ] &&
 		[ "$(find "$FINDINGS/$name" -type f | wc -l)" -lt "$MAX_FINDINGS" ]; do
 		OMP_NUM_THREADS=1 "$FOLDER/tests/fuzz/fuzz_$name" -max_total_time=$((end - SECONDS)) \
-			-timeout=60 -rss_limit_mb=2048 -max_len=16384 -print_final_stats=1 \
+			-timeout=100 -report_slow_units=100 -rss_limit_mb=2048 -max_len=16384 -print_final_stats=1 \
 			-dict="$(dictionary_of "$name")" -artifact_prefix="$FINDINGS/$name/" \
 			"$corpus" "$FOLDER/seeds/$name" >>"$log" 2>&1 || true
 	done

@@ -87,8 +87,7 @@ inline void workOn(CurveSkeleton skeleton)
 		const double spacing = before.length / 100;
 		const CurveSkeleton even = resampledSkeleton(skeleton, spacing, spacing);
 		const SkeletonStatistics resampled = statistics(even);
-		require(
-			resampled.components == before.components && resampled.cycles == before.cycles,
+		require(resampled.components == before.components && resampled.cycles == before.cycles,
 			"resampling keeps components and cycles");
 		const SkeletonDistance distance = distanceToSkeleton(even, skeleton, spacing);
 		require(std::isfinite(distance.mean), "the distance is finite");

@@ -54,8 +54,9 @@ void addStage(const Stage& stage)
 	for (size_t s = 0; s < stage.node.size(); ++s)
 		vertexOfSlot.push_back(int(s));
 	for (const char* target : {"stage_ply", "stage_flow"})
-		add(target,
-			[&](std::ostream& out) { writeStagePly(out, {stage, 0x123456789, vertexOfSlot}); });
+		add(target, [&](std::ostream& out) {
+			writeStagePly(out, {stage, 0x123456789, vertexOfSlot});
+		});
 }
 
 void addSkeletons()
@@ -78,8 +79,8 @@ void addStages()
 {
 	const std::vector<shapes::Soup> surfaces = {shapes::tetrahedron(), shapes::octahedron(),
 		shapes::box(4, 1, 0.3), shapes::torus(1, 0.3, 12, 6),
-		shapes::joined(
-			{shapes::tetrahedron(), shapes::moved(shapes::scaled(shapes::octahedron(), 0.3), {5, 0, 0})}),
+		shapes::joined({shapes::tetrahedron(),
+			shapes::moved(shapes::scaled(shapes::octahedron(), 0.3), {5, 0, 0})}),
 		shapes::scaled(shapes::torus(1, 0.2, 9, 5), 1e-20)};
 	Parameters parameters;
 	parameters.epsilon = 0.02;

@@ -31,8 +31,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, size_t size)
 		for (int i = 0; i < 2; ++i)
 			stage = step(std::move(stage), parameters);
 		checkStage(stage);
-		std::istringstream again(
-			written([&](std::ostream& out) { writeStagePly(out, {stage, 0, {}}); }));
+		std::istringstream again(written([&](std::ostream& out) {
+			writeStagePly(out, {stage, 0, {}});
+		}));
 		stage = readStagePly(readBinaryPly(again)).stage;
 
 		const CurveSkeleton skeleton = collapseToCurve(stage, parameters.epsilon);
