@@ -13,7 +13,7 @@
 #include "skeleton/collapse_to_curve.h"
 #include "skeleton/first_stage.h"
 #include "skeleton/held_vertices.h"
-#include "skeleton/skeletonize.h"
+#include "skeleton/flow.h"
 
 #include <cstdio>
 #include <exception>

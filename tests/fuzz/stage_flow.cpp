@@ -6,7 +6,7 @@
 
 #include "io_skeleton/stage_ply.h"
 #include "skeleton/keep_sheets.h"
-#include "skeleton/skeletonize.h"
+#include "skeleton/flow.h"
 
 /// Reads a stage, makes two steps, collapses it to a curve and to sheets, writes all and reads it again.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, size_t size)

@@ -5,7 +5,7 @@
 
 #include "skeleton/check_stage.h"
 #include "skeleton/first_stage.h"
-#include "skeleton/skeletonize.h"
+#include "skeleton/flow.h"
 
 #include <gtest/gtest.h>
 
