@@ -44,7 +44,8 @@ public:
 		Point3d centre;
 		double radius;
 		/// Where it touches apart from the given point, and the angle between both seen from the
-		/// centre, radians; -1 and 0 if nothing bounds the ball.
+		/// centre, radians; -1 and 0 if nothing bounds the ball, which then is the one around the
+		/// point that was asked for.
 		int face;
 		double spokeAngle;
 		Point3d contact;
@@ -161,16 +162,18 @@ public:
 			hit.point, outward, std::max(tolerance, 1e-9 * hit.distance), first.radius);
 		tree.search(ball);
 		if (ball.contact() < 0)
-			return first;
+			return boundedBall(first, inside, hit);
 		const Point3d e = tree.point(ball.contact()) - hit.point;
 		const double radius = e.SquaredNorm() / (-2 * (e * outward));
-		return heldBall(hit, outward, radius, faceOfSample[tree.order()[ball.contact()]]);
+		const int face = faceOfSample[tree.order()[ball.contact()]];
+		return boundedBall(heldBall(hit, outward, radius, face), inside, hit);
 	}
 
 	/// The ball held by the part of the surface that a walk downhill from `previous` leads to.
 	Ball maximalBallFrom(const Point3d& inside, const Hit& hit, const Ball& previous) const
 	{
-		return heldBall(hit, (hit.point - inside) / hit.distance, previous.radius, previous.face);
+		const Point3d outward = (hit.point - inside) / hit.distance;
+		return boundedBall(heldBall(hit, outward, previous.radius, previous.face), inside, hit);
 	}
 
 private:
@@ -245,7 +248,16 @@ private:
 		}
 	}
 
-	/// Shrinks a ball by walking to the point deepest in it, until it holds.
+	/// The ball if the surface bounds it; else what is known of the point asked for: the radius with which
+	/// a search began, or the one of a ball that is nearly a half-space, is no distance from the surface.
+	Ball boundedBall(const Ball& ball, const Point3d& inside, const Hit& hit) const
+	{
+		return ball.face >= 0 && ball.radius <= box.Diag()
+			? ball
+			: Ball {inside, hit.distance, -1, 0, hit.point};
+	}
+
+	/// Shrinks a ball by walking to the point deepest in it, until it holds; its face is -1 if nothing does.
 	Ball heldBall(const Hit& hit, const Point3d& outward, double radius, int face) const
 	{
 		constexpr int mostSteps = 8;

@@ -279,14 +279,47 @@ inline void centre(CurveSkeleton& skeleton, const std::vector<Contact>& contacts
 	}
 }
 
+/// A point inside and its distance from the surface; negative: there is none.
+struct InnerPlace
+{
+	Point3d position;
+	double clearance = -1;
+};
+
+/**
+ * The centre of the maximal ball that touches the surface from inside where it is closest to a point
+ * outside. It is taken only if it is inside, its ball is empty and the way there from the contact does not
+ * leave the surface: the ball may have been found behind a wall thinner than its tolerance. Then the
+ * tolerance falls until it follows the local thickness.
+ */
+inline InnerPlace placeInside(
+	const ClosestSurface& surface, const Point3d& outside, const ClosestSurface::Hit& hit)
+{
+	// The ball is sought from just below the surface, and must be larger than its roughness.
+	constexpr double below = 1e-4, roughness = 1e-3;
+	constexpr double finer = 0.25, finest = 1e-4;
+	const Point3d inward = (hit.point - outside) / hit.distance;
+	for (double scale = 1; scale > finest; scale *= finer) {
+		const Point3d start = hit.point + inward * (below * scale);
+		const ClosestSurface::Hit contact = surface.closest(start);
+		if (contact.distance <= 0 || !surface.isInside(start, contact))
+			continue;
+		const double tolerance = roughness * scale;
+		const ClosestSurface::Ball ball = surface.maximalBall(start, contact, tolerance, -1);
+		const double clearance = surface.clearance(ball.centre);
+		if (ball.face >= 0 && clearance > 0 && clearance >= ball.radius - tolerance
+			&& isSegmentInside(surface, start, contact.distance, ball.centre, clearance))
+			return {ball.centre, clearance};
+	}
+	return {outside, -1};
+}
+
 /**
  * Moves nodes that are outside into the maximal ball that touches the closest surface point from
  * inside; where there is none they stay, without a ball.
  */
 inline void moveInside(CurveSkeleton& skeleton, const ClosestSurface& surface)
 {
-	// The ball is sought from just below the surface, and must be larger than its roughness.
-	constexpr double below = 1e-4, roughness = 1e-3;
 	for (size_t v = 0; v < skeleton.position.size(); ++v) {
 		if (skeleton.radius[v] > 0)
 			continue;
@@ -297,13 +330,11 @@ inline void moveInside(CurveSkeleton& skeleton, const ClosestSurface& surface)
 			skeleton.radius[v] = hit.distance;
 			continue;
 		}
-		const Point3d inward = (hit.point - skeleton.position[v]) / hit.distance;
-		const Point3d start = hit.point + inward * below;
-		const ClosestSurface::Hit contact = surface.closest(start);
-		if (contact.distance <= 0 || !surface.isInside(start, contact))
-			continue;
-		skeleton.position[v] = surface.maximalBall(start, contact, roughness, -1).centre;
-		skeleton.radius[v] = std::max(surface.clearance(skeleton.position[v]), 0.0);
+		const InnerPlace inside = placeInside(surface, skeleton.position[v], hit);
+		if (inside.clearance > 0) {
+			skeleton.position[v] = inside.position;
+			skeleton.radius[v] = inside.clearance;
+		}
 	}
 }
 
