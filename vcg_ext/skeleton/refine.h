@@ -14,6 +14,7 @@
 #include "principal_frame.h"
 #include "progress.h"
 #include "refine_centre.h"
+#include "refine_check.h"
 #include "refine_features.h"
 #include "refine_graph.h"
 #include "refine_tips.h"
@@ -25,6 +26,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -95,7 +97,10 @@ private:
 
 namespace refining {
 
-/// Refines the skeleton of one component, in coordinates where the component's diagonal is 1.
+/**
+ * Refines the skeleton of one component, in coordinates where the component's diagonal is 1. Stops early
+ * where the curve grows out of CurveBounds: that it cannot be the result is for the caller to find.
+ */
 inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurface& surface,
 	const SurfaceComponent& component, const RefineParameters& parameters, const Progress& progress)
 {
@@ -117,13 +122,15 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 		std::vector<Contact> contacts;
 		for (int i = 0; i < rounds; ++i) {
 			if (i % roundsOfSearch == 0)
-				contacts = findContacts(skeleton, surface, ascend);
+				contacts = findContacts(skeleton, surface, ascend,
+					progress.part(double(done) / total, double(done) / total));
 			else
 				followContacts(contacts, skeleton, surface);
 			centre(skeleton, contacts, surface, weight);
 			progress.report(double(++done) / total, what);
 		}
 	};
+	const CurveBounds bounds(skeleton, parameters.spacing);
 	KnownClearances clearances(surface);
 	const auto tidy = [&](double spurProminence, double tipDistinctness) {
 		measureBranchEnds(skeleton, clearances);
@@ -160,16 +167,23 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 	moveInside(skeleton, surface);
 	// A stub may be the start of a feature: all but the hopeless are extended before they are judged.
 	constexpr double hopeless = 0;
-	tidy(hopeless, 0);
-	centreRounds(parameters.stiffRounds, stiffer * kappa, false);
-	extend();
-	grow();
-	tidy(parameters.spurProminence, parameters.tipDistinctness);
-	centreRounds(parameters.rounds, kappa, true);
-	extend();
-	tidy(parameters.spurProminence, parameters.tipDistinctness);
-	centreRounds(parameters.lastRounds, kappa, true);
-	tidy(parameters.spurProminence, parameters.tipDistinctness);
+	const std::function<void()> steps[] = {
+		[&] { tidy(hopeless, 0); },
+		[&] { centreRounds(parameters.stiffRounds, stiffer * kappa, false); },
+		extend,
+		grow,
+		[&] { tidy(parameters.spurProminence, parameters.tipDistinctness); },
+		[&] { centreRounds(parameters.rounds, kappa, true); },
+		extend,
+		[&] { tidy(parameters.spurProminence, parameters.tipDistinctness); },
+		[&] { centreRounds(parameters.lastRounds, kappa, true); },
+		[&] { tidy(parameters.spurProminence, parameters.tipDistinctness); },
+	};
+	for (const std::function<void()>& step : steps) {
+		if (!bounds.hold(skeleton))
+			return skeleton;
+		step();
+	}
 	return withoutBluntEnds(skeleton, clearances, parameters.tipGain);
 }
 
@@ -227,14 +241,110 @@ inline int nearestAlong(const CurveSkeleton& skeleton,
 
 } // namespace refining
 
+/// What became of each component of a skeleton in its refinement.
+struct RefineReport
+{
+	/// Components of the surface that have a curve, and those of them that have a refined one.
+	int components = 0, refined = 0;
+	/// Those that keep the curve that they had, by what was wrong with the refined one: it left the
+	/// surface, grew too long, lost or won cycles or parts, or could not be computed.
+	int outside = 0, tooLong = 0, otherTopology = 0, notFinite = 0;
+	/// Nodes of curves that were kept which are outside the surface, and how many curves have such nodes.
+	int nodesOutside = 0, curvesOutside = 0;
+
+	/// Fraction of the components that are refined; 1 if there are none.
+	double fraction() const { return components > 0 ? double(refined) / components : 1; }
+
+	/// One plain line on what was not refined, and why; empty if everything was.
+	std::string text() const
+	{
+		if (refined == components)
+			return "";
+		std::string why;
+		const auto count = [&](int number, const char* reason) {
+			if (number > 0)
+				why += (why.empty() ? "" : ", ") + std::to_string(number) + " " + reason;
+		};
+		count(outside, "would have left the surface");
+		count(tooLong, "would have become too long");
+		count(otherTopology, "would have changed in components or cycles");
+		count(notFinite, "could not be computed");
+		std::string line = std::to_string(components - refined) + " of "
+			+ std::to_string(components)
+			+ " components are not refined and keep their curves: " + why + ".";
+		if (nodesOutside > 0)
+			line += " Of the curves that are kept, " + std::to_string(curvesOutside)
+				+ " are partly outside the surface, with " + std::to_string(nodesOutside)
+				+ " nodes: parts of the shape may be too thin for the edges of its triangles.";
+		return line;
+	}
+};
+
+/// What refineChecked() returns.
+struct Refinement
+{
+	CurveSkeleton skeleton;
+	RefineReport report;
+};
+
+namespace refining {
+
+inline void addTo(RefineReport& report, Defect defect)
+{
+	++report.components;
+	switch (defect) {
+	case Defect::None: ++report.refined; break;
+	case Defect::NotFinite: ++report.notFinite; break;
+	case Defect::TooLong: ++report.tooLong; break;
+	case Defect::Topology: ++report.otherTopology; break;
+	case Defect::Outside: ++report.outside; break;
+	}
+}
+
+/**
+ * Refines the skeleton of one component and checks the result. What fails is tried again with closest
+ * points of which none is missed: where the shape is thinner than the samples of its surface are apart,
+ * the fast ones take the wrong wall.
+ * @param refined  the unrefined curve; the refined one if there is no defect, else unchanged.
+ */
+inline Defect refineChecked(CurveSkeleton& refined, ClosestSurface& surface,
+	const SurfaceComponent& component, const RefineParameters& parameters, const Progress& progress)
+{
+	const CurveSkeleton unrefined = refined;
+	const InsideCheck inside(surface, component);
+	const auto attempt = [&](double from, double to) {
+		try {
+			CurveSkeleton curve =
+				refineComponent(unrefined, surface, component, parameters, progress.part(from, to));
+			const Defect defect =
+				defectOf(curve, unrefined, parameters.spacing, inside, progress.part(to, to));
+			if (defect == Defect::None)
+				refined = std::move(curve);
+			return defect;
+		}
+		catch (const SolverError&) {
+			return Defect::NotFinite;
+		}
+	};
+	constexpr double usual = 0.9; // of the time: few shapes need the second attempt
+	if (attempt(0, usual) == Defect::None)
+		return Defect::None;
+	surface.makeExact();
+	return attempt(usual, 1);
+}
+
+} // namespace refining
+
 /**
  * Refines a curve skeleton within the surface that it was extracted from: removes spurs, merges
  * shattered junctions, samples the branches evenly, centres the nodes in the maximal balls of the
  * surface while it smooths the branches, extends the tips to the ends of their features, and grows
  * branches into limbs that the curve lacks.
  *
- * Components and cycles stay as they are. No node or edge leaves the surface; nodes that were
- * outside are moved in where possible. The result depends on the shape of each component only, not
+ * Nodes that were outside are moved in where possible. What is promised is checked on each component's
+ * result: all nodes and edges are inside, components and cycles are as they were, and it is no longer than
+ * CurveBounds allow. A component for which that cannot be had keeps its curve as it is, positions, radii and
+ * correspondence, whether or not that is inside; the report counts them. The result depends on the shape of each component only, not
  * on its size and place. Each surface vertex goes to the nearest node along the part of the graph
  * where the node it had went; the radius is measured anew, as the mean distance to these vertices.
  *
@@ -242,13 +352,13 @@ inline int nearestAlong(const CurveSkeleton& skeleton,
  * @param surface     closed triangle mesh of any number of components, compact.
  * @param parameters  see RefineParameters.
  * @param progress    window for reports; cancelling leaves nothing behind.
- * @return the refined skeleton, mesh units; nodes of the first component come first.
+ * @return the refined skeleton, mesh units, nodes of the first component first, and the report.
  * @throws InvalidParameter, InvalidInput if the correspondence does not fit the surface or the
- *         curve, SolverError, Cancelled.
+ *         curve or the curve has nodes that are not finite, Cancelled.
  * Complexity: O(V log V + N log V) for V vertices and N nodes.
  * Source: ours; see Tagliasacchi et al., "Mean Curvature Skeletons", SGP 2012, for the curve.
  */
-inline CurveSkeleton refine(const CurveSkeleton& curve, const SurfaceMesh& surface,
+inline Refinement refineChecked(const CurveSkeleton& curve, const SurfaceMesh& surface,
 	const RefineParameters& parameters = RefineParameters(), const Progress& progress = Progress())
 {
 	parameters.check();
@@ -263,6 +373,8 @@ inline CurveSkeleton refine(const CurveSkeleton& curve, const SurfaceMesh& surfa
 		if (curve.node[s] >= int(curve.position.size()))
 			throw InvalidInput("The skeleton's correspondence names nodes that it does not have.");
 	});
+	if (!refining::isFinite(curve))
+		throw InvalidInput("The skeleton has nodes whose coordinates are not finite.");
 	int components = 0;
 	const std::vector<int> component =
 		connectedComponents(surface, &components, progress.part(0, 0.01));
@@ -288,9 +400,13 @@ inline CurveSkeleton refine(const CurveSkeleton& curve, const SurfaceMesh& surfa
 	detail::reportedLoop(surface.vertexSlots(), progress.part(0.02, 0.03), what,
 		[&](int v) { unit.position[v] = toUnit(surface.position[v], component[v]); });
 
-	CurveSkeleton refined;
+	Refinement result;
+	CurveSkeleton& refined = result.skeleton;
+	RefineReport& report = result.report;
 	detail::fillReported(refined.node, curve.node.size(), -1, progress.part(0.03, 0.03), what);
 	std::vector<int> number(curve.position.size(), -1);
+	std::vector<std::pair<int, int>>
+		kept; // nodes of the result that are as they were, and what they were
 	constexpr double sampleSpacing = 0.01;
 	for (int c = 0; c < components; ++c) {
 		if (nodes[c].empty())
@@ -306,31 +422,55 @@ inline CurveSkeleton refine(const CurveSkeleton& curve, const SurfaceMesh& surfa
 			part.edges.push_back({number[curve.edges[e][0]], number[curve.edges[e][1]]});
 		const Progress ofComponent =
 			progress.part(0.03 + 0.97 * c / components, 0.03 + 0.97 * (c + 1) / components);
-		const ClosestSurface closest(
-			unit, vertices.ids[c], sampleSpacing, ofComponent.part(0, 0.1));
-		part = refining::refineComponent(part, closest, {unit, vertices.ids[c], vertices.place},
-			parameters, ofComponent.part(0.1, 0.95));
+		ClosestSurface closest(unit, vertices.ids[c], sampleSpacing, ofComponent.part(0, 0.1));
+		const refining::SurfaceComponent own = {unit, vertices.ids[c], vertices.place};
+		const refining::Defect defect =
+			refining::refineChecked(part, closest, own, parameters, ofComponent.part(0.1, 0.95));
+		refining::addTo(report, defect);
+		const bool isRefined = defect == refining::Defect::None;
+		if (!isRefined) {
+			const int outside = refining::InsideCheck(closest, own)
+									.countOutside(part, ofComponent.part(0.95, 0.95));
+			report.nodesOutside += outside;
+			report.curvesOutside += outside > 0;
+		}
 
 		const std::vector<std::vector<int>> neighbours = part.neighbours();
 		const int first = int(refined.position.size());
 		detail::reportedLoop(
 			int(vertices.ids[c].size()), ofComponent.part(0.95, 1), what, [&](int i) {
 				const int s = vertices.ids[c][i];
-				if (curve.node[s] >= 0)
-					refined.node[s] = first
-						+ refining::nearestAlong(
-							part, neighbours, part.node[number[curve.node[s]]], unit.position[s]);
+				if (curve.node[s] < 0)
+					return;
+				const int node = part.node[number[curve.node[s]]];
+				refined.node[s] = first
+					+ (isRefined ? refining::nearestAlong(part, neighbours, node, unit.position[s])
+								 : node);
 			});
-		for (const Point3d& p : part.position)
-			refined.position.push_back(fromUnit(p, c));
+		for (int v = 0; v < int(part.position.size()); ++v) {
+			if (!isRefined)
+				kept.emplace_back(first + v, nodes[c][v]);
+			refined.position.push_back(
+				isRefined ? fromUnit(part.position[v], c) : curve.position[nodes[c][v]]);
+		}
 		for (const auto& [a, b] : part.edges)
 			refined.edges.push_back({first + a, first + b});
 	}
 	refined.radius =
 		meanSurfaceDistance(refined.position, surface.position, refined.node, progress.part(1, 1));
 	fillUnknownRadii(refined.radius, refined.neighbours());
+	for (const auto& [node, before] : kept)
+		if (before < int(curve.radius.size()))
+			refined.radius[node] = curve.radius[before];
 	progress.report(1, what);
-	return refined;
+	return result;
+}
+
+/// The skeleton of refineChecked() alone.
+inline CurveSkeleton refine(const CurveSkeleton& curve, const SurfaceMesh& surface,
+	const RefineParameters& parameters = RefineParameters(), const Progress& progress = Progress())
+{
+	return refineChecked(curve, surface, parameters, progress).skeleton;
 }
 
 } // namespace vcg::tri::mcf

@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <vector>
 
 namespace vcg::tri::mcf::refining {
@@ -113,13 +114,14 @@ inline void ascendAside(Contact& contact, const Point3d& tangent, const ClosestS
  * Finds each node's contact and measures its distance from the surface; 0 outside.
  * A node that is outside has no ball.
  * @param ascend  whether the centres go to the middle of the cross-section: see ascendAside().
+ * @throws Cancelled
  */
-inline std::vector<Contact> findContacts(
-	CurveSkeleton& skeleton, const ClosestSurface& surface, bool ascend)
+inline std::vector<Contact> findContacts(CurveSkeleton& skeleton, const ClosestSurface& surface,
+	bool ascend, const Progress& progress = Progress())
 {
 	std::vector<Contact> contacts(skeleton.position.size());
 	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
-	forEachBlock(int(contacts.size()), Progress(), "", [&](int begin, int end) {
+	forEachBlock(int(contacts.size()), progress, "Refining the skeleton", [&](int begin, int end) {
 		// Neighbours in number are mostly neighbours on a branch, and touch nearly the same places.
 		int near = -1, nearOpposite = -1;
 		for (int v = begin; v < end; ++v) {
@@ -189,6 +191,40 @@ inline std::vector<double> sharesOfCentring(const CurveSkeleton& skeleton,
 }
 
 /**
+ * Takes nodes back to where they were, until no edge has left the surface that was inside: both nodes of
+ * one that has. Edges are tested in their order, round after round, but only those that may have changed.
+ * Complexity: O(E log E), and a test for each edge and for each of those of a node that goes back.
+ */
+inline void keepEdgesInside(
+	CurveSkeleton& skeleton, const CurveSkeleton& before, const ClosestSurface& surface)
+{
+	std::vector<std::vector<int>> edgesOf(skeleton.position.size());
+	std::set<int> round, nextRound;
+	for (int e = 0; e < int(skeleton.edges.size()); ++e) {
+		round.insert(round.end(), e);
+		for (int v : skeleton.edges[e])
+			edgesOf[v].push_back(e);
+	}
+	std::vector<char> back(skeleton.position.size(), 0);
+	for (; !round.empty(); round.swap(nextRound))
+		while (!round.empty()) {
+			const int edge = *round.begin();
+			round.erase(round.begin());
+			const auto [a, b] = skeleton.edges[edge];
+			if ((back[a] && back[b]) || isEdgeInside(skeleton, surface, a, b))
+				continue;
+			for (int v : {a, b})
+				if (!back[v]) {
+					back[v] = 1;
+					skeleton.position[v] = before.position[v];
+					skeleton.radius[v] = before.radius[v];
+					for (int e : edgesOf[v])
+						(e > edge ? round : nextRound).insert(e);
+				}
+		}
+}
+
+/**
  * One round: solves
  *     min  sum_i w_i |x_i - c_i|^2 + kappa sum_k (r_k / R)^2 |x_{k-1} - 2 x_k + x_{k+1}|^2
  * over the inner nodes k of the branches, so that curves may meet at any angle in a junction. c_i is
@@ -253,6 +289,9 @@ inline void centre(CurveSkeleton& skeleton, const std::vector<Contact>& contacts
 		throw SolverError("Refining the skeleton: the linear system could not be factorised.");
 	const Eigen::MatrixX3d solution = factor.solve(right);
 
+	if (!solution.allFinite())
+		throw SolverError("Refining the skeleton: the linear system has no finite solution.");
+
 	const CurveSkeleton before = skeleton;
 	for (int v = 0; v < n; ++v) {
 		const Point3d x(solution(v, 0), solution(v, 1), solution(v, 2));
@@ -262,21 +301,7 @@ inline void centre(CurveSkeleton& skeleton, const std::vector<Contact>& contacts
 		// The distance from the surface cannot fall faster than the node moves.
 		skeleton.radius[v] = before.radius[v] - std::min(length, most);
 	}
-	std::vector<char> back(n, 0);
-	for (bool changed = true; changed;) {
-		changed = false;
-		for (const auto& [a, b] : skeleton.edges) {
-			if ((back[a] && back[b]) || isEdgeInside(skeleton, surface, a, b))
-				continue;
-			for (int v : {a, b})
-				if (!back[v]) {
-					back[v] = 1;
-					changed = true;
-					skeleton.position[v] = before.position[v];
-					skeleton.radius[v] = before.radius[v];
-				}
-		}
-	}
+	keepEdgesInside(skeleton, before, surface);
 }
 
 /// A point inside and its distance from the surface; negative: there is none.

@@ -192,7 +192,7 @@ inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const ClosestSur
 			return branch;
 		}
 		const Point3d there = skeleton.position[towards] - x;
-		direction = slope + there * (pull / there.Norm()) + direction * keeping;
+		direction = slope + there * (pull / std::max(there.Norm(), 1e-12)) + direction * keeping;
 		direction /= std::max(direction.Norm(), 1e-12);
 		x += direction * std::min(spacing, hit.distance / 2);
 	}
