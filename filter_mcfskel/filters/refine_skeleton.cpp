@@ -6,6 +6,9 @@
 
 #include <skeleton/refine.h>
 
+#include <string>
+#include <utility>
+
 namespace mcfskel {
 
 namespace mcf = vcg::tri::mcf;
@@ -21,12 +24,15 @@ Results run(FilterRun& run)
 	parameters.spurProminence = run.parameters.real("spur_prominence");
 	parameters.smoothing = run.parameters.real("smoothing");
 	parameters.check();
-	mcf::CurveSkeleton refined = mcf::refine(
+	mcf::Refinement refinement = mcf::refineChecked(
 		curve.skeleton, *surface.surface.mesh, parameters, run.progress.part(0.2, 0.95));
+	if (const std::string text = refinement.report.text(); !text.empty())
+		run.log(QString::fromStdString(text));
 
-	const Results results = curveResults(refined);
+	Results results = curveResults(refinement.skeleton);
+	results["refined"] = refinement.report.fraction();
 	addDerivedSkeleton(
-		run, curve, std::move(refined), "refined", false, run.progress.part(0.95, 1));
+		run, curve, std::move(refinement.skeleton), "refined", false, run.progress.part(0.95, 1));
 	return results;
 }
 
@@ -41,7 +47,9 @@ FilterSpec refineSkeletonFilter()
 			"removes spurs, makes one of shattered junctions, samples the branches evenly, centres the "
 			"nodes in the maximal balls of the surface and smooths the branches, extends the tips to "
 			"the ends of their features, and grows branches into limbs that the curve lacks. "
-			"Components and cycles stay as they are, and nothing leaves the shape.<br><br>"
+			"Components and cycles stay as they are, and nothing leaves the shape: a component for which "
+			"that cannot be had keeps its curve as it is. The log says so, and the result "
+			"<i>refined</i> is the fraction of the components that are refined.<br><br>"
 			"The surface's <i>mcfskel_node</i> follows. This stage goes beyond the paper."),
 		FilterCategory::Remeshing, MeshModel::MM_NONE,
 		{surfaceParameter("The surface that the skeleton is refined in."),

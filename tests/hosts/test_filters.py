@@ -362,8 +362,14 @@ class TestRefine:
         curve = layers.current_mesh()
         assert curve.label() == "letter_p_refined"
         assert (results["components"], results["cycles"]) == (1, 1)
+        assert results["refined"] == 1
         assert results["skeleton_vertices"] == curve.vertex_number()
         assert components(curve.vertex_number(), curve.edge_matrix()) == 1
+
+    def test_full_skeletonize_says_whether_it_refined(self):
+        for refine in [True, False]:
+            layers = opened("letter_p")
+            assert layers.apply_filter(FULL, refine=refine, **COARSE)["refined"] == int(refine)
 
     def test_nodes_are_evenly_spaced(self, letter):
         curve = letter[0].current_mesh()
@@ -452,7 +458,7 @@ class TestFull:
 
     def test_numbers(self, torus_run):
         layers, results, _ = torus_run
-        assert set(results) == STAGE_NUMBERS | CURVE_NUMBERS | SECONDS
+        assert set(results) == STAGE_NUMBERS | CURVE_NUMBERS | SECONDS | {"refined"}
         assert all(isinstance(value, (int, float)) for value in results.values())
         curve = layers.current_mesh()
         edges = curve.edge_matrix()

@@ -76,6 +76,19 @@ TEST_P(OnShapes, DistanceIsThatOfBruteForceButForTheSamplesSpacing)
 	}
 }
 
+TEST_P(OnShapes, ExactDistanceIsThatOfBruteForce)
+{
+	const SurfaceMesh mesh = GetParam().mesh();
+	for (double part : {50, 5}) {
+		const ClosestSurface closest(mesh, allVertices(mesh), mesh.bounds().Diag() / part);
+		for (const Point3d& x : randomPoints(mesh, 200)) {
+			const double exact = distanceByBruteForce(mesh, x);
+			EXPECT_NEAR(closest.closestExactly(x).distance, exact, 1e-12);
+			EXPECT_LE(closest.emptyRadius(x), exact + 1e-12);
+		}
+	}
+}
+
 TEST_P(OnShapes, InsideIsThatOfTheWindingNumber)
 {
 	const SurfaceMesh mesh = GetParam().mesh();

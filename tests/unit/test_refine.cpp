@@ -21,6 +21,7 @@
 #include <functional>
 #include <limits>
 #include <numeric>
+#include <string>
 #include <vector>
 
 using namespace vcg::tri::mcf;
@@ -856,6 +857,153 @@ TEST(Refine, GivesTheSameBitsTwice)
 	EXPECT_TRUE(sameGraph(a, b));
 }
 
+/// A fine box about the origin, as flat as it says, and a line in it that leaves it all the time.
+void expectInsideThinBox(double across, double height)
+{
+	const shapes::Soup fine =
+		shapes::cells(60, across > height ? 60 : 1, 1, [](int, int, int) { return true; });
+	const double width = across > height ? 60 : 1;
+	const SurfaceMesh mesh = shapes::transformed(fine, [&](const Point3d& p) {
+		return Point3d(p[0] / 60 - 0.5, (p[1] / width - 0.5) * across, (p[2] - 0.5) * height);
+	}).mesh();
+	std::vector<Point3d> points;
+	for (int i = 0; i <= 40; ++i)
+		points.emplace_back(-0.4 + 0.02 * i, 0.1 * across, (i % 2 ? 1 : -1) * height);
+	const Refinement result = refineChecked(CurveMaker().chain(points).in(mesh), mesh);
+	EXPECT_EQ(result.report.refined, 1) << result.report.text();
+	EXPECT_EQ(result.report.text(), "");
+	EXPECT_TRUE(isInside(result.skeleton, mesh));
+	EXPECT_EQ(statistics(result.skeleton).components, 1);
+	EXPECT_LE(statistics(result.skeleton).length, 2 * mesh.bounds().Diag());
+}
+
+TEST(Refine, BringsCurvesIntoThinPlatesAndRods)
+{
+	for (double height : {0.01, 0.001, 0.0005, 0.00007}) {
+		SCOPED_TRACE(height);
+		expectInsideThinBox(1, height);
+		expectInsideThinBox(height, height);
+	}
+}
+
+/// In a torus about the origin, a curve that crosses the hole: no curve from end to end does not.
+CurveSkeleton curveAcrossHole(const SurfaceMesh& torus)
+{
+	return CurveMaker().line({1, 0, 0}, {-1, 0, 0}, 21).in(torus);
+}
+
+TEST(Refine, KeepsACurveThatCannotBeInsideAndSaysSo)
+{
+	const SurfaceMesh mesh = shapes::torus().mesh();
+	const CurveSkeleton curve = curveAcrossHole(mesh);
+	const Refinement result = refineChecked(curve, mesh);
+	EXPECT_EQ(result.report.components, 1);
+	EXPECT_EQ(result.report.refined, 0);
+	EXPECT_EQ(result.report.fraction(), 0);
+	EXPECT_EQ(result.report.outside, 1);
+	EXPECT_EQ(result.report.curvesOutside, 1);
+	int outside = 0;
+	for (const Point3d& p : curve.position)
+		outside += checks::windingNumber(mesh, p) < 0.5;
+	EXPECT_EQ(result.report.nodesOutside, outside);
+	EXPECT_NE(result.report.text().find("1 of 1 components"), std::string::npos);
+	EXPECT_EQ(result.skeleton.position, curve.position);
+	EXPECT_EQ(result.skeleton.radius, curve.radius);
+	EXPECT_TRUE(sameGraph(result.skeleton, curve));
+}
+
+TEST(Refine, AComponentThatFailsLeavesTheOthersAlone)
+{
+	const auto capsule = shapes::moved(shapes::capsule(), {0, 5, 0});
+	const std::vector<Point3d> rough = [] {
+		std::vector<Point3d> points = zigzag(-0.8, 0.8, 0.1, 0.03);
+		for (Point3d& p : points)
+			p += Point3d(0, 5, 0);
+		return points;
+	}();
+	const SurfaceMesh one = capsule.mesh(), torus = shapes::torus().mesh();
+	const CurveSkeleton alone = refine(CurveMaker().chain(rough).in(one), one);
+	const CurveSkeleton across = curveAcrossHole(torus);
+
+	const SurfaceMesh both = shapes::joined({capsule, shapes::torus()}).mesh();
+	const Refinement result =
+		refineChecked(CurveMaker().chain(rough).line({1, 0, 0}, {-1, 0, 0}, 21).in(both), both);
+	EXPECT_EQ(result.report.components, 2);
+	EXPECT_EQ(result.report.refined, 1);
+	EXPECT_EQ(result.report.fraction(), 0.5);
+	const CurveSkeleton& s = result.skeleton;
+	ASSERT_EQ(s.position.size(), alone.position.size() + across.position.size());
+	for (size_t v = 0; v < alone.position.size(); ++v)
+		EXPECT_EQ(s.position[v], alone.position[v]);
+	for (size_t v = 0; v < across.position.size(); ++v)
+		EXPECT_EQ(s.position[alone.position.size() + v], across.position[v]);
+	EXPECT_EQ(checks::skeletonError(s), "");
+}
+
+TEST(Refine, FindsWhatIsWrongWithACurve)
+{
+	using refining::Defect;
+	const SurfaceMesh mesh = shapes::scaled(shapes::torus(), 1 / 3.0).mesh();
+	std::vector<int> all(mesh.vertexSlots());
+	std::iota(all.begin(), all.end(), 0);
+	const ClosestSurface closest(mesh, all, 0.01);
+	const refining::InsideCheck inside(closest, {mesh, all, all});
+	const double spacing = RefineParameters().spacing;
+	const auto arc = [](int pieces, int end) {
+		std::vector<Point3d> points;
+		for (int i = 0; i <= end; ++i)
+			points.emplace_back(
+				std::cos(2 * M_PI * i / pieces) / 3, std::sin(2 * M_PI * i / pieces) / 3, 0);
+		return points;
+	};
+	const CurveSkeleton good = CurveMaker().chain(arc(60, 40)).in(mesh);
+	const auto defect = [&](const CurveSkeleton& curve) {
+		return refining::defectOf(curve, good, spacing, inside);
+	};
+	EXPECT_EQ(defect(good), Defect::None);
+
+	CurveSkeleton bad = good;
+	bad.position[7] = Point3d(0, 0, 0);
+	EXPECT_EQ(defect(bad), Defect::Outside) << "a node in the hole";
+	EXPECT_EQ(defect(CurveMaker().chain({arc(4, 1)[0], arc(4, 2)[2]}).in(mesh)), Defect::Outside)
+		<< "an edge through the hole, both nodes inside";
+	EXPECT_EQ(defect(CurveMaker().chain({{0, 0, 1}, {0, 0, 1.01}}).in(mesh)), Defect::Outside)
+		<< "all of it outside, and no edge crosses the surface";
+
+	bad = good;
+	bad.position[7][1] = std::numeric_limits<double>::quiet_NaN();
+	EXPECT_EQ(defect(bad), Defect::NotFinite);
+	bad = good;
+	bad.edges.pop_back();
+	EXPECT_EQ(defect(bad), Defect::Topology) << "in two parts";
+	std::vector<Point3d> closed = arc(60, 60);
+	closed.back() = closed.front();
+	EXPECT_EQ(defect(CurveMaker().chain(closed).in(mesh)), Defect::Topology) << "a cycle";
+	std::vector<Point3d> pacing;
+	for (int i = 0; i < 2000; ++i)
+		pacing.emplace_back((i % 2 ? 0.3 : 0.36), 1e-5 * i, 0);
+	EXPECT_EQ(defect(CurveMaker().chain(pacing).in(mesh)), Defect::TooLong);
+}
+
+TEST(Refine, PlacesEnclosedTwiceAreInside)
+{
+	// A rod bent round by more than a turn, which runs into itself.
+	const SurfaceMesh mesh = shapes::transformed(shapes::capsule(2, 0.1, 24), [](const Point3d& p) {
+		const double angle = -3.4 * p[0], radius = 0.3 + p[1];
+		return Point3d(radius * std::cos(angle), radius * std::sin(angle), p[2]);
+	}).mesh();
+	std::vector<int> all(mesh.vertexSlots());
+	std::iota(all.begin(), all.end(), 0);
+	const ClosestSurface closest(mesh, all, 0.01);
+	const refining::InsideCheck inside(closest, {mesh, all, all});
+	std::vector<Point3d> axis;
+	for (double x = -0.95; x < 0.95; x += 0.02)
+		axis.emplace_back(0.3 * std::cos(3.4 * x), -0.3 * std::sin(3.4 * x), 0);
+	const CurveSkeleton curve = CurveMaker().chain(axis).in(mesh);
+	ASSERT_GT(checks::windingNumber(mesh, axis.front()), 1.5);
+	EXPECT_EQ(refining::defectOf(curve, curve, 0.005, inside), refining::Defect::None);
+}
+
 TEST(Refine, SaysWhatIsWrong)
 {
 	const SurfaceMesh mesh = shapes::capsule().mesh();
@@ -879,6 +1027,9 @@ TEST(Refine, SaysWhatIsWrong)
 	wrong.node.front() = int(curve.position.size());
 	EXPECT_THROW(refine(wrong, mesh), InvalidInput);
 	wrong.node.pop_back();
+	EXPECT_THROW(refine(wrong, mesh), InvalidInput);
+	wrong = curve;
+	wrong.position.back()[2] = std::numeric_limits<double>::infinity();
 	EXPECT_THROW(refine(wrong, mesh), InvalidInput);
 }
 

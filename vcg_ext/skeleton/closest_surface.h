@@ -102,6 +102,13 @@ public:
 		return exactFrom(query, closestNearSample(query));
 	}
 
+	/// A lower bound of the distance to the surface, on whichever side: as far as no sample is, less what
+	/// triangles reach beyond their samples. Cheap, and near the surface 0.
+	double emptyRadius(const Point3d& query) const
+	{
+		return std::max(tree.distance(query) - covering, 0.0);
+	}
+
 	/// From now on closest() is closestExactly(), whatever asks for it.
 	void makeExact() { alwaysExact = true; }
 

@@ -113,6 +113,14 @@ public:
 		return ball.id;
 	}
 
+	/// The distance from x to the nearest point. @pre there are points.
+	double distance(const Point3d& x) const
+	{
+		Nearest ball {*this, x, std::numeric_limits<double>::max(), -1};
+		search<true>(ball);
+		return ball.distance;
+	}
+
 private:
 	static constexpr const char* sorting = "Sorting the surface";
 	static constexpr size_t LeafSize = 32;

@@ -20,8 +20,7 @@
 namespace vcg::tri::mcf::refining {
 
 /// What a refined curve may fail at. The first one that holds is told.
-enum class Defect
-{
+enum class Defect {
 	None,
 	NotFinite, ///< or the centring could not be solved
 	TooLong,   ///< or too many nodes, see CurveBounds
@@ -72,23 +71,31 @@ public:
 	{
 	}
 
-	/// Whether a curve is inside, its nodes and its edges. @throws Cancelled
-	/// Complexity: O((N + E) log V); O(V) for each edge within a self-intersection.
+	/**
+	 * Whether a curve is inside, its nodes and its edges: where no edge meets the surface, one node tells
+	 * for all that hang together. @throws Cancelled
+	 * Complexity: O((N + E) log V); O(V) for each edge within a self-intersection.
+	 */
 	bool holds(const CurveSkeleton& curve, const Progress& progress) const
 	{
-		std::vector<double> clearance;
-		clearance.reserve(curve.position.size());
+		std::vector<double> empty; // radii of balls that the surface does not enter
+		empty.reserve(curve.position.size());
 		detail::reportedLoop(int(curve.position.size()), progress, what,
-			[&](int v) { clearance.push_back(closest.exactClearance(curve.position[v])); });
-		for (const auto& [a, b] : curve.edges)
-			if (!isCovered(curve.position[a], clearance[a], curve.position[b], clearance[b], 0)
-				&& !isEnclosed(curve.position[a], curve.position[b], progress))
+			[&](int v) { empty.push_back(closest.emptyRadius(curve.position[v])); });
+		const auto measured = [&](int v) {
+			return empty[v] = closest.closestExactly(curve.position[v]).distance;
+		};
+		for (const auto& [a, b] : curve.edges) {
+			const Point3d &from = curve.position[a], &to = curve.position[b];
+			if (Distance(from, to) > empty[a] + empty[b]
+				&& !isCovered(from, measured(a), to, measured(b), 0)
+				&& !isEnclosed(from, to, progress))
 				return false;
-		if (curve.edges.empty())
-			for (size_t v = 0; v < clearance.size(); ++v)
-				if (clearance[v] <= 0 && windingNumber(curve.position[v]) < half)
-					return false;
-		return true;
+		}
+		const std::vector<Point3d> firsts = firstNodes(curve);
+		return std::all_of(firsts.begin(), firsts.end(), [&](const Point3d& p) {
+			return closest.exactClearance(p) > 0 || windingNumber(p) > half;
+		});
 	}
 
 	/// How many nodes are outside, by their closest points. Complexity: O(N log V).
@@ -117,9 +124,33 @@ private:
 		if (Distance(a, b) <= radiusA + radiusB)
 			return true;
 		const Point3d middle = (a + b) / 2;
-		const double radius = closest.exactClearance(middle);
+		const double radius = closest.closestExactly(middle).distance;
 		return isCovered(a, radiusA, middle, radius, depth + 1)
 			&& isCovered(middle, radius, b, radiusB, depth + 1);
+	}
+
+	/// The first node of each part of the curve.
+	static std::vector<Point3d> firstNodes(const CurveSkeleton& curve)
+	{
+		const std::vector<std::vector<int>> neighbours = curve.neighbours();
+		std::vector<char> seen(neighbours.size(), 0);
+		std::vector<Point3d> firsts;
+		for (int v = 0; v < int(neighbours.size()); ++v) {
+			if (seen[v])
+				continue;
+			firsts.push_back(curve.position[v]);
+			seen[v] = 1;
+			for (std::vector<int> stack(1, v); !stack.empty();) {
+				const int at = stack.back();
+				stack.pop_back();
+				for (int w : neighbours[at])
+					if (!seen[w]) {
+						seen[w] = 1;
+						stack.push_back(w);
+					}
+			}
+		}
+		return firsts;
 	}
 
 	template <class Visitor>
@@ -142,8 +173,8 @@ private:
 		forEachTriangle([&](const Point3d& u, const Point3d& v, const Point3d& w) {
 			const Point3d a = u - p, b = v - p, c = w - p;
 			const double la = a.Norm(), lb = b.Norm(), lc = c.Norm();
-			sum += std::atan2(
-				a * (b ^ c), la * lb * lc + (a * b) * lc + (b * c) * la + (c * a) * lb);
+			sum +=
+				std::atan2(a * (b ^ c), la * lb * lc + (a * b) * lc + (b * c) * la + (c * a) * lb);
 		});
 		return sum / (2 * M_PI);
 	}
@@ -151,7 +182,8 @@ private:
 	/// Whether a segment is inside between each two of its crossings with the surface.
 	bool isEnclosed(const Point3d& a, const Point3d& b, const Progress& progress) const
 	{
-		constexpr double shortest = 1e-6; // parts of the segment; shorter ones are where triangles meet
+		constexpr double shortest =
+			1e-6; // parts of the segment; shorter ones are where triangles meet
 		progress.report(0, what);
 		const Point3d segment = b - a;
 		std::vector<double> ends = {0, 1};
@@ -183,8 +215,8 @@ inline bool isFinite(const CurveSkeleton& curve)
 }
 
 /// What is wrong with a curve refined from another one, both in diagonals. @throws Cancelled
-inline Defect defectOf(const CurveSkeleton& refined, const CurveSkeleton& unrefined,
-	double spacing, const InsideCheck& inside, const Progress& progress = Progress())
+inline Defect defectOf(const CurveSkeleton& refined, const CurveSkeleton& unrefined, double spacing,
+	const InsideCheck& inside, const Progress& progress = Progress())
 {
 	if (!isFinite(refined))
 		return Defect::NotFinite;

@@ -77,8 +77,9 @@ struct Skeletonization
 	std::shared_ptr<const Stage> stage;
 	/// The noise of the input; not measured if it is not resampled.
 	NoiseReport noise;
-	/// Whether the curve was refined.
+	/// Whether the curve was refined, and which of its components could be.
 	bool refined = false;
+	RefineReport refineReport;
 	PhaseSeconds seconds;
 
 	/// For each vertex of `surface` its node of the skeleton.
@@ -177,8 +178,13 @@ inline Skeletonization skeletonize(const SurfaceInput& input, const Parameters& 
 	else if (parameters.refine && !held.empty())
 		note("The skeleton is not refined: that would move it off the vertices that are held.");
 	else if (parameters.refine) {
-		result.curve = refine(result.curve, surface, refinement, progress.part(0.9, 0.99));
+		Refinement refined =
+			refineChecked(result.curve, surface, refinement, progress.part(0.9, 0.99));
+		result.curve = std::move(refined.skeleton);
 		result.refined = true;
+		result.refineReport = refined.report;
+		if (const std::string text = refined.report.text(); !text.empty())
+			note(text);
 	}
 	result.seconds.refine = clock.end(Phase::Refine);
 
