@@ -108,6 +108,18 @@ TEST(CheckStage, NamesTheVertexThatIsWrongAndHowManyAre)
 	atVertex(1, 1, [](Stage& s) { s.component[1] = 2; });
 }
 
+TEST(CheckStage, PolesOfVerticesThatHaveNoneMayBeAnywhere)
+{
+	Stage stage = twoBodies();
+	stage.sheet[5] = 0;
+	stage.poleRadius[5] = -1;
+	for (double x : {std::nan(""), infinity, 1e36, -1e228}) {
+		stage.pole[5] = Point3d(x, x, x);
+		EXPECT_NO_THROW(checkStage(stage));
+		EXPECT_NO_THROW(checkStage(step(stage, Parameters())));
+	}
+}
+
 TEST(CheckStage, RefusesComponentsThatAreNot)
 {
 	EXPECT_EQ(found([](Stage& s) { s.component[3] = 1 - s.component[3]; }).part, Part::Face);

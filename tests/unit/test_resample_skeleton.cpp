@@ -224,6 +224,21 @@ TEST(ResampleSkeleton, RefusesParametersOutOfRange)
 	EXPECT_THROW(resampledSkeleton(s, 0.1, 1e-9), InvalidParameter);
 }
 
+TEST(ResampleSkeleton, ACycleFarBelowTheSmoothingLengthIsSmoothedToo)
+{
+	// A large V, and a cycle at its corner that is a millionth of it.
+	for (double small : {1e-3, 1e-6, 1e-9, 1e-12}) {
+		CurveSkeleton s;
+		s.position = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-small, 0, 0}, {0, -small, small}};
+		s.radius.assign(5, 0.1);
+		s.edges = {{0, 1}, {0, 2}, {0, 3}, {0, 4}, {3, 4}};
+		const CurveSkeleton smooth = resampledSkeleton(s, 0.02, 0.02);
+		EXPECT_EQ(statistics(smooth).cycles, 1) << small;
+		EXPECT_EQ(statistics(smooth).components, 1) << small;
+		EXPECT_NEAR(statistics(smooth).length, 2, 0.01) << small;
+	}
+}
+
 TEST(ResampleSkeleton, CanBeCancelled)
 {
 	EXPECT_THROW(

@@ -166,10 +166,6 @@ private:
 		const auto each = [&](const char* reason, const auto& isRight) {
 			requireEach(Part::Vertex, vertices(), part, reason, isRight);
 		};
-		each("a coordinate is not finite, or too large to work with.",
-			[&](size_t v) { return isUsablePlace(stage.mesh.position[v]); });
-		each("a coordinate of the pole is not finite, or too large to work with.",
-			[&](size_t v) { return isUsablePlace(stage.pole[v]); });
 		each("'mcfskel_pole_radius' is not finite, or too large to work with.",
 			[&](size_t v) { return std::abs(stage.poleRadius[v]) <= maxCoordinate; });
 		const auto isFlag = [](char flag) { return flag == 0 || flag == 1; };
@@ -264,7 +260,8 @@ private:
 					&& diagonal <= maxRatio * stage.diagonal[c];
 			});
 		requireEach(Part::Vertex, vertices(), part.part(0.5, 1),
-			"it, or its pole, is farther from the surface than 100 of its diagonals.",
+			"a coordinate of it or of its pole is not finite, or farther from the surface than 100 of "
+			"its diagonals.",
 			[&](size_t v) {
 				const int c = stage.component[v];
 				const Point3d middle = box[c].Center();
@@ -285,7 +282,8 @@ private:
  * coordinates, flags of 0 or 1, a component that exists; each component is one connected part, and has
  * vertices of the surface, whose size is its unit of length; each vertex of the surface belongs to a
  * vertex of the mesh; numbers that are divided by are above 0; all is of a magnitude that can be
- * squared and cubed, and within 100 diagonals of the surface.
+ * squared and cubed, and within 100 diagonals of the surface. Poles of vertices that have none are
+ * nobody's business.
  *
  * What a step makes of a stage that passes, passes.
  * @throws InvalidStage that names what is wrong, the first place and how many there are; Cancelled.

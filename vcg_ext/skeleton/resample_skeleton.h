@@ -118,7 +118,9 @@ inline void smoothSpline(SampledBranch& branch, double l)
 	const double h = branch.along().back() / n;
 	if (!(h > 0))
 		return;
-	const double weight = std::pow(l / h, 4);
+	// Far beyond, all that is left is flat, and the system cannot be solved.
+	constexpr double maxRatio = 1e3;
+	const double weight = std::pow(std::min(l / h, maxRatio), 4);
 	// On a free cycle all points move; else those between the ends.
 	const bool cycle = branch.isFreeCycle;
 	const int unknowns = cycle ? n : n - 1;
