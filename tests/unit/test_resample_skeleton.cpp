@@ -239,6 +239,22 @@ TEST(ResampleSkeleton, ACycleFarBelowTheSmoothingLengthIsSmoothedToo)
 	}
 }
 
+TEST(ResampleSkeleton, WhatIsTooFarAwayForItsSizeIsAnErrorNotAMillionNodes)
+{
+	// At 2e18 coordinates are 256 apart: the zigzag is there, but nothing between its places.
+	CurveSkeleton s;
+	for (int i = 0; i < 12; ++i) {
+		s.position.emplace_back(i, i % 2, 2e18);
+		s.radius.push_back(1);
+		if (i > 0)
+			s.edges.push_back({i - 1, i});
+	}
+	EXPECT_THROW(resampledSkeleton(s, 0.1, 0.1), SolverError);
+	for (Point3d& p : s.position)
+		p[2] = 0;
+	EXPECT_NO_THROW(resampledSkeleton(s, 0.1, 0.1));
+}
+
 TEST(ResampleSkeleton, CanBeCancelled)
 {
 	EXPECT_THROW(

@@ -234,6 +234,11 @@ inline CurveSkeleton resampledSkeleton(const CurveSkeleton& skeleton, double lon
 		if (smoothing > 0) {
 			line = old.evenly(spacing, least);
 			detail::smoothSpline(line, smoothing);
+			// Only rounding makes a line longer, where the steps of coordinates are as large as it is.
+			if (line.along().back() > 2 * old.along().back())
+				throw SolverError(
+					"The skeleton could not be smoothed: it is too small for its distance from the "
+					"origin. Move it there first.");
 		}
 		line = line.evenly(longestEdge, least);
 
