@@ -14,10 +14,12 @@ this one). Answers with lines:
 
 from __future__ import annotations
 
+import ctypes
 import hashlib
 import json
 import os
 import resource
+import signal
 import sys
 import tempfile
 import time
@@ -199,7 +201,7 @@ class Job:
         mesh = self.layers.current_mesh()
         nodes, edges = mesh.vertex_matrix(), mesh.edge_matrix()
         surface = self.layers.mesh(self.surface)
-        # Where the surface is resampled the correspondence is by nearest points, which may be another body's.
+        # Where the surface is resampled it is by nearest points, which may be another body's.
         node_of_vertex = scalars(surface, "mcfskel_node") if not any(
             layer.label().endswith("_resampled") for layer in self.layers) else None
         findings = self.judge.skeleton(nodes, edges, mesh.face_matrix(), node_of_vertex, inside, topology)
@@ -235,7 +237,7 @@ class Job:
         return self.judge.points(pole[radius >= 0], "poles", self.margin())
 
     def margin(self) -> float:
-        """How far poles and stages may be beyond the bounding box, in diagonals. Balls within a part that is
+        """How far poles and stages may be beyond the bounding box, in diagonals. Balls of a part that is
         inside out, as there may be where a surface meets itself, are on its other side."""
         return 0.01 if self.mesh.expected.embedded else 1.0
 
@@ -405,11 +407,13 @@ class Job:
 
 def polyline_length(mesh: pymeshlab.Mesh) -> float:
     nodes, edges = mesh.vertex_matrix(), mesh.edge_matrix()
-    return float(np.linalg.norm(nodes[edges[:, 0]] - nodes[edges[:, 1]], axis=1).sum()) if len(edges) else 0.0
+    if not len(edges):
+        return 0.0
+    return float(np.linalg.norm(nodes[edges[:, 0]] - nodes[edges[:, 1]], axis=1).sum())
 
 
 def short(results: dict[str, Any]) -> str:
-    names = ("skeleton_vertices", "components", "cycles", "skeleton_length", "vertices", "poles", "iterations")
+    names = ("skeleton_vertices", "components", "cycles", "skeleton_length", "vertices", "poles")
     return ", ".join(f"{name} {results[name]:.6g}" for name in names if name in results)
 
 
@@ -420,7 +424,14 @@ def limit_memory(megabytes: int) -> None:
     resource.setrlimit(resource.RLIMIT_AS, (limit, resource.RLIM_INFINITY))
 
 
+def end_with_parent() -> None:
+    """Whoever kills the one who reads the answers need not look for this process."""
+    set_death_signal = 1
+    ctypes.CDLL(None).prctl(set_death_signal, signal.SIGKILL)
+
+
 def main() -> None:
+    end_with_parent()
     plugin, megabytes = sys.argv[1], int(sys.argv[2])
     # What the host prints is not for the one who reads the answers.
     channel = os.fdopen(os.dup(1), "w", buffering=1)

@@ -7,7 +7,8 @@ from __future__ import annotations
 import numpy as np
 
 from .expectation import Hostile, either, refused, standing_for
-from .primitives import Mesh, Rng, box, compact, diagonal, edges, halved, hull, joined, log_uniform, sphere, turned
+from .primitives import (Mesh, Rng, box, compact, diagonal, edges, halved, hull, joined, log_uniform,
+                         sphere, turned)
 from .solids import ball, cloud
 
 NOWHERE = np.zeros((0, 3), int)

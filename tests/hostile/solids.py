@@ -7,8 +7,9 @@ from __future__ import annotations
 import numpy as np
 
 from .expectation import Hostile, either, skeleton, skeleton_if, standing_for
-from .primitives import (Mesh, Rng, box, cell_surface, component_of_vertices, diagonal, filled_to_manifold, genus, halved, hull,
-                         joined, log_uniform, prism, revolved, rotation, sphere, tube, turned)
+from .primitives import (Mesh, Rng, box, cell_surface, component_of_vertices, diagonal,
+                         filled_to_manifold, genus, halved, hull, joined, log_uniform, prism, revolved,
+                         rotation, sphere, tube, turned)
 
 # The pipeline takes coordinates in single precision: a body that is thinner than this, compared with its
 # length, may come out flat, and then it is refused.

@@ -39,7 +39,7 @@ def results(plugin) -> list[dict]:
 class TestJobs:
     @pytest.mark.parametrize("kind", FAILURES)
     def test_none(self, results, kind):
-        """No mesh with a failure of this kind. One of them again: scripts/fuzz/hostile.py --mesh NAME NUMBER."""
+        """No mesh fails in this way. One of them again: scripts/fuzz/hostile.py --mesh NAME NUMBER."""
         found = [f"{result['family']} {result['seed']}: {step}: {what}"
                  for result in results for step, its_kind, what in failures(result) if its_kind == kind]
         assert not found, f"{len(found)}:\n" + "\n".join(found[:20])
