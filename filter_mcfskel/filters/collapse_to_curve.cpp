@@ -5,7 +5,7 @@
 #include "common.h"
 #include "sheets.h"
 
-#include <skeleton/collapse_to_curve.h>
+#include <skeleton/curve_inside.h>
 #include <skeleton/collapse_with_sheets.h>
 #include <skeleton/errors.h>
 
@@ -35,7 +35,7 @@ Results run(FilterRun& run)
 		edit.commit();
 		return results;
 	}
-	const mcf::CurveSkeleton skeleton = mcf::collapseToCurve(*found.stage, epsilon, run.progress);
+	const mcf::CurveSkeleton skeleton = mcf::collapseInside(*found.stage, epsilon, run.progress);
 
 	DocumentEdit edit(run.document);
 	const MeshModel* surface = run.document.getMesh(found.surface.layerId);

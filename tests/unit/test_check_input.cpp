@@ -170,6 +170,40 @@ TEST(CheckInput, RefusesWhatEnclosesNoVolume)
 			"remove the flat part"}));
 }
 
+TEST(CheckInput, RefusesABodyOnALineWithRoundingOrWithout)
+{
+	// Along the x axis, along none, and with noise of the last digits; also far from the origin.
+	const auto line = [](const Point3d& direction, double noise, unsigned seed) {
+		return shapes::jittered(shapes::transformed(shapes::sphere(2),
+									[&](const Point3d& p) { return direction * p[0]; }),
+			noise, seed);
+	};
+	EXPECT_TRUE(says(refusal(line({1, 0, 0}, 0, 1)), {"no volume"}));
+	EXPECT_TRUE(says(refusal(line({0.6, 0.64, 0.48}, 0, 1)), {"no volume"}));
+	for (unsigned seed = 1; seed <= 20; ++seed) {
+		EXPECT_TRUE(says(refusal(line({1, 0, 0}, 2e-16, seed)), {"no volume"})) << seed;
+		EXPECT_TRUE(says(refusal(line({0.6, 0.64, 0.48}, 2e-16, seed)), {"no volume"})) << seed;
+		EXPECT_TRUE(says(
+			refusal(shapes::moved(line({0.6, 0.64, 0.48}, 0, seed), {1e6, 0, 0})), {"no volume"}));
+	}
+	EXPECT_TRUE(says(refusal(shapes::joined({shapes::sphere(1),
+						 shapes::moved(line({0.6, 0.64, 0.48}, 2e-16, 1), {5, 0, 0})})),
+		{"of 2 connected components, 1 encloses no volume"}));
+}
+
+TEST(CheckInput, TakesANeedleAndTurnsItTheRightWay)
+{
+	// Wide enough for its coordinates; its volume is lost where it is not measured along the needle.
+	const shapes::Soup needle = shapes::transformed(shapes::sphere(1), [](const Point3d& p) {
+		const double x = p[0], y = 3e-9 * p[1], z = 3e-9 * p[2];
+		return Point3d(
+			0.6 * x - 0.8 * y, 0.64 * x + 0.48 * y - 0.6 * z, 0.48 * x + 0.36 * y + 0.8 * z);
+	});
+	EXPECT_TRUE(checkedSurface(needle.points, needle.triangles).notes.empty());
+	const shapes::Soup turned = shapes::insideOut(needle);
+	EXPECT_EQ(checkedSurface(turned.points, turned.triangles).notes.size(), 1u);
+}
+
 TEST(CheckInput, RefusesOnlyDegenerateFaces)
 {
 	shapes::Soup soup;

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <string>
@@ -154,6 +155,50 @@ TEST(KeepSheets, ABadSheetDoesNotSpoilAGoodOne)
 	EXPECT_EQ(result.skeleton.betti(), (BettiNumbers {2, 1, 0}));
 	EXPECT_LE(result.givenUp, 1);
 	EXPECT_GT(result.skeleton.sheetArea(), 0.6);
+}
+
+TEST(KeepSheets, EachComponentHasTheSheetsThatItHasAlone)
+{
+	// A plate, a small one with two holes, and a ball, which is no sheet.
+	const std::vector<shapes::Soup> bodies = {fine(shapes::box(1, 0.7, 0.01), 5),
+		shapes::moved(
+			shapes::scaled(flattened(fine(shapes::plate(2, 2), 2), 0.02), 0.01), Point3d(3, 0, 0)),
+		shapes::moved(shapes::sphere(2), Point3d(0, 5, 0))};
+	std::vector<SheetCollapse> alone;
+	for (const shapes::Soup& body : bodies) {
+		const Stage stage = stageOf(body);
+		alone.push_back(collapseKeepingSheets(stage, all(stage), 0.005));
+	}
+	ASSERT_EQ(alone[0].givenUp, 0);
+	ASSERT_EQ(alone[1].givenUp, 0);
+	for (const std::array<size_t, 3>& order : {std::array<size_t, 3> {0, 1, 2},
+			 std::array<size_t, 3> {2, 1, 0}, std::array<size_t, 3> {1, 0, 2}}) {
+		const Stage stage =
+			stageOf(shapes::joined({bodies[order[0]], bodies[order[1]], bodies[order[2]]}));
+		const SheetCollapse together = collapseKeepingSheets(stage, all(stage), 0.005);
+		EXPECT_EQ(error(together.skeleton), "");
+		EXPECT_EQ(together.sheets, 3);
+		EXPECT_EQ(together.givenUp, alone[2].givenUp);
+		MesoSkeleton expected;
+		for (size_t i : order) {
+			const MesoSkeleton& one = alone[i].skeleton;
+			const int first = int(expected.position.size());
+			expected.position.insert(
+				expected.position.end(), one.position.begin(), one.position.end());
+			for (const FaceOfComplex& f : one.faces)
+				expected.faces.push_back({first + f[0], first + f[1], first + f[2]});
+			for (const EdgeOfComplex& e : one.edges)
+				expected.edges.push_back({first + e[0], first + e[1]});
+			for (int v : one.node)
+				expected.node.push_back(first + v);
+		}
+		EXPECT_EQ(together.skeleton.faces, expected.faces);
+		EXPECT_EQ(together.skeleton.edges, expected.edges);
+		EXPECT_EQ(together.skeleton.node, expected.node);
+		ASSERT_EQ(together.skeleton.position.size(), expected.position.size());
+		for (size_t v = 0; v < expected.position.size(); ++v)
+			EXPECT_EQ(together.skeleton.position[v], expected.position[v]);
+	}
 }
 
 TEST(KeepSheets, TheSameBitsTwiceAndTheSameShapeAtAnySize)

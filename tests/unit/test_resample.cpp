@@ -6,6 +6,7 @@
 
 #include "skeleton/check_input.h"
 #include "skeleton/resample.h"
+#include "skeleton/target_length.h"
 
 #include <gtest/gtest.h>
 
@@ -444,6 +445,32 @@ TEST(Resample, RefusesLengthsThatMakeNoSense)
 	catch (const InvalidParameter& error) {
 		EXPECT_NE(std::string(error.what()).find("target_length"), std::string::npos);
 	}
+}
+
+TEST(Resample, NarrowBodiesGetNoMoreVerticesThanTheyNeed)
+{
+	for (double width : {1e-3, 1e-4, 1e-5, 1e-6, 3e-9}) {
+		SCOPED_TRACE(width);
+		const SurfaceMesh needle = shapes::transformed(shapes::sphere(1), [&](const Point3d& p) {
+			return Point3d(p[0], width * p[1], width * p[2]);
+		}).mesh();
+		const SurfaceMesh mesh = resample(needle, defaultTargetLength(needle), 5);
+		EXPECT_EQ(mesh.eulerCharacteristic(), 2);
+		EXPECT_LT(mesh.vertexCount(), 200000);
+	}
+}
+
+TEST(Resample, GivesUpWhereTheVerticesWouldBeTooMany)
+{
+	const SurfaceMesh ball = shapes::sphere(1).mesh();
+	const auto refined = [&](size_t mostVertices) {
+		vcg::tri::mcf::detail::IsotropicRemesher remesher(ball,
+			std::vector<int>(size_t(ball.vertexSlots()), 0), {0.01}, mostVertices, Progress());
+		remesher.refine(Progress());
+		return remesher.take(Progress()).vertexCount();
+	};
+	EXPECT_THROW(refined(1000), InvalidParameter);
+	EXPECT_GT(refined(1000000), 10000);
 }
 
 TEST(Resample, ProgressNeverFallsAndReportsWithinLongLoops)

@@ -13,7 +13,9 @@
 #include "ticker.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -73,13 +75,84 @@ inline std::vector<int> connectedComponents(
 	return component;
 }
 
+namespace detail {
+
+/// Signed volume, negative where the surface is inside out, and area.
+struct VolumeAndArea
+{
+	double volume = 0, area = 0;
+};
+
+/**
+ * Volume and area of each component, in coordinates along its length: from the vertex that is farthest
+ * from its first one to the one farthest from that. So the little that a needle is wide is not lost in
+ * the rounding of its length. @throws Cancelled. Complexity: O(V + F).
+ */
+inline std::vector<VolumeAndArea> measuredAlongLength(const SurfaceMesh& mesh,
+	const std::vector<int>& component, int components, const Progress& progress)
+{
+	const char* const what = "Measuring the surface";
+	const auto farthest = [&](std::vector<int> from, const Progress& part) {
+		std::vector<int> found = from;
+		std::vector<double> distance(from.size(), 0);
+		reportedLoop(mesh.vertexSlots(), part, what, [&](int v) {
+			if (!mesh.isVertex(v))
+				return;
+			const int c = component[v];
+			if (from[c] < 0)
+				found[c] = from[c] = v;
+			const double d = SquaredDistance(mesh.position[v], mesh.position[from[c]]);
+			if (d > distance[c]) {
+				distance[c] = d;
+				found[c] = v;
+			}
+		});
+		return found;
+	};
+	const std::vector<int> start =
+		farthest(std::vector<int>(size_t(components), -1), progress.part(0, 0.2));
+	const std::vector<int> end = farthest(start, progress.part(0.2, 0.4));
+	std::vector<std::array<Point3d, 3>> axes;
+	for (int c = 0; c < components; ++c) {
+		Point3d along = mesh.position[end[c]] - mesh.position[start[c]];
+		const double length = along.Norm();
+		along = length > 0 ? along / length : Point3d(1, 0, 0);
+		int least = 0; // coordinate
+		for (int k = 1; k < 3; ++k)
+			if (std::abs(along[k]) < std::abs(along[least]))
+				least = k;
+		Point3d e(0, 0, 0);
+		e[least] = 1;
+		const Point3d across = (along ^ e) / (along ^ e).Norm();
+		axes.push_back({along, across, along ^ across});
+	}
+	std::vector<VolumeAndArea> measured(static_cast<size_t>(components));
+	reportedLoop(mesh.faceSlots(), progress.part(0.4, 1), what, [&](int f) {
+		if (!mesh.isFace(f))
+			return;
+		const Triangle t = mesh.triangle(f);
+		const int c = component[t[0]];
+		const auto placed = [&](int v) {
+			const Point3d p = mesh.position[v] - mesh.position[start[c]];
+			return Point3d(axes[c][0] * p, axes[c][1] * p, axes[c][2] * p);
+		};
+		const Point3d p = placed(t[0]);
+		const Point3d n = (placed(t[1]) - p) ^ (placed(t[2]) - p);
+		measured[c].area += n.Norm() / 2;
+		measured[c].volume += p * n / 6;
+	});
+	return measured;
+}
+
+} // namespace detail
+
 /**
  * Checks that `points` and `triangles` bound a solid, and hands them over as a SurfaceMesh.
  *
  * Repaired, with a note: unreferenced vertices, coincident vertices (merged only if the mesh is not
  * closed without), faces that use a vertex twice, copies of a face, faces turned against their
  * neighbours, components that are inside out. Refused: everything else that is not a closed
- * two-manifold of non-zero volume.
+ * two-manifold of a volume beyond rounding, flat bodies and such on a line among them.
  *
  * @param points    one for each input vertex, mesh units.
  * @param triangles corners as indices into `points`.
@@ -178,10 +251,12 @@ inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
 		connectedComponents(mesh, &components, progress.part(0.8, 0.85));
 	std::vector<Point3d> middle(components, Point3d(0, 0, 0));
 	std::vector<double> volume(components, 0), area(components, 0);
+	std::vector<Box3d> box(components);
 	std::vector<int> size(components, 0);
 	detail::reportedLoop(mesh.vertexSlots(), progress.part(0.85, 0.87), what, [&](int v) {
 		middle[component[v]] += mesh.position[v];
 		++size[component[v]];
+		box[component[v]].Add(mesh.position[v]);
 	});
 	for (int c = 0; c < components; ++c)
 		middle[c] /= double(size[c]);
@@ -191,11 +266,36 @@ inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
 		area[c] += n.Norm() / 2;
 		volume[c] += (mesh.position[first] - middle[c]) * n / 6;
 	});
+	// Of what is much thinner than long both are lost in rounding, unless they are measured along its length.
+	const auto isSlender = [&](int c) {
+		constexpr double slender = 1e-3;
+		return !(std::abs(volume[c]) > slender * std::pow(area[c], 1.5))
+			|| !(area[c] > slender * box[c].SquaredDiag());
+	};
+	bool anySlender = false;
+	for (int c = 0; c < components; ++c)
+		anySlender |= isSlender(c);
+	if (anySlender) {
+		const std::vector<detail::VolumeAndArea> measured =
+			detail::measuredAlongLength(mesh, component, components, progress.part(0.9, 0.9));
+		for (int c = 0; c < components; ++c)
+			if (isSlender(c)) {
+				volume[c] = measured[c].volume;
+				area[c] = measured[c].area;
+			}
+	}
 	int insideOut = 0;
 	std::vector<Point3d> flat;
 	for (int c = 0; c < components; ++c) {
-		// A sphere, the fullest body, has V = 0.094 A^1.5; rounding alone stays below 1e-12 of it.
-		if (!(std::abs(volume[c]) > 1e-10 * std::pow(area[c], 1.5)) || !std::isnormal(area[c]))
+		double largest = 0; // coordinate
+		for (int k = 0; k < 3; ++k)
+			largest = std::max({largest, std::abs(box[c].min[k]), std::abs(box[c].max[k])});
+		// A sphere, the fullest body, has V = 0.094 A^1.5; rounding alone stays below 1e-12 of it. A body
+		// on a line has no area to compare with: its volume over its area, about its thickness, is that of
+		// the rounding of its coordinates.
+		constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
+		if (!(std::abs(volume[c]) > 1e-10 * std::pow(area[c], 1.5)) || !std::isnormal(area[c])
+			|| !(std::abs(volume[c]) > rounding * largest * area[c]))
 			flat.push_back(middle[c]);
 		insideOut += volume[c] < 0;
 	}

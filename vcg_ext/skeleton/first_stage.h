@@ -7,6 +7,7 @@
 #define VCG_MCF_FIRST_STAGE_H
 
 #include "breadth_first_order.h"
+#include "components_at_rest.h"
 #include "halved_edges.h"
 #include "large_arrays.h"
 #include "measured_surface.h"
@@ -62,6 +63,8 @@ struct FlowSurface
 	std::vector<int> component;
 	/// Diagonal, see MeasuredSurface, and area of each component of the surface.
 	std::vector<double> diagonal, area;
+	/// 1 for the components that rest, see componentsAtRest().
+	std::vector<char> rests;
 };
 
 /**
@@ -84,19 +87,26 @@ FlowSurface surfaceForFlow(const SurfaceMesh& surface, double epsilon,
 	const auto isAny = [](const std::vector<char>& coarse) {
 		return std::find(coarse.begin(), coarse.end(), 1) != coarse.end();
 	};
+	const auto moving = [&](std::vector<char> components) {
+		for (size_t c = 0; c < components.size(); ++c)
+			components[c] &= !result.rests[c];
+		return components;
+	};
 	bool mayBeCoarse = false;
 	{
 		const MeasuredSurface measured(
 			mesh, number.component, number.components, progress.part(0.2, 0.3));
 		result.diagonal = measured.diagonals();
 		result.area = measured.areas();
-		mayBeCoarse = isAny(coarseComponents(measured, epsilon, {}, progress.part(0.3, 0.3)));
+		result.rests = componentsAtRest(measured, progress.part(0.3, 0.3));
+		mayBeCoarse =
+			isAny(moving(coarseComponents(measured, epsilon, {}, progress.part(0.3, 0.3))));
 	}
 	if (mayBeCoarse) {
 		const Progress part = progress.part(0.3, 0.3);
 		const MeasuredSurface measured(surface, part);
 		const std::vector<char> coarse =
-			coarseComponents(measured, epsilon, polesOfSurface(part).radius, part);
+			moving(coarseComponents(measured, epsilon, polesOfSurface(part).radius, part));
 		if (isAny(coarse)) {
 			const SurfaceMesh halved =
 				withHalvedEdges(measured, longestEdgesForFlow(measured, coarse, epsilon), part);
@@ -137,6 +147,8 @@ FlowSurface surfaceForFlow(const SurfaceMesh& surface, double epsilon,
 
 /**
  * Stage 0: the surface with edges of the flow's length, and its poles.
+ *
+ * Components that rest, see componentsAtRest(), are fixed from the start.
  *
  * Lengths, areas and volumes are measured on the surface itself, and its vertices keep their
  * correspondence. Poles are found for the vertices that remain, against all that their component has on the
@@ -204,7 +216,8 @@ inline Stage firstStage(const SurfaceMesh& surface, const Parameters& parameters
 		for (size_t i = 0; i < added.size(); ++i)
 			take(added[i], found, i);
 	}
-	stage.fixed.assign(count, 0);
+	for (size_t v = 0; v < count; ++v)
+		stage.fixed.push_back(start.rests[stage.component[v]]);
 	stage.held.assign(count, 0);
 	stage.sheet.assign(count, 0);
 	stage.initialArea = std::move(start.area);
@@ -212,6 +225,7 @@ inline Stage firstStage(const SurfaceMesh& surface, const Parameters& parameters
 	stage.initialVolume = surface.volume(end);
 	stage.surface = std::make_shared<const std::vector<Point3d>>(
 		detail::copiedArray(surface.position, end, "Copying the surface"));
+	stage.surfaceTriangles = std::make_shared<const std::vector<Triangle>>(surface.triangles(end));
 	stage.mesh = std::move(start.mesh);
 	const Extent extent =
 		measuredExtent(stage.mesh, stage.component, std::vector<double>(stage.diagonal.size(), 1));

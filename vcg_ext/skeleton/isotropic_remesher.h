@@ -6,6 +6,7 @@
 #ifndef VCG_MCF_ISOTROPIC_REMESHER_H
 #define VCG_MCF_ISOTROPIC_REMESHER_H
 
+#include "errors.h"
 #include "long_edge_queue.h"
 #include "parallel_blocks.h"
 #include "progress.h"
@@ -16,6 +17,7 @@
 #include "tracked_mesh.h"
 
 #include <algorithm>
+#include <string>
 #include <vector>
 
 namespace vcg::tri::mcf::detail {
@@ -28,10 +30,11 @@ class IsotropicRemesher
 {
 public:
 	/// @see TrackedMesh::TrackedMesh()
+	/// @param mostVertices beyond which splitLongEdges() gives up.
 	IsotropicRemesher(const SurfaceMesh& surface, const std::vector<int>& componentOfVertex,
-		const std::vector<double>& targetLength, const Progress& progress) :
+		const std::vector<double>& targetLength, size_t mostVertices, const Progress& progress) :
 			tracked(surface, componentOfVertex, targetLength, progress),
-			mesh(tracked.mesh)
+			mesh(tracked.mesh), mostVertices(mostVertices)
 	{
 	}
 
@@ -61,6 +64,7 @@ public:
 	}
 
 	/// Splits every edge longer than 4/3 of the target at its middle, the longest first.
+	/// @throws InvalidParameter where that would need too many vertices.
 	void splitLongEdges(const Progress& progress)
 	{
 		const char* const what = "Splitting long edges";
@@ -72,6 +76,12 @@ public:
 		Ticker ticker(progress.part(0.1, 1), what, queue.size());
 		for (int h = queue.pop(); h >= 0; h = queue.pop()) {
 			ticker.tick();
+			if (size_t(mesh.vertexCount()) >= mostVertices)
+				throw InvalidParameter(
+					"Parameter target_length is too small for so narrow a surface: "
+					"it needs more than "
+					+ std::to_string(mostVertices / 1000)
+					+ " thousand vertices. Give a larger one, or do not resample.");
 			const int m = tracked.split(h);
 			// The halves, the new edges, and the two outer edges whose ids have changed, b c and d b:
 			// see SurfaceMesh::split().
@@ -226,6 +236,7 @@ private:
 
 	TrackedMesh tracked;
 	SurfaceMesh& mesh; ///< tracked.mesh
+	size_t mostVertices;
 
 	/// What smoothAndProject() adds up over the triangles of a vertex.
 	struct Sum

@@ -7,6 +7,7 @@
 #define VCG_MCF_KEEP_SHEETS_H
 
 #include "collapse_to_curve.h"
+#include "component_meshes.h"
 #include "marked_parts.h"
 #include "meso_skeleton.h"
 #include "one_wall.h"
@@ -16,7 +17,9 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <set>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -45,6 +48,7 @@ inline SheetCollapse withoutSheets(const CurveSkeleton& curve)
 namespace detail {
 
 /// Collapses all that is no sheet, then joins the walls of what is. The topology is to be checked.
+/// @pre the stage has one component.
 inline MesoSkeleton collapseAround(
 	const Stage& stage, const std::vector<char>& sheet, double epsilon, const Progress& progress)
 {
@@ -65,26 +69,23 @@ inline MesoSkeleton collapseAround(
 		[&](int A, int B) { isSheet[B] |= isSheet[A]; }, progress);
 	contractShortCurveEdges(complex, stage, epsilon, isSheet);
 
-	std::vector<int> component(size_t(n), -1), label(size_t(n), -1);
-	for (int v = 0; v < n; ++v)
-		component[complex.find(v)] = stage.component[v];
+	const double diagonal = stage.diagonal.front();
+	std::vector<int> label(size_t(n), -1);
 	const std::vector<FaceOfComplex> faces = complex.surfaceTriangles();
 	std::vector<char> hasFace(size_t(n), 0);
 	for (const FaceOfComplex& f : faces)
 		for (int A : f)
-			hasFace[A] = 1;
+			hasFace[size_t(A)] = 1;
 	MesoSkeleton skeleton;
-	for (size_t c = 0; c < stage.diagonal.size(); ++c) {
-		std::vector<int> nodes;
-		std::vector<Point3d> points;
-		for (int A = 0; A < n; ++A)
-			if (hasFace[A] && component[A] == int(c)) {
-				nodes.push_back(A);
-				points.push_back(complex.position(A));
-			}
-		if (nodes.empty())
-			continue;
-		const Sites sites = spreadSites(points, spacing * epsilon * stage.diagonal[c]);
+	std::vector<int> nodes;
+	std::vector<Point3d> points;
+	for (int A = 0; A < n; ++A)
+		if (hasFace[size_t(A)]) {
+			nodes.push_back(A);
+			points.push_back(complex.position(A));
+		}
+	if (!nodes.empty()) {
+		const Sites sites = spreadSites(points, spacing * epsilon * diagonal);
 		std::vector<int> number(sites.position.size(), -1);
 		for (size_t i = 0; i < nodes.size(); ++i) {
 			int& id = number[sites.ofPoint[i]];
@@ -113,7 +114,7 @@ inline MesoSkeleton collapseAround(
 	for (const EdgeOfComplex& e : walls.edges)
 		curves.erase(e);
 	fillTriangles(walls, {});
-	openPockets(walls, skeleton.position, 2 * spacing * epsilon * stage.diagonal[0]);
+	openPockets(walls, skeleton.position, 2 * spacing * epsilon * diagonal);
 	std::set<EdgeOfComplex> edges = walls.edges;
 	edges.insert(curves.begin(), curves.end());
 	skeleton.faces.assign(walls.faces.begin(), walls.faces.end());
@@ -151,27 +152,14 @@ inline std::vector<char> sheetVertices(const Stage& stage, const Progress& progr
 	return sheet;
 }
 
-/**
- * Turns a stage into curves and sheets: collapses the shortest edges as collapseToCurve() does, but
- * none between two vertices of a sheet; then joins the two walls of each sheet on common sites, 4
- * epsilon apart.
- *
- * Joining walls may close or open loops, where they touch elsewhere or are not close enough. So the
- * Betti numbers over GF(2) are compared with those of the solid, (components, genus, 0). A sheet that
- * fails alone becomes curves; where they fail together, the smallest does, and so on. The result always
- * has the topology of the shape: at worst it is a curve skeleton.
- *
- * @param sheet    1 for vertices of sheets, #V, e.g. from sheetVertices().
- * @param epsilon  fraction of the diagonal.
- * @throws SolverError, Cancelled. Complexity: O(S V log V) for S sheets.
- * Source: ours.
- */
-inline SheetCollapse collapseKeepingSheets(const Stage& stage, const std::vector<char>& sheet,
-	double epsilon, const Progress& progress = Progress())
+namespace detail {
+
+/// collapseKeepingSheets() of a stage of one component.
+inline SheetCollapse collapseOneKeepingSheets(
+	const Stage& stage, const std::vector<char>& sheet, double epsilon, const Progress& progress)
 {
 	const SurfaceMesh& mesh = stage.mesh;
-	const int components = int(stage.diagonal.size());
-	const BettiNumbers solid = {components, components - mesh.eulerCharacteristic() / 2, 0};
+	const BettiNumbers solid = {1, 1 - mesh.eulerCharacteristic() / 2, 0};
 	const std::vector<double> area = vertexAreas(mesh, progress.part(0, 0));
 	std::vector<std::vector<int>> parts = markedParts(mesh, sheet, 1, progress.part(0, 0));
 	std::stable_sort(parts.begin(), parts.end(),
@@ -184,7 +172,7 @@ inline SheetCollapse collapseKeepingSheets(const Stage& stage, const std::vector
 		for (size_t i = first; i < end; ++i)
 			for (int v : parts[i])
 				marks[v] = 1;
-		return detail::collapseAround(stage, marks, epsilon, progress);
+		return collapseAround(stage, marks, epsilon, progress);
 	};
 	const auto fits = [&](const MesoSkeleton& skeleton) { return skeleton.betti() == solid; };
 	bool found = false;
@@ -211,7 +199,7 @@ inline SheetCollapse collapseKeepingSheets(const Stage& stage, const std::vector
 	MesoSkeleton& skeleton = result.skeleton;
 	skeleton.radius = meanSurfaceDistance(skeleton.position, *stage.surface, skeleton.node);
 	std::vector<std::vector<int>> neighbours(skeleton.position.size());
-	for (const auto& [a, b] : detail::allEdges(skeleton.edges, skeleton.faces)) {
+	for (const auto& [a, b] : allEdges(skeleton.edges, skeleton.faces)) {
 		neighbours[a].push_back(b);
 		neighbours[b].push_back(a);
 	}
@@ -221,6 +209,117 @@ inline SheetCollapse collapseKeepingSheets(const Stage& stage, const std::vector
 	removeWhiskers(skeleton);
 	constexpr int smoothingRounds = 3;
 	smoothSheets(skeleton, smoothingRounds);
+	progress.report(1, "Collapsing to curves and sheets");
+	return result;
+}
+
+/**
+ * One component of a stage as a stage of its own.
+ * @param own         its mesh, whose vertices are called `ids` in the stage's.
+ * @param surfaceIds  its vertices on the surface.
+ * @param newNumber   of each vertex of the stage among `ids`.
+ */
+inline Stage stageOfComponent(const Stage& stage, int c, const SurfaceMesh& own,
+	const std::vector<int>& ids, const ComponentVertices& onSurface,
+	const std::vector<int>& newNumber)
+{
+	const auto picked = [](const auto& values, const std::vector<int>& which) {
+		std::decay_t<decltype(values)> result;
+		result.reserve(which.size());
+		for (int i : which)
+			result.push_back(values[size_t(i)]);
+		return result;
+	};
+	const std::vector<int>& surfaceIds = onSurface.ids[size_t(c)];
+	Stage part;
+	part.mesh = own;
+	part.pole = picked(stage.pole, ids);
+	part.poleRadius = picked(stage.poleRadius, ids);
+	part.fixed = picked(stage.fixed, ids);
+	part.held = picked(stage.held, ids);
+	part.sheet = picked(stage.sheet, ids);
+	part.component.assign(ids.size(), 0);
+	part.diagonal = {stage.diagonal[size_t(c)]};
+	part.initialArea = {stage.initialArea[size_t(c)]};
+	part.area = {stage.area[size_t(c)]};
+	part.surface = std::make_shared<const std::vector<Point3d>>(picked(*stage.surface, surfaceIds));
+	if (stage.surfaceTriangles) {
+		std::vector<char> isOwn(stage.surface->size(), 0);
+		for (int s : surfaceIds)
+			isOwn[size_t(s)] = 1;
+		std::vector<Triangle> triangles;
+		for (const Triangle& t : *stage.surfaceTriangles)
+			if (isOwn[size_t(t[0])])
+				triangles.push_back({onSurface.place[size_t(t[0])], onSurface.place[size_t(t[1])],
+					onSurface.place[size_t(t[2])]});
+		part.surfaceTriangles = std::make_shared<const std::vector<Triangle>>(std::move(triangles));
+	}
+	if (stage.frames)
+		part.frames =
+			std::make_shared<const std::vector<PrincipalFrame>>(1, (*stage.frames)[size_t(c)]);
+	for (int s : surfaceIds)
+		part.node.push_back(newNumber[size_t(stage.node[size_t(s)])]);
+	part.iteration = stage.iteration;
+	part.epsilon = stage.epsilon;
+	part.converged = stage.converged;
+	return part;
+}
+
+} // namespace detail
+
+/**
+ * Turns a stage into curves and sheets: collapses the shortest edges as collapseToCurve() does, but
+ * none between two vertices of a sheet; then joins the two walls of each sheet on common sites, 4
+ * epsilon apart.
+ *
+ * Each component is treated as if the others were not there, and its nodes stand together.
+ *
+ * Joining walls may close or open loops, where they touch elsewhere or are not close enough. So the
+ * Betti numbers over GF(2) are compared with those of the solid, (components, genus, 0). A sheet that
+ * fails alone becomes curves; where they fail together, the smallest does, and so on. The result always
+ * has the topology of the shape: at worst it is a curve skeleton.
+ *
+ * @param sheet    1 for vertices of sheets, #V, e.g. from sheetVertices().
+ * @param epsilon  fraction of the diagonal.
+ * @throws SolverError, Cancelled. Complexity: O(S V log V) for S sheets.
+ * Source: ours.
+ */
+inline SheetCollapse collapseKeepingSheets(const Stage& stage, const std::vector<char>& sheet,
+	double epsilon, const Progress& progress = Progress())
+{
+	const int components = int(stage.diagonal.size());
+	if (components == 1)
+		return detail::collapseOneKeepingSheets(stage, sheet, epsilon, progress);
+	const ComponentVertices onSurface(
+		componentOfSurfaceVertices(stage, progress.part(0, 0)), components, progress.part(0, 0));
+	const ComponentVertices onMesh(stage.component, components, progress.part(0, 0));
+	std::vector<SheetCollapse> found(static_cast<size_t>(components));
+	forEachComponent(stage.mesh, stage.component, components, progress,
+		[&](int c, const SurfaceMesh& own, const std::vector<int>& ids, const Progress& part) {
+			std::vector<char> ofOwn;
+			for (int v : ids)
+				ofOwn.push_back(sheet[size_t(v)]);
+			found[size_t(c)] = detail::collapseOneKeepingSheets(
+				detail::stageOfComponent(stage, c, own, ids, onSurface, onMesh.place), ofOwn,
+				epsilon, part);
+		});
+	SheetCollapse result;
+	MesoSkeleton& all = result.skeleton;
+	all.node.resize(stage.node.size());
+	for (int c = 0; c < components; ++c) {
+		const MesoSkeleton& one = found[size_t(c)].skeleton;
+		const int first = int(all.position.size());
+		all.position.insert(all.position.end(), one.position.begin(), one.position.end());
+		all.radius.insert(all.radius.end(), one.radius.begin(), one.radius.end());
+		for (const auto& [a, b] : one.edges)
+			all.edges.push_back({first + a, first + b});
+		for (const auto& [a, b, d] : one.faces)
+			all.faces.push_back({first + a, first + b, first + d});
+		for (size_t i = 0; i < one.node.size(); ++i)
+			all.node[size_t(onSurface.ids[size_t(c)][i])] = first + one.node[i];
+		result.sheets += found[size_t(c)].sheets;
+		result.givenUp += found[size_t(c)].givenUp;
+	}
 	progress.report(1, "Collapsing to curves and sheets");
 	return result;
 }

@@ -260,7 +260,7 @@ inline std::vector<int> collapseShortEdges(
 /**
  * Splits edges whose two opposite angles are both wider than `splitAngle`, until none is left whose
  * halves are at least epsilon long. The new vertex is the projection of the apex with the wider
- * angle onto the edge; it has no pole.
+ * angle onto the edge; it has no pole. Components without a free vertex rest: nothing is split there.
  *
  * The paper splits on one wide angle; taken literally this never ends, since the new edge may have
  * a wide angle opposite in turn. With both angles wide, alpha + beta > 180 degrees, the edge is the
@@ -285,6 +285,10 @@ inline void splitWideAngles(Stage& stage, const Parameters& parameters, MergeFor
 	// The edges of the beginning have their turn in the order of their ids, those of new triangles then.
 	detail::EdgesToSplit initial(mesh, widest);
 	std::vector<int> queue;
+	std::vector<char> moves(stage.diagonal.size(), 0); // by component
+	for (int v = 0; v < mesh.vertexSlots(); ++v)
+		if (!stage.fixed[v] && mesh.isVertex(v))
+			moves[stage.component[v]] = 1;
 	// Each split shortens the longest edge of its triangles; the cap only guards against the worst.
 	const size_t mostVertices = 4 * size_t(mesh.vertexCount()) + 1000;
 	size_t looked = 0;
@@ -301,6 +305,8 @@ inline void splitWideAngles(Stage& stage, const Parameters& parameters, MergeFor
 		if (twinCosine > 1)
 			continue;
 		const int a = mesh.origin(h), b = mesh.target(h);
+		if (!moves[stage.component[a]])
+			continue;
 		const double limit = parameters.epsilon * stage.diagonal[stage.component[a]];
 		const Point3d along = mesh.position[b] - mesh.position[a];
 		const double squaredLength = along.SquaredNorm();

@@ -199,7 +199,7 @@ public:
 		Begin();
 		if (stage->hasSheets())
 			return CollapseKeepingSheets();
-		curve = mcf::collapseToCurve(*stage, parameters.epsilon, progress);
+		curve = mcf::collapseInside(*stage, parameters.epsilon, progress);
 		sheets.reset();
 	}
 

@@ -7,6 +7,8 @@
 #define VCG_MCF_RESAMPLE_H
 
 #include "breadth_first_order.h"
+#include "component_meshes.h"
+#include "components_at_rest.h"
 #include "errors.h"
 #include "isotropic_remesher.h"
 #include "measured_surface.h"
@@ -23,54 +25,15 @@
 
 namespace vcg::tri::mcf {
 
-/**
- * A mesh of the same surface with even, nearly equilateral triangles.
- *
- * Each round splits edges longer than 4/3 L, collapses those shorter than 4/5 L, flips edges so
- * that valences approach six, and moves vertices within the surface to the centroid of their
- * triangles. Delaunay flips and one more smoothing end it. Vertices lie on the triangles of the input, those of
- * creases (sharp edges over 60 degrees in long chains) on the creases. A surface much denser than L
- * is coarsened first.
- *
- * It is done in the shape's own coordinates, see PrincipalFrame, with places rounded as in single
- * precision, and in an order of the vertices that follows from their places: a copy of the shape that
- * is turned, moved, scaled or renumbered gives the same mesh.
- *
- * Genus, orientation, and the number and order of the components are those of the input.
- *
- * @param surface                 closed, oriented two-manifold.
- * @param targetLengthOfComponent L for each component in the order of connectedComponents(), mesh
- *                                units, > 0: see defaultTargetLength().
- * @param iterations              rounds, >= 0; 0 gives the input back, without holes in its
- *                                numbering. Five is plenty.
- * @param progress                window for reports; cancelling leaves nothing behind.
- * @return a compact mesh; most edges are between 4/5 L and 4/3 L.
- * @throws InvalidParameter if there is not one positive length for each component, or if so small
- *         a length would need more than 20 million vertices.
- * @throws Cancelled
- * Complexity: O(iterations (V' + F') + V + F), ' of the result.
- * Source: Botsch and Kobbelt, "A remeshing approach to multiresolution modeling", SGP 2004, Sec. 4;
- * the projection by walking, the creases and the coarsening are ours.
- */
-inline SurfaceMesh resample(const MeasuredSurface& surface,
-	const std::vector<double>& targetLengthOfComponent, int iterations,
-	const Progress& progress = Progress())
+namespace detail {
+
+/// resample() of all components.
+inline SurfaceMesh resampleAll(const MeasuredSurface& surface,
+	const std::vector<double>& targetLengthOfComponent, int iterations, const Progress& progress)
 {
-	constexpr double mostVertices = 2e7;
+	constexpr double mostVertices = 2e7, mostOfExpected = 4, fewestAllowed = 3e6;
 	const std::vector<int>& component = surface.component();
 	const int components = surface.components();
-	if (int(targetLengthOfComponent.size()) != components)
-		throw InvalidParameter("Resampling needs one target length for each of the "
-			+ std::to_string(components) + " components, not "
-			+ std::to_string(targetLengthOfComponent.size()) + ".");
-	for (double length : targetLengthOfComponent)
-		if (!(length > 0) || !std::isfinite(length))
-			throw InvalidParameter("The target length of a component must be greater than 0.");
-	if (iterations <= 0) {
-		SurfaceMesh copy = surface.mesh().copied(progress.part(0, 0));
-		copy.compact(progress);
-		return copy;
-	}
 	std::vector<double> targetLength;
 	double expected = 0; // vertices
 	for (int c = 0; c < components; ++c) {
@@ -81,6 +44,9 @@ inline SurfaceMesh resample(const MeasuredSurface& surface,
 	if (!(expected <= mostVertices))
 		throw InvalidParameter("Parameter target_length is too small: the surface would need "
 			+ std::to_string(std::llround(expected / 1e6)) + " million vertices.");
+	// Needles are cut more often than their area tells, but not endlessly.
+	const double limit =
+		std::max(mostOfExpected * expected, fewestAllowed) + surface.mesh().vertexCount();
 	// The input as the passes like it: neighbours near each other, no triangles without a normal.
 	const char* const what = "Ordering the surface";
 	const auto onGrid = [&](int c, const Point3d& p) { return surface.frame(c).onGrid(p); };
@@ -97,7 +63,7 @@ inline SurfaceMesh resample(const MeasuredSurface& surface,
 		reference, [&](int v) { return targetLength[number.component[v]]; },
 		progress.part(0.12, 0.13));
 	detail::IsotropicRemesher remesher(
-		reference, number.component, targetLength, progress.part(0.13, 0.15));
+		reference, number.component, targetLength, size_t(limit), progress.part(0.13, 0.15));
 	remesher.coarsen(progress.part(0.15, 0.4));
 	remesher.refine(progress.part(0.4, 0.5));
 	for (int i = 0; i < iterations; ++i) {
@@ -122,6 +88,131 @@ inline SurfaceMesh resample(const MeasuredSurface& surface,
 		result.position[v] = surface.frame(c).out(frameOfResult[c].snapped(result.position[v]));
 	});
 	return result;
+}
+
+/// resample() where components rest: the others are resampled as a surface of their own.
+inline SurfaceMesh resampleMoving(const MeasuredSurface& surface,
+	const std::vector<double>& targetLengthOfComponent, const std::vector<char>& rests,
+	int iterations, const Progress& progress)
+{
+	const char* const what = "Ordering the surface";
+	const Progress begin = progress.part(0, 0), end = progress.part(1, 1);
+	const auto trianglesOf = [&](const SurfaceMesh& mesh, const std::vector<int>& number,
+								 std::vector<Triangle>& triangles, const Progress& part) {
+		reportedLoop(mesh.faceSlots(), part, what, [&](int f) {
+			if (!mesh.isFace(f))
+				return;
+			const Triangle t = mesh.triangle(f);
+			if (number[t[0]] >= 0)
+				triangles.push_back({number[t[0]], number[t[1]], number[t[2]]});
+		});
+	};
+	std::vector<double> length;
+	for (size_t c = 0; c < rests.size(); ++c)
+		if (!rests[c])
+			length.push_back(targetLengthOfComponent[c]);
+	const SurfaceMesh& mesh = surface.mesh();
+	SurfaceMesh moving;
+	std::vector<int> componentOfMoving;
+	if (!length.empty()) {
+		std::vector<int> number(size_t(mesh.vertexSlots()), -1);
+		std::vector<Point3d> points;
+		reportedLoop(mesh.vertexSlots(), begin, what, [&](int v) {
+			if (mesh.isVertex(v) && !rests[surface.component()[v]]) {
+				number[v] = int(points.size());
+				points.push_back(mesh.position[v]);
+			}
+		});
+		std::vector<Triangle> triangles;
+		trianglesOf(mesh, number, triangles, begin);
+		const SurfaceMesh others(std::move(points), triangles, begin);
+		moving = resampleAll(MeasuredSurface(others, begin), length, iterations, progress);
+		componentOfMoving = connectedComponents(moving, nullptr, end);
+	}
+	// Each component's vertices follow those of the one before it, so that their order stays.
+	const ComponentVertices ofMoving(componentOfMoving, int(length.size()), end);
+	std::vector<std::vector<int>> ofResting(rests.size());
+	reportedLoop(mesh.vertexSlots(), end, what, [&](int v) {
+		if (mesh.isVertex(v) && rests[surface.component()[v]])
+			ofResting[surface.component()[v]].push_back(v);
+	});
+	std::vector<Point3d> points;
+	std::vector<int> newOfMoving(componentOfMoving.size(), -1);
+	std::vector<int> newOfResting(size_t(mesh.vertexSlots()), -1);
+	size_t next = 0; // of the components that move
+	const auto add = [&](const SurfaceMesh& from, const std::vector<int>& ids,
+						 std::vector<int>& newNumber) {
+		for (int v : ids) {
+			newNumber[v] = int(points.size());
+			points.push_back(from.position[v]);
+		}
+	};
+	for (size_t c = 0; c < rests.size(); ++c)
+		if (rests[c])
+			add(mesh, ofResting[c], newOfResting);
+		else
+			add(moving, ofMoving.ids[next++], newOfMoving);
+	std::vector<Triangle> triangles;
+	trianglesOf(moving, newOfMoving, triangles, end);
+	trianglesOf(mesh, newOfResting, triangles, end);
+	return SurfaceMesh(std::move(points), triangles, end);
+}
+
+} // namespace detail
+
+/**
+ * A mesh of the same surface with even, nearly equilateral triangles.
+ *
+ * Each round splits edges longer than 4/3 L, collapses those shorter than 4/5 L, flips edges so
+ * that valences approach six, and moves vertices within the surface to the centroid of their
+ * triangles. Delaunay flips and one more smoothing end it. Vertices lie on the triangles of the input, those of
+ * creases (sharp edges over 60 degrees in long chains) on the creases. A surface much denser than L
+ * is coarsened first.
+ *
+ * It is done in the shape's own coordinates, see PrincipalFrame, with places rounded as in single
+ * precision, and in an order of the vertices that follows from their places: a copy of the shape that
+ * is turned, moved, scaled or renumbered gives the same mesh.
+ *
+ * Components that rest, see componentsAtRest(), stay as they are.
+ *
+ * Genus, orientation, and the number and order of the components are those of the input.
+ *
+ * @param surface                 closed, oriented two-manifold.
+ * @param targetLengthOfComponent L for each component in the order of connectedComponents(), mesh
+ *                                units, > 0: see defaultTargetLength().
+ * @param iterations              rounds, >= 0; 0 gives the input back, without holes in its
+ *                                numbering. Five is plenty.
+ * @param progress                window for reports; cancelling leaves nothing behind.
+ * @return a compact mesh; most edges are between 4/5 L and 4/3 L.
+ * @throws InvalidParameter if there is not one positive length for each component, or if so small
+ *         a length would need more than 20 million vertices, or, on a surface that is narrower than the
+ *         length, needs more than three million and four times what the area tells.
+ * @throws Cancelled
+ * Complexity: O(iterations (V' + F') + V + F), ' of the result.
+ * Source: Botsch and Kobbelt, "A remeshing approach to multiresolution modeling", SGP 2004, Sec. 4;
+ * the projection by walking, the creases and the coarsening are ours.
+ */
+inline SurfaceMesh resample(const MeasuredSurface& surface,
+	const std::vector<double>& targetLengthOfComponent, int iterations,
+	const Progress& progress = Progress())
+{
+	const int components = surface.components();
+	if (int(targetLengthOfComponent.size()) != components)
+		throw InvalidParameter("Resampling needs one target length for each of the "
+			+ std::to_string(components) + " components, not "
+			+ std::to_string(targetLengthOfComponent.size()) + ".");
+	for (double length : targetLengthOfComponent)
+		if (!(length > 0) || !std::isfinite(length))
+			throw InvalidParameter("The target length of a component must be greater than 0.");
+	if (iterations <= 0) {
+		SurfaceMesh copy = surface.mesh().copied(progress.part(0, 0));
+		copy.compact(progress);
+		return copy;
+	}
+	const std::vector<char> rests = componentsAtRest(surface, progress.part(0, 0));
+	if (std::find(rests.begin(), rests.end(), 1) == rests.end())
+		return detail::resampleAll(surface, targetLengthOfComponent, iterations, progress);
+	return detail::resampleMoving(surface, targetLengthOfComponent, rests, iterations, progress);
 }
 
 } // namespace vcg::tri::mcf

@@ -7,7 +7,7 @@
 #define VCG_MCF_SKELETONIZE_H
 
 #include "check_input.h"
-#include "collapse_to_curve.h"
+#include "curve_inside.h"
 #include "collapse_with_sheets.h"
 #include "flow.h"
 #include "held_vertices.h"
@@ -170,7 +170,7 @@ inline Skeletonization skeletonize(const SurfaceInput& input, const Parameters& 
 		result.sheets = collapseWithSheets(
 			stage, parameters.epsilon, progress.part(0.85, 0.9), observer.onNote);
 	else
-		result.curve = collapseToCurve(stage, parameters.epsilon, progress.part(0.85, 0.9));
+		result.curve = collapseInside(stage, parameters.epsilon, progress.part(0.85, 0.9));
 	result.seconds.collapse = clock.end(Phase::Collapse);
 
 	if (parameters.refine && result.sheets)

@@ -53,6 +53,8 @@ struct Stage
 
 	/// The surface's vertices, shared by all stages.
 	std::shared_ptr<const std::vector<Point3d>> surface;
+	/// Its triangles, shared likewise; null where they are not known, as for a stage read from a file.
+	std::shared_ptr<const std::vector<Triangle>> surfaceTriangles;
 	/// The frames of the surface's components once they are known, shared likewise: see StageFrames.
 	std::shared_ptr<const std::vector<PrincipalFrame>> frames;
 	/// The correspondence: for each surface vertex the vertex of this stage it has merged into.
@@ -75,7 +77,11 @@ struct Stage
 	}
 
 	double areaFraction() const { return sum(area) / sum(initialArea); }
-	double volumeFraction() const { return volume / initialVolume; }
+	/// In [0, 1]: what the flow has turned inside out encloses nothing.
+	double volumeFraction() const
+	{
+		return initialVolume > 0 ? std::clamp(volume / initialVolume, 0.0, 1.0) : 0;
+	}
 	double fixedFraction() const
 	{
 		return fixed.empty()
@@ -176,6 +182,8 @@ inline Stage initialStage(
 	stage.initialArea = stage.area = measured.areas();
 	stage.initialVolume = stage.volume = surface.volume(progress.part(0, 0));
 	stage.surface = std::make_shared<const std::vector<Point3d>>(copied(surface.position));
+	stage.surfaceTriangles =
+		std::make_shared<const std::vector<Triangle>>(surface.triangles(progress.part(0, 0)));
 	stage.node =
 		detail::numberedArray(stage.pole.size(), progress.part(0, 0), "Copying the surface");
 	return stage;

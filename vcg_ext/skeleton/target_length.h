@@ -8,6 +8,9 @@
 
 #include "measured_surface.h"
 #include "parameters.h"
+#include "progress.h"
+#include "surface_mesh.h"
+#include "ticker.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,23 +19,47 @@
 namespace vcg::tri::mcf {
 
 /**
+ * How often the edges of each component have to be cut until none is longer than L, about: the vertices
+ * that resample() may make for a while where triangles are narrower than L, so that the area does not
+ * tell. @param length L of each component, mesh units, > 0. Complexity: O(F).
+ */
+inline std::vector<double> cutsOfLongEdges(
+	const MeasuredSurface& surface, const std::vector<double>& length)
+{
+	const SurfaceMesh& mesh = surface.mesh();
+	std::vector<double> cuts(length.size(), 0);
+	for (int h = 0; h < mesh.halfEdgeSlots(); ++h) {
+		if (!mesh.isEdge(h))
+			continue;
+		const size_t c = size_t(surface.component()[mesh.origin(h)]);
+		if (const double squared = mesh.squaredLength(h); squared > length[c] * length[c])
+			cuts[c] += std::sqrt(squared) / length[c];
+	}
+	return cuts;
+}
+
+/**
  * The edge length to resample each component with, mesh units.
  *
  * An even mesh of V vertices has 2 V nearly equilateral triangles, so that a surface of area A gets
- * V = A / (L^2 sqrt(3) / 2) vertices. The default L gives a single component 45000 vertices, the
- * size of the models of the paper (Table 1); c components share them, but none gets fewer than
- * 3000. It is at most 8 epsilon, beyond which the flow leaves the shape.
+ * V = A / (L^2 sqrt(3) / 2) vertices.
+ * The default L gives a single component 45000 vertices, the size of the models of the paper (Table 1);
+ * c components share them, but none gets fewer than 3000. It is at most 8 epsilon, beyond which the flow
+ * leaves the shape, and at least a twentieth of epsilon: of a wire that is much thinner than epsilon the
+ * flow sees no more. Where its edges would still be cut two million times (see cutsOfLongEdges()), it is
+ * longer.
  *
  * @param surface    closed triangle mesh of any number of components.
  * @param parameters targetLength > 0 is taken instead, as a fraction of each component's own
  *                   bounding box diagonal.
  * @return one length for each component, in the order of connectedComponents().
- * Complexity: O(c), and O(V) for the bounding boxes.
+ * Complexity: O(V + F).
  */
 inline std::vector<double> defaultTargetLength(
 	const MeasuredSurface& surface, const Parameters& parameters = Parameters())
 {
-	constexpr double totalVertices = 45000, fewestVertices = 3000;
+	constexpr double totalVertices = 45000, fewestVertices = 3000, mostCuts = 2e6;
+	constexpr double shortestOfEpsilon = 0.05;
 	const double areaOfVertex = std::sqrt(3.0) / 2; // for edges of length 1
 	const int count = surface.components();
 	std::vector<double> length(count);
@@ -46,9 +73,14 @@ inline std::vector<double> defaultTargetLength(
 		return length;
 	}
 	const double vertices = std::max(fewestVertices, totalVertices / std::max(count, 1));
+	for (int c = 0; c < count; ++c) {
+		const double epsilon = parameters.epsilon * surface.diagonal(c);
+		length[c] = std::clamp(std::sqrt(surface.area(c) / (areaOfVertex * vertices)),
+			shortestOfEpsilon * epsilon, 8 * epsilon);
+	}
+	const std::vector<double> cuts = cutsOfLongEdges(surface, length);
 	for (int c = 0; c < count; ++c)
-		length[c] = std::min(std::sqrt(surface.area(c) / (areaOfVertex * vertices)),
-			8 * parameters.epsilon * surface.diagonal(c));
+		length[c] *= std::max(1.0, cuts[c] / mostCuts);
 	return length;
 }
 
