@@ -41,7 +41,7 @@ struct Prepared
 		input = checked();
 		run = mcf::skeletonize(soup.points, soup.triangles, parameters);
 		initial = mcf::startOfFlow(*run.surface, *run.poles, {}, parameters);
-		curve = mcf::collapseToCurve(*run.stage, parameters.epsilon);
+		curve = mcf::collapseInside(*run.stage, parameters.epsilon);
 		mcf::Parameters half = parameters;
 		half.maxIterations = run.stage->iteration / 2;
 		halfway = mcf::contractToSkeleton(initial, half);

@@ -63,7 +63,7 @@ TEST(Skeletonize, IsFig4LineByLine)
 	Stage stage = startOfFlow(surface, poles, {}, parameters);
 	while (!stage.converged)
 		stage = step(stage, parameters);
-	const CurveSkeleton curve = refine(collapseToCurve(stage, parameters.epsilon), surface);
+	const CurveSkeleton curve = refine(collapseInside(stage, parameters.epsilon), surface);
 
 	const Skeletonization result = run(soup, parameters);
 	expectSame(result.curve, curve);
@@ -142,7 +142,7 @@ TEST(Skeletonize, ReadsEveryParameter)
 	EXPECT_NE(voronoi.poles->centre, expected.poles->centre);
 	const Skeletonization unrefined = with([](Parameters& p) { p.refine = false; });
 	EXPECT_FALSE(unrefined.refined);
-	expectSame(unrefined.curve, collapseToCurve(*expected.stage, coarse().epsilon));
+	expectSame(unrefined.curve, collapseInside(*expected.stage, coarse().epsilon));
 }
 
 TEST(Skeletonize, DenoisesUnlessToldNotTo)

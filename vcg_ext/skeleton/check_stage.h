@@ -157,7 +157,7 @@ private:
 				&& std::isfinite(stage.initialVolume),
 			"'initial_volume' is not finite, or not above 0.");
 		require(stage.areaFraction() <= 1 / minFraction
-				&& std::abs(stage.volumeFraction()) <= 1 / minFraction,
+				&& std::abs(stage.volume) <= stage.initialVolume / minFraction,
 			"'area' or 'volume' is too large beside that of the surface.");
 	}
 

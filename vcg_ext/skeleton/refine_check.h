@@ -112,7 +112,7 @@ private:
 	static constexpr double half = 0.5;
 
 	const ClosestSurface& closest;
-	const SurfaceComponent& component;
+	SurfaceComponent component; ///< refers to what its maker keeps
 
 	/// Whether empty balls cover the segment; not if it comes nearer to the surface than its length / 2^16.
 	bool isCovered(
