@@ -102,12 +102,15 @@ public:
 
 	/**
 	 * Whether no part of the segment from p to q is farther outside than `tolerance`, judged at the middle
-	 * of each part between two crossings of the surface.
+	 * of each part between two crossings of the surface, and of sixteenths.
 	 */
 	bool segmentIsInside(const Point3d& p, const Point3d& q, double tolerance) const
 	{
 		constexpr double negligible = 1e-9; // part of the segment
-		std::vector<double> at = {0, 1};
+		constexpr int samples = 16;         // besides: along a triangle a crossing may be missed
+		std::vector<double> at;
+		for (int i = 0; i <= samples; ++i)
+			at.push_back(double(i) / samples);
 		forEachFaceNear(p, q, [&](int f) {
 			const double t = crossing(f, p, q - p);
 			if (t > 0 && t < 1)
