@@ -402,7 +402,7 @@ TEST(Flow, ComponentsAreTreatedAsTheyWouldBeAlone)
 	const shapes::Soup alone = shapes::fromFile("capsule");
 	const Stage one = contractToSkeleton(stageOf(alone), Parameters());
 	const Stage both = contractToSkeleton(
-		stageOf(shapes::joined({alone, shapes::moved(shapes::scaled(alone, 64), {0, 0, 512})})),
+		stageOf(shapes::joined({alone, shapes::moved(shapes::scaled(alone, 1024), {0, 0, 8192})})),
 		Parameters());
 	ASSERT_EQ(both.diagonal.size(), 2u);
 	int small = 0;

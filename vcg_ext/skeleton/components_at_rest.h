@@ -15,7 +15,9 @@
 
 namespace vcg::tri::mcf {
 
-/// A component whose diagonal is below this part of the largest component's is a speck.
+/// Where there are more components than this, those whose diagonal is below this part of the largest one's
+/// are specks. With fewer each has its share of the vertices of defaultTargetLength().
+constexpr int mostWithoutSpecks = 15;
 constexpr double speckSize = 0.01;
 
 /**
@@ -36,8 +38,9 @@ inline std::vector<char> componentsAtRest(
 	const std::vector<detail::VolumeAndArea> measured = detail::measuredAlongLength(
 		surface.mesh(), surface.component(), surface.components(), progress);
 	double largest = 0;
-	for (int c = 0; c < surface.components(); ++c)
-		largest = std::max(largest, surface.diagonal(c));
+	if (surface.components() > mostWithoutSpecks)
+		for (int c = 0; c < surface.components(); ++c)
+			largest = std::max(largest, surface.diagonal(c));
 	std::vector<char> rests;
 	for (int c = 0; c < surface.components(); ++c)
 		rests.push_back(surface.diagonal(c) < speckSize * largest
