@@ -22,7 +22,7 @@ from typing import Any
 
 import pymeshlab
 
-from conftest import COLLAPSE, FULL, MESHES, POLES, REFINE, RESAMPLE, STEP, fingerprint, new_document
+from conftest import COLLAPSE, FULL, MESHES, POLES, REFINE, RESAMPLE, STEP, fingerprint
 
 #: Requests that are smaller are never refused: the host's own code does not expect that.
 SMALLEST = 1024
@@ -134,7 +134,7 @@ def main() -> None:
     memory = Refusing() if options.way == "refuse" else Limited()
     with tempfile.TemporaryDirectory() as folder:
         mesh, before, name, parameters = jobs(Path(folder))[options.job]
-        layers = new_document()
+        layers = pymeshlab.MeshSet()
         layers.load_new_mesh(str(MESHES / f"{mesh}.off"))
         for step, values in before:
             run(layers, step, values)
