@@ -3,7 +3,8 @@
 """Is a result right? By means of its own: nothing here asks the plugin.
 
 Inside is told by the generalized winding number (libigl), component by component: each is a solid of its
-own. What is outside by no more than the rounding of the input to single precision counts as inside.
+own. What is outside by no more than the rounding of the input to single precision, or than the half of a
+millionth of the diagonal to which docs/reliability.md promises it, counts as inside.
 """
 
 from __future__ import annotations
@@ -74,7 +75,9 @@ class Judge:
             box = float(np.linalg.norm(np.ptp(all_finite, axis=0))) / self.unit
             outermost = float(abs(all_finite).max()) / self.unit
         single = outermost * SINGLE_EPSILON <= 1e-6 * box
-        self.tolerance = 2 * reach * (SINGLE_EPSILON if single else 2.0 ** -52) + 1e-12
+        promised = 5e-7 * float(np.linalg.norm(self.high - self.low))
+        self.tolerance = max(
+            2 * reach * (SINGLE_EPSILON if single else 2.0 ** -52), promised) + 1e-12
         count, self.component = component_of_vertices(len(self.vertices), self.faces)
         self.solids = []
         for number in np.unique(self.component[self.faces[:, 0]]):

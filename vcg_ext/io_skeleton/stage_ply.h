@@ -6,7 +6,8 @@
  * written, read in another process and stepped on, it gives what it would have given at once.
  *
  * Other readers find a mesh (elements vertex and face) with attributes; what belongs to no vertex of
- * it is in further elements: mcfskel_component, mcfskel_surface, mcfskel_slot and mcfskel_stage.
+ * it is in further elements: mcfskel_component, mcfskel_surface, mcfskel_surface_face, mcfskel_slot and
+ * mcfskel_stage.
  */
 
 #ifndef VCG_MCF_STAGE_PLY_H
@@ -101,12 +102,18 @@ inline void writeStagePly(
 	progress.report(0.3, what);
 	surface.add("node", PlyType::Int32, stage.node);
 
+	PlyElement surfaceFace {
+		"mcfskel_surface_face", stage.surfaceTriangles ? stage.surfaceTriangles->size() : 0, {}};
+	if (stage.surfaceTriangles)
+		addTuples(surfaceFace, "vertex_indices", *stage.surfaceTriangles);
+
 	PlyElement slot {"mcfskel_slot", file.vertexOfSlot.size(), {}};
 	slot.add("vertex", PlyType::Int32, file.vertexOfSlot);
 
 	PlyFile ply {{detail::stageComment}, {}};
-	for (PlyElement* element : {&vertex, &face, &component, &surface, &slot})
-		ply.elements.push_back(std::move(*element));
+	for (PlyElement* element : {&vertex, &face, &component, &surface, &surfaceFace, &slot})
+		if (element != &surfaceFace || element->rows > 0)
+			ply.elements.push_back(std::move(*element));
 	ply.elements.push_back(detail::stageRow(file));
 	writeBinaryPly(out, ply, progress.part(0.3, 1));
 }
@@ -138,8 +145,8 @@ inline void checkReadStage(const Stage& stage, const Progress& progress)
 		checkStage(stage, progress);
 	}
 	catch (const InvalidStage& error) {
-		const char* const elements[] = {
-			"vertex", "face", "mcfskel_component", "mcfskel_surface", "mcfskel_stage"};
+		const char* const elements[] = {"vertex", "face", "mcfskel_component", "mcfskel_surface",
+			"mcfskel_surface_face", "mcfskel_stage"};
 		throw FormatError::atRow(elements[size_t(error.part())], error.row(),
 			error.reason()
 				+ (error.count() > 1 ? " There are " + std::to_string(error.count()) + " such rows."
@@ -229,6 +236,11 @@ inline StageFile readStagePly(const PlyFile& ply, const Progress& progress = Pro
 	progress.report(0.6, what);
 	stage.node = surface.integers("node", 0, int(vertex.rows()) - 1);
 	progress.report(0.7, what);
+	// Files of earlier releases have none.
+	if (ply.find("mcfskel_surface_face"))
+		stage.surfaceTriangles = std::make_shared<const std::vector<Triangle>>(
+			PlyTable(ply, "mcfskel_surface_face")
+				.tuples<3>("vertex_indices", 0, int(surface.rows()) - 1));
 	file.vertexOfSlot = slot.integers("vertex", -1, int(surface.rows()) - 1);
 	detail::checkReadStage(stage, progress.part(0.8, 1));
 	progress.report(1, what);

@@ -25,9 +25,9 @@ namespace vcg::tri::mcf {
 class InvalidStage : public InvalidInput
 {
 public:
-	/// What of the stage is wrong: one of its vertices, faces, components, surface vertices, or the
-	/// stage itself.
-	enum class Part { Vertex, Face, Component, SurfaceVertex, Stage };
+	/// What of the stage is wrong: one of its vertices, faces, components, vertices or faces of its surface,
+	/// or the stage itself.
+	enum class Part { Vertex, Face, Component, SurfaceVertex, SurfaceFace, Stage };
 
 	/// @param row    the first that is wrong, from 0; count: how many are.
 	/// @param reason what is wrong with it, a sentence that begins with a field's name.
@@ -51,7 +51,8 @@ private:
 	{
 		if (part == Part::Stage)
 			return "The stage cannot be used: " + reason;
-		const char* const names[] = {"vertex", "face", "component", "surface vertex"};
+		const char* const names[] = {
+			"vertex", "face", "component", "surface vertex", "surface face"};
 		return "The stage cannot be used: " + std::string(names[size_t(part)]) + " "
 			+ std::to_string(row) + ": " + reason
 			+ (count > 1 ? " There are " + std::to_string(count) + " such." : "");
@@ -240,6 +241,18 @@ private:
 		requireEach(Part::SurfaceVertex, stage.node.size(), part.part(0.5, 1),
 			"a coordinate is not finite, or too large to work with.",
 			[&](size_t s) { return isUsablePlace((*stage.surface)[s]); });
+		if (!stage.surfaceTriangles)
+			return;
+		const std::vector<Triangle>& triangles = *stage.surfaceTriangles;
+		requireEach(Part::SurfaceFace, triangles.size(), part.part(1, 1),
+			"its corners do not exist, or are in different components.", [&](size_t f) {
+				const auto exists = [&](int s) { return s >= 0 && size_t(s) < stage.node.size(); };
+				const auto componentOf = [&](int s) { return stage.component[stage.node[s]]; };
+				const Triangle& t = triangles[f];
+				return exists(t[0]) && exists(t[1]) && exists(t[2])
+					&& componentOf(t[0]) == componentOf(t[1])
+					&& componentOf(t[1]) == componentOf(t[2]);
+			});
 	}
 
 	/// The unit of length fits the surface, and everything is somewhere near it.

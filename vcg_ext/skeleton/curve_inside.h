@@ -80,14 +80,28 @@ public:
 		for (size_t A = 0; A < place.size(); ++A)
 			if (isOutside[A])
 				moveInside(int(A), neighbours[A]);
+		double length = 0;
+		for (const auto& [A, B] : edges)
+			length += Distance(place[A], place[B]);
+		const double maxLength = longestOfCurve * (length + 1);
+		bool anyStraight = false;
 		std::vector<std::array<int, 2>> bent;
 		for (const auto& edge : edges) {
 			if (isInside(edge)) {
 				bent.push_back(edge);
 				continue;
 			}
+			const Path way = inside(place[edge[0]], place[edge[1]]);
+			length += lengthOf(way, place[edge[0]], place[edge[1]])
+				- Distance(place[edge[0]], place[edge[1]]);
+			if (!(length <= maxLength)) {
+				length = maxLength;
+				anyStraight = true;
+				bent.push_back(edge);
+				continue;
+			}
 			int last = edge[0];
-			for (const Point3d& p : inside(place[edge[0]], place[edge[1]])) {
+			for (const Point3d& p : way) {
 				const int next = int(place.size());
 				place.push_back(p);
 				changed.push_back(1);
@@ -97,13 +111,27 @@ public:
 			bent.push_back({last, edge[1]});
 		}
 		edges = std::move(bent);
-		if (!std::all_of(edges.begin(), edges.end(), isInside))
+		if (!anyStraight && !std::all_of(edges.begin(), edges.end(), isInside))
 			throw SolverError("The curve could not be brought inside the shape.");
 		return true;
 	}
 
 private:
 	using Path = std::vector<Point3d>;
+
+	/// Ways inside may make a curve this many times as long as itself and the diagonal together, no longer.
+	static constexpr double longestOfCurve = 3;
+
+	static double lengthOf(const Path& between, const Point3d& first, const Point3d& last)
+	{
+		double length = 0;
+		const Point3d* from = &first;
+		for (const Point3d& p : between) {
+			length += Distance(*from, p);
+			from = &p;
+		}
+		return length + Distance(*from, last);
+	}
 
 	const SolidTest& solid;
 	std::vector<Point3d> place;
@@ -328,7 +356,9 @@ private:
  * @param surface     the vertices of all components, mesh units, and @param triangles between them.
  * @param component   of each vertex; @param ofNode of each node, grows with the nodes.
  * @return the curve; edges in order, new nodes last. Radii are not its business.
- * @post no node and no edge is outside by more than 5e-7 of the diagonal.
+ * @post no node is outside by more than 5e-7 of the diagonal, and no edge, unless the ways inside would make
+ *       the curve longer than three times itself and the diagonal, as where a surface runs into itself all
+ *       over: the last edges then stay straight.
  * @throws SolverError, Cancelled. Complexity: O(F) for a curve that is inside; at most O(F log F) for each
  *         edge that is not.
  */

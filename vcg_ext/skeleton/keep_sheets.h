@@ -29,8 +29,8 @@ namespace vcg::tri::mcf {
 struct SheetCollapse
 {
 	MesoSkeleton skeleton;
-	/// Connected sheets of the stage, and those of them that had to become curves, since as sheets they
-	/// would not have had the topology of the shape.
+	/// Connected sheets of the stage, and those of them that had to become curves, since with them the
+	/// result would not have had the topology of the shape, or would not have been inside it.
 	int sheets = 0, givenUp = 0;
 };
 

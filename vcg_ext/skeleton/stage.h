@@ -53,7 +53,7 @@ struct Stage
 
 	/// The surface's vertices, shared by all stages.
 	std::shared_ptr<const std::vector<Point3d>> surface;
-	/// Its triangles, shared likewise; null where they are not known, as for a stage read from a file.
+	/// Its triangles, shared likewise; null where they are not known, as for a file of an earlier release.
 	std::shared_ptr<const std::vector<Triangle>> surfaceTriangles;
 	/// The frames of the surface's components once they are known, shared likewise: see StageFrames.
 	std::shared_ptr<const std::vector<PrincipalFrame>> frames;

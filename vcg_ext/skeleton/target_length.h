@@ -44,7 +44,7 @@ inline std::vector<double> cutsOfLongEdges(
  * An even mesh of V vertices has 2 V nearly equilateral triangles, so that a surface of area A gets
  * V = A / (L^2 sqrt(3) / 2) vertices.
  * The default L gives a single component 45000 vertices, the size of the models of the paper (Table 1);
- * c components share them, but none gets fewer than 3000. It is at most 8 epsilon, beyond which the flow
+ * c components share them, but none gets fewer than 3000, or its share of 200000 where there are many. It is at most 8 epsilon, beyond which the flow
  * leaves the shape, and at least a twentieth of epsilon: of a wire that is much thinner than epsilon the
  * flow sees no more. Where its edges would still be cut two million times (see cutsOfLongEdges()), it is
  * longer.
@@ -58,7 +58,8 @@ inline std::vector<double> cutsOfLongEdges(
 inline std::vector<double> defaultTargetLength(
 	const MeasuredSurface& surface, const Parameters& parameters = Parameters())
 {
-	constexpr double totalVertices = 45000, fewestVertices = 3000, mostCuts = 2e6;
+	constexpr double totalVertices = 45000, fewestVertices = 3000, mostVertices = 200000;
+	constexpr double mostCuts = 2e6;
 	constexpr double shortestOfEpsilon = 0.05;
 	const double areaOfVertex = std::sqrt(3.0) / 2; // for edges of length 1
 	const int count = surface.components();
@@ -72,7 +73,9 @@ inline std::vector<double> defaultTargetLength(
 			length[c] = parameters.targetLength * box[c].Diag();
 		return length;
 	}
-	const double vertices = std::max(fewestVertices, totalVertices / std::max(count, 1));
+	const double parts = std::max(count, 1);
+	const double vertices =
+		std::max(std::min(fewestVertices, mostVertices / parts), totalVertices / parts);
 	for (int c = 0; c < count; ++c) {
 		const double epsilon = parameters.epsilon * surface.diagonal(c);
 		length[c] = std::clamp(std::sqrt(surface.area(c) / (areaOfVertex * vertices)),
