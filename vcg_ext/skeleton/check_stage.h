@@ -128,9 +128,7 @@ private:
 
 	void checkWhole() const
 	{
-		// Far more than anybody waits for, and it can still be counted on from there.
-		constexpr int maxIterations = 1'000'000'000;
-		require(stage.iteration >= 0 && stage.iteration <= maxIterations,
+		require(stage.iteration >= 0 && stage.iteration <= Stage::maxIteration,
 			"'iteration' is not between 0 and 1000000000.");
 		require(stage.epsilon > 0 && stage.epsilon <= Parameters::maxEpsilon,
 			"'epsilon' is not above 0 and at most 0.1.");

@@ -17,6 +17,7 @@
 #include "stage_frames.h"
 #include "ticker.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numeric>
@@ -89,7 +90,7 @@ inline void stepInFrames(
 	stage.volume = extent.volume;
 	stage.converged &=
 		stage.volumeFraction() < 0.05 || stage.fixedFraction() > 0.5 || stage.heldCount() > 0;
-	++stage.iteration;
+	stage.iteration = std::min(stage.iteration + 1, Stage::maxIteration);
 	stage.epsilon = parameters.epsilon;
 }
 

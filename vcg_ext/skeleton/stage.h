@@ -62,6 +62,8 @@ struct Stage
 
 	/// Iterations made so far.
 	int iteration = 0;
+	/// Where the count stops: far more than anybody waits for.
+	static constexpr int maxIteration = 1'000'000'000;
 	/// The length epsilon of the last of them, fraction of the diagonal.
 	double epsilon = Parameters().epsilon;
 	/// Whether the area has stopped changing: no volume is left.
