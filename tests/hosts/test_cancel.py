@@ -17,16 +17,15 @@ STEPS = {
         ("Resample", {"target_length": ("RichFloat", 0.08)}), ("Medial Poles", {}),
         ("Contraction Step", {"steps": ("RichInt", 2)}),
         ("Contraction Step", {"steps": ("RichInt", 40)}), ("Collapse to Curve", {}),
-        ("Refine Skeleton", {}), ("Save Skeleton", {"file": ("RichFileSave", "FOLDER/s.json")}),
-        ("Save Stage", {"file": ("RichFileSave", "FOLDER/s.ply")}), ("Prune Skeleton", {}),
-        ("Resample and Smooth Skeleton", {}), ("Compare Skeletons", {"other": ("RichMesh", 4)}),
-        ("Measure Skeleton", {}), ("Parts of the Surface", {}), ("Medial Balls", {})]),
+        ("Refine Skeleton", {}), ("Save Skeleton", {"file": ("RichSaveFile", "FOLDER/s.json")}),
+        ("Prune Skeleton", {}), ("Resample and Smooth Skeleton", {}), ("Measure Skeleton", {}),
+        ("Parts of the Surface", {}), ("Medial Balls", {})]),
     "poles by balls": ("bent_tube", [
         ("Medial Poles", {"pole_method": ("RichEnum", 1)}), ("Medial Axis", {})]),
     "files": ("bent_tube", [
         ("Contraction Step", {"steps": ("RichInt", 2)}),
-        ("Save Stage", {"file": ("RichFileSave", "FOLDER/s.ply")}),
-        ("Load Stage", {"file": ("RichFileOpen", "FOLDER/s.ply")})]),
+        ("Save Stage", {"file": ("RichSaveFile", "FOLDER/s.ply")}),
+        ("Load Stage", {"file": ("RichOpenFile", "FOLDER/s.ply")})]),
     "at once": ("bent_tube", [("Full Skeletonize", {})]),
     "stages kept": ("bent_tube", [("Full Skeletonize", {"keep_stages": ("RichInt", 1)})]),
     "sheets": ("slab", [("Full Skeletonize", {"keep_sheets": ("RichBool", "true")})]),
@@ -39,7 +38,8 @@ def script(filters: list[tuple[str, dict]], path: Path) -> Path:
         step = ElementTree.SubElement(tree, "filter", name=PREFIX + name)
         for parameter, (kind, value) in parameters.items():
             ElementTree.SubElement(step, "Param", name=parameter, type=kind,
-                                   value=str(value).replace("FOLDER", str(path.parent)))
+                                   value=str(value).replace("FOLDER", str(path.parent)),
+                                   exts_cardinality="0")
     path.write_text("<!DOCTYPE FilterScript>\n" + ElementTree.tostring(tree, encoding="unicode"))
     return path
 

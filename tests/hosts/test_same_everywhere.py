@@ -84,12 +84,11 @@ class TestInputBits:
         vertices, faces = arrays(name)
         single = vertices.astype(np.float32).astype(float)
         assert not np.array_equal(vertices, single)
-        curves = []
-        for points in (vertices, single):
-            layers = document((points, faces))
+        documents = [document((points, faces)) for points in (vertices, single)]
+        for layers, points in zip(documents, (vertices, single)):
             layers.apply_filter(FULL, target_length=pymeshlab.PercentageValue(1.5))
-            curves.append(layers.current_mesh())
             assert np.array_equal(layers.mesh(0).vertex_matrix(), points)
+        curves = [layers.current_mesh() for layers in documents]
         assert np.array_equal(curves[0].edge_matrix(), curves[1].edge_matrix())
         assert np.array_equal(curves[0].vertex_matrix(), curves[1].vertex_matrix())
 
