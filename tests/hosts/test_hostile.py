@@ -32,7 +32,7 @@ KNOWN = {
     ("bowl", "explosion"), ("bowl", "hang"), ("bent_sheet", "hang"), ("uneven", "explosion"),  # thin walls
     ("crowd", "hang"),  # hundreds of bodies of like sizes, each resampled
     ("hair", "explosion"),  # thinner than a thousandth of the smoothing's length
-    # Inside the resampled surface, which cuts the corners of the input by up to 0.04 % of the diagonal.
+    # Only where it is resampled: held inside that surface, which cuts the corners and spikes of the input.
     ("urchin", "outside"), ("slot", "outside"), ("star", "outside"), ("sieve", "outside"),
 }
 # Closed only after the repairs that docs/filters.md promises.
