@@ -133,7 +133,7 @@ struct Outcome
 	QString error;
 };
 
-/// Is told the progress in percent and what is being done; returns false to cancel. May be empty.
+/// Receives the progress in percent and what is being done; returns false to cancel. May be empty.
 using HostCallback = std::function<bool(int percent, const char* what)>;
 
 /**

@@ -5,8 +5,8 @@
 #include "common.h"
 #include "sheets.h"
 
-#include <skeleton/curve_inside.h>
 #include <skeleton/collapse_with_sheets.h>
+#include <skeleton/curve_inside.h>
 #include <skeleton/errors.h>
 
 namespace mcfskel {

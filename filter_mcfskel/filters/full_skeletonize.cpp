@@ -25,7 +25,7 @@ Results resultsOf(const mcf::Skeletonization& run, bool keepSheets)
 	else
 		results.merge(
 			keepSheets ? sheetResults(withoutSheets(run.curve)) : curveResults(run.curve));
-	results["refined"] = run.refined ? run.refineReport.fraction() : 0.0;
+	results["refined"] = run.refined;
 	results["seconds_resample"] = run.seconds.resample;
 	results["seconds_poles"] = run.seconds.poles;
 	results["seconds_contraction"] = run.seconds.contraction;

@@ -34,28 +34,13 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
 
 import pymeshlab  # noqa: E402
 
+from filter_names import (BALLS, COLLAPSE, COMPARE, FULL, LOAD_STAGE, MEASURE, MEDIAL_AXIS,  # noqa: E402
+                          PARTS, POLES, PRUNE, REFINE, RESAMPLE, SAVE, SAVE_STAGE, SMOOTH, STEP)
 from hostile import EITHER, REFUSED, Hostile, make  # noqa: E402
 from hostile.primitives import compact, component_of_vertices, genus  # noqa: E402
 from hostile_cases import read_case  # noqa: E402
 from hostile_judge import (MEMORY, Finding, Judge, graph_components, message_findings,  # noqa: E402
                            numbers_findings)
-
-RESAMPLE = "meshing_isotropic_resampling_mcf"
-POLES = "compute_medial_poles_mcf"
-STEP = "generate_meso_skeleton_mcf"
-COLLAPSE = "generate_curve_skeleton_from_meso_mcf"
-REFINE = "generate_refined_skeleton_mcf"
-FULL = "generate_curve_skeleton_mcf"
-PRUNE = "generate_pruned_skeleton_mcf"
-SMOOTH = "generate_resampled_skeleton_mcf"
-PARTS = "compute_skeleton_parts_mcf"
-COMPARE = "compute_skeleton_distance_mcf"
-MEASURE = "compute_skeleton_measures_mcf"
-MEDIAL_AXIS = "generate_medial_axis_mcf"
-BALLS = "generate_medial_balls_mcf"
-SAVE = "save_skeleton_mcf"
-SAVE_STAGE = "save_stage_mcf"
-LOAD_STAGE = "load_stage_mcf"
 
 ATTRIBUTES = ["mcfskel_pole_radius", "mcfskel_fixed", "mcfskel_held", "mcfskel_radius", "mcfskel_node",
               "mcfskel_kind", "mcfskel_part"]

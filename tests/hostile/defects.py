@@ -8,7 +8,7 @@ import numpy as np
 
 from .expectation import Hostile, either, refused, standing_for
 from .primitives import (Mesh, Rng, box, compact, diagonal, edges, halved, hull, joined, log_uniform,
-                         sphere, turned)
+                         moebius_strip, sphere, turned)
 from .solids import ball, cloud
 
 NOWHERE = np.zeros((0, 3), int)
@@ -85,18 +85,7 @@ def t_junctions(rng: Rng) -> Hostile:
 
 def moebius(rng: Rng) -> Hostile:
     """A strip with half a turn: one-sided, with a border."""
-    around = int(rng.integers(5, 60))
-    angle = 2 * np.pi * np.arange(around) / around
-    rims = []
-    for side in (-0.3, 0.3):
-        reach = 1 + side * np.cos(angle / 2)
-        rims.append(np.column_stack([reach * np.cos(angle), reach * np.sin(angle),
-                                     side * np.sin(angle / 2)]))
-    faces = []
-    for i in range(around):
-        c, d = (i + 1, around + i + 1) if i + 1 < around else (around, 0)
-        faces += [[i, c, around + i], [around + i, c, d]]
-    return refused((np.vstack(rims), np.array(faces)))
+    return refused(moebius_strip(int(rng.integers(5, 60))))
 
 
 def klein_bottle(rng: Rng) -> Hostile:

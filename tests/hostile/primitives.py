@@ -285,6 +285,21 @@ def tube(path: np.ndarray, radii: np.ndarray | float, sides: int, closed: bool =
     return vertices, np.vstack(faces)
 
 
+def moebius_strip(around: int) -> Mesh:
+    """A strip of so many quadrangles with half a turn: one-sided, with a border."""
+    angle = 2 * np.pi * np.arange(around) / around
+    rims = []
+    for side in (-0.3, 0.3):
+        reach = 1 + side * np.cos(angle / 2)
+        rims.append(np.column_stack([reach * np.cos(angle), reach * np.sin(angle),
+                                     side * np.sin(angle / 2)]))
+    faces = []
+    for i in range(around):
+        c, d = (i + 1, around + i + 1) if i + 1 < around else (around, 0)
+        faces += [[i, c, around + i], [around + i, c, d]]
+    return np.vstack(rims), np.array(faces)
+
+
 def revolved(radii: np.ndarray, heights: np.ndarray, sides: int) -> Mesh:
     """A profile turned about the z axis; its first and last radius are taken as 0."""
     angle = 2 * np.pi * np.arange(sides) / sides

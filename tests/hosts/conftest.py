@@ -5,6 +5,7 @@
 import hashlib
 import os
 import re
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -16,14 +17,11 @@ import pytest
 from host_programs import Server, meshlabserver
 
 ROOT = Path(__file__).resolve().parents[2]
-MESHES = ROOT / "meshes"
+sys.path.insert(0, str(ROOT / "tests"))
 
-RESAMPLE = "meshing_isotropic_resampling_mcf"
-POLES = "compute_medial_poles_mcf"
-STEP = "generate_meso_skeleton_mcf"
-COLLAPSE = "generate_curve_skeleton_from_meso_mcf"
-REFINE = "generate_refined_skeleton_mcf"
-FULL = "generate_curve_skeleton_mcf"
+from filter_names import COLLAPSE, FULL, POLES, REFINE, RESAMPLE, STEP  # noqa: E402, F401
+
+MESHES = ROOT / "meshes"
 
 
 @pytest.fixture(scope="session", autouse=True)

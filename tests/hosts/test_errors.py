@@ -10,6 +10,7 @@ import pytest
 
 from conftest import (COLLAPSE, FULL, POLES, RESAMPLE, STEP, arrays, diagonal, document, failing,
                       fingerprint, labels, layer, opened)
+from hostile.primitives import moebius_strip
 
 COARSE = {"target_length": pymeshlab.PercentageValue(1.5)}
 SURFACE_FILTERS = [RESAMPLE, POLES, STEP, FULL]
@@ -31,21 +32,6 @@ def tetrahedron(offset: tuple[float, float, float] = (0, 0, 0)) -> Mesh:
 
 def capsule() -> Mesh:
     return arrays("capsule")
-
-
-def moebius_strip(around: int = 40) -> Mesh:
-    angle = np.linspace(0, 2 * np.pi, around, endpoint=False)
-    rims = []
-    for side in (-0.3, 0.3):
-        reach = 1 + side * np.cos(angle / 2)
-        rims.append(np.column_stack([reach * np.cos(angle), reach * np.sin(angle),
-                                     side * np.sin(angle / 2)]))
-    faces = []
-    for i in range(around):
-        a, b = i, around + i
-        c, d = ((i + 1, around + i + 1) if i + 1 < around else (around, 0))
-        faces += [[a, c, b], [b, c, d]]
-    return np.vstack(rims), np.array(faces)
 
 
 def sharing_an_edge() -> Mesh:
@@ -89,7 +75,7 @@ class TestRefusals:
     @pytest.mark.parametrize("name", SURFACE_FILTERS)
     @pytest.mark.parametrize("mesh, words", [
         (open_capsule, ["watertight", "3 border edges", "Close Holes"]),
-        (moebius_strip, ["border edges"]),
+        (lambda: moebius_strip(40), ["border edges"]),
         (sharing_an_edge, ["two-manifold", "1 edge", "Repair non Manifold Edges"]),
         (sharing_a_vertex, ["two-manifold", "1 vertex", "Repair non Manifold Vertices"]),
         (not_a_number, ["1 ", "finite", "NaN"]),

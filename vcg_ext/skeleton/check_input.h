@@ -10,6 +10,7 @@
 #include "progress.h"
 #include "soup_repair.h"
 #include "surface_mesh.h"
+#include "surface_rounding.h"
 #include "ticker.h"
 
 #include <algorithm>
@@ -144,23 +145,21 @@ inline std::vector<VolumeAndArea> measuredAlongLength(const SurfaceMesh& mesh,
 	return measured;
 }
 
-/// Whether every coordinate is one of single precision.
+/// Whether every coordinate is exact in single precision.
 inline bool isSinglePrecision(const std::vector<Point3d>& points)
 {
 	return std::all_of(points.begin(), points.end(), [](const Point3d& p) {
-		// Volatile: where GCC 12 vectorises, it drops a conversion to float and back.
-		volatile float x = float(p[0]), y = float(p[1]), z = float(p[2]);
-		return x == p[0] && y == p[1] && z == p[2];
+		return toSingle(p[0]) == p[0] && toSingle(p[1]) == p[1] && toSingle(p[2]) == p[2];
 	});
 }
 
 /**
- * How far the rounding of coordinates may change the volume of each component: the volume's derivative by a
- * vertex is a third of the area vector of its faces. So a flat body in a slanted plane has no volume beyond
- * this; of one in a plane of two axes nothing is lost.
+ * First-order bound of the volume error of each component due to rounded coordinates: the gradient of the
+ * volume at a vertex is a third of the area vector of its one-ring. A flat body in a slanted plane has no
+ * volume beyond it; for one in an axis-aligned plane the bound is near 0.
  * Complexity: O(F).
  */
-inline std::vector<double> volumeOfRounding(
+inline std::vector<double> volumeErrorBound(
 	const SurfaceMesh& mesh, const std::vector<int>& component, int components)
 {
 	const double half = isSinglePrecision(mesh.position)
@@ -171,13 +170,13 @@ inline std::vector<double> volumeOfRounding(
 		if (mesh.isFace(f))
 			for (int v : mesh.triangle(f))
 				areaVector[size_t(v)] += mesh.areaVector(f) / 2;
-	std::vector<double> volume(size_t(components), 0);
+	std::vector<double> bound(size_t(components), 0);
 	for (int v = 0; v < mesh.vertexSlots(); ++v)
 		if (mesh.isVertex(v))
 			for (int k = 0; k < 3; ++k)
-				volume[size_t(component[size_t(v)])] +=
+				bound[size_t(component[size_t(v)])] +=
 					half / 3 * std::abs(mesh.position[size_t(v)][k] * areaVector[size_t(v)][k]);
-	return volume;
+	return bound;
 }
 
 } // namespace detail
@@ -309,17 +308,18 @@ inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
 			|| !(area[c] > slender * box[c].SquaredDiag());
 	};
 	bool anySlender = false;
-	std::vector<double> fromRounding(size_t(components), 0);
+	std::vector<double> volumeError(size_t(components), 0); // of slender ones
 	for (int c = 0; c < components; ++c)
 		anySlender |= isSlender(c);
 	if (anySlender) {
 		const std::vector<detail::VolumeAndArea> measured =
 			detail::measuredAlongLength(mesh, component, components, progress.part(0.9, 0.9));
-		fromRounding = detail::volumeOfRounding(mesh, component, components);
+		const std::vector<double> bound = detail::volumeErrorBound(mesh, component, components);
 		for (int c = 0; c < components; ++c)
 			if (isSlender(c)) {
 				volume[c] = measured[c].volume;
 				area[c] = measured[c].area;
+				volumeError[c] = bound[c];
 			}
 	}
 	int insideOut = 0;
@@ -334,7 +334,7 @@ inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
 		constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
 		if (!(std::abs(volume[c]) > 1e-10 * std::pow(area[c], 1.5)) || !std::isnormal(area[c])
 			|| !(std::abs(volume[c]) > rounding * largest * area[c])
-			|| !(std::abs(volume[c]) > fromRounding[c]))
+			|| !(std::abs(volume[c]) > volumeError[c]))
 			flat.push_back(middle[c]);
 		insideOut += volume[c] < 0;
 	}

@@ -220,7 +220,7 @@ inline SheetCollapse collapseOneKeepingSheets(
  * @param newNumber   of each vertex of the stage among `ids`.
  */
 inline Stage stageOfComponent(const Stage& stage, int c, const SurfaceMesh& own,
-	const std::vector<int>& ids, const ComponentVertices& onSurface,
+	const std::vector<int>& ids, const std::vector<int>& surfaceIds,
 	const std::vector<int>& newNumber)
 {
 	const auto picked = [](const auto& values, const std::vector<int>& which) {
@@ -230,7 +230,6 @@ inline Stage stageOfComponent(const Stage& stage, int c, const SurfaceMesh& own,
 			result.push_back(values[size_t(i)]);
 		return result;
 	};
-	const std::vector<int>& surfaceIds = onSurface.ids[size_t(c)];
 	Stage part;
 	part.mesh = own;
 	part.pole = picked(stage.pole, ids);
@@ -243,17 +242,6 @@ inline Stage stageOfComponent(const Stage& stage, int c, const SurfaceMesh& own,
 	part.initialArea = {stage.initialArea[size_t(c)]};
 	part.area = {stage.area[size_t(c)]};
 	part.surface = std::make_shared<const std::vector<Point3d>>(picked(*stage.surface, surfaceIds));
-	if (stage.surfaceTriangles) {
-		std::vector<char> isOwn(stage.surface->size(), 0);
-		for (int s : surfaceIds)
-			isOwn[size_t(s)] = 1;
-		std::vector<Triangle> triangles;
-		for (const Triangle& t : *stage.surfaceTriangles)
-			if (isOwn[size_t(t[0])])
-				triangles.push_back({onSurface.place[size_t(t[0])], onSurface.place[size_t(t[1])],
-					onSurface.place[size_t(t[2])]});
-		part.surfaceTriangles = std::make_shared<const std::vector<Triangle>>(std::move(triangles));
-	}
 	if (stage.frames)
 		part.frames =
 			std::make_shared<const std::vector<PrincipalFrame>>(1, (*stage.frames)[size_t(c)]);
@@ -299,9 +287,10 @@ inline SheetCollapse collapseKeepingSheets(const Stage& stage, const std::vector
 			std::vector<char> ofOwn;
 			for (int v : ids)
 				ofOwn.push_back(sheet[size_t(v)]);
-			found[size_t(c)] = detail::collapseOneKeepingSheets(
-				detail::stageOfComponent(stage, c, own, ids, onSurface, onMesh.place), ofOwn,
-				epsilon, part);
+			found[size_t(c)] =
+				detail::collapseOneKeepingSheets(detail::stageOfComponent(stage, c, own, ids,
+													 onSurface.ids[size_t(c)], onMesh.place),
+					ofOwn, epsilon, part);
 		});
 	SheetCollapse result;
 	MesoSkeleton& all = result.skeleton;

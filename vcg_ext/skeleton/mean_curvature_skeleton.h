@@ -217,7 +217,11 @@ public:
 		Require(curve.has_value(),
 			"Refine() comes after Collapse(), and is for curves without sheets.");
 		Require(held.empty(), "Refine() would move the skeleton off the vertices that are held.");
-		curve = mcf::refine(*curve, *contracted, mcf::RefineParameters(), progress);
+		mcf::Refinement refined =
+			mcf::refineChecked(*curve, *contracted, mcf::RefineParameters(), progress);
+		curve = std::move(refined.skeleton);
+		if (const std::string text = refined.report.text(); params.on_note && !text.empty())
+			params.on_note(text);
 	}
 
 	/// Iterations made so far, whether they have converged, and what is left of the surface.

@@ -252,7 +252,7 @@ struct RefineReport
 	/// Nodes of curves that were kept which are outside the surface, and how many curves have such nodes.
 	int nodesOutside = 0, curvesOutside = 0;
 
-	/// Fraction of the components that are refined; 1 if there are none.
+	/// Fraction of the components that are refined; 1 for a skeleton without components.
 	double fraction() const { return components > 0 ? double(refined) / components : 1; }
 
 	/// One plain line on what was not refined, and why; empty if everything was.

@@ -77,9 +77,8 @@ struct Skeletonization
 	std::shared_ptr<const Stage> stage;
 	/// The noise of the input; not measured if it is not resampled.
 	NoiseReport noise;
-	/// Whether the curve was refined, and which of its components could be.
-	bool refined = false;
-	RefineReport refineReport;
+	/// Fraction of the components whose curve is refined; 0 if it was not asked for.
+	double refined = 0;
 	PhaseSeconds seconds;
 
 	/// For each vertex of `surface` its node of the skeleton.
@@ -181,8 +180,7 @@ inline Skeletonization skeletonize(const SurfaceInput& input, const Parameters& 
 		Refinement refined =
 			refineChecked(result.curve, surface, refinement, progress.part(0.9, 0.99));
 		result.curve = std::move(refined.skeleton);
-		result.refined = true;
-		result.refineReport = refined.report;
+		result.refined = refined.report.fraction();
 		if (const std::string text = refined.report.text(); !text.empty())
 			note(text);
 	}

@@ -19,6 +19,17 @@
 
 namespace vcg::tri::mcf {
 
+namespace detail {
+
+inline double toSingle(double x)
+{
+	// Volatile: where GCC 12 vectorises, it drops a conversion to float and back.
+	volatile float single = float(x);
+	return single;
+}
+
+} // namespace detail
+
 /**
  * Rounds the coordinates of a surface to single precision, where that resolves a millionth of its
  * diagonal: where it is not far from the origin. Elsewhere they stay as they are.
@@ -34,18 +45,13 @@ public:
 
 	Point3d operator()(const Point3d& p) const
 	{
-		return single ? Point3d(toSingle(p[0]), toSingle(p[1]), toSingle(p[2])) : p;
+		return single
+			? Point3d(detail::toSingle(p[0]), detail::toSingle(p[1]), detail::toSingle(p[2]))
+			: p;
 	}
 
 private:
 	bool single;
-
-	static double toSingle(double x)
-	{
-		// Volatile: where GCC 12 vectorises, it drops a conversion to float and back.
-		volatile float single = float(x);
-		return single;
-	}
 
 	static bool fitsSinglePrecision(const Box3d& box)
 	{

@@ -1,0 +1,20 @@
+# SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The python names of the filters."""
+
+RESAMPLE = "meshing_isotropic_resampling_mcf"
+POLES = "compute_medial_poles_mcf"
+STEP = "generate_meso_skeleton_mcf"
+COLLAPSE = "generate_curve_skeleton_from_meso_mcf"
+REFINE = "generate_refined_skeleton_mcf"
+FULL = "generate_curve_skeleton_mcf"
+PRUNE = "generate_pruned_skeleton_mcf"
+SMOOTH = "generate_resampled_skeleton_mcf"
+PARTS = "compute_skeleton_parts_mcf"
+COMPARE = "compute_skeleton_distance_mcf"
+MEASURE = "compute_skeleton_measures_mcf"
+MEDIAL_AXIS = "generate_medial_axis_mcf"
+BALLS = "generate_medial_balls_mcf"
+SAVE = "save_skeleton_mcf"
+SAVE_STAGE = "save_stage_mcf"
+LOAD_STAGE = "load_stage_mcf"
