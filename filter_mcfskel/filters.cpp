@@ -4,9 +4,9 @@
 #include "filters.h"
 
 #include "filters/all_filters.h"
-#include "layers.h"
+#include "layers/layers.h"
 
-#include <skeleton/errors.h>
+#include <skeleton/support.h>
 
 #include <algorithm>
 #include <chrono>

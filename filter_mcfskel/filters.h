@@ -1,16 +1,17 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-/// @file The catalogue: what filters there are, their names, texts and parameters, and how to run
-/// one. The adapters in hosts/ translate it for each plugin interface; a new filter is a file in
+/// @file
+/// @brief The catalogue: what filters there are, their names, texts and parameters, and how to run
+/// one. The adapters translate it for each plugin interface; a new filter is a file in
 /// filters/ and a line in catalogue().
 
 #ifndef MCFSKEL_FILTERS_H
 #define MCFSKEL_FILTERS_H
 
-#include "hosts/host_api.h"
+#include "host/host_api.h"
 
-#include <skeleton/progress.h>
+#include <skeleton/support.h>
 
 #include <QString>
 #include <QStringList>

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-/// @file The entry of each filter in the catalogue, one source file each.
+/// @file
+/// @brief The entry of each filter in the catalogue, one source file each.
 
 #ifndef MCFSKEL_ALL_FILTERS_H
 #define MCFSKEL_ALL_FILTERS_H

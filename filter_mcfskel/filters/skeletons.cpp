@@ -3,17 +3,12 @@
 
 #include "skeletons.h"
 
-#include "../fields.h"
+#include "../layers/fields.h"
 
-#include <skeleton/closest_surface.h>
-#include <skeleton/errors.h>
-#include <skeleton/large_arrays.h>
-#include <skeleton/parallel_blocks.h>
-#include <skeleton/point_tree.h>
-#include <skeleton/skeleton_radius.h>
-#include <skeleton/stage.h>
-#include <skeleton/ticker.h>
-#include <skeleton/transferred_nodes.h>
+#include <skeleton/curves.h>
+#include <skeleton/state.h>
+#include <skeleton/support.h>
+#include <skeleton/surface.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,15 +1,16 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-/// @file What the filters that take a skeleton share: the skeleton, the surface that goes with it, and
+/// @file
+/// @brief What the filters that take a skeleton share: the skeleton, the surface that goes with it, and
 /// the correspondence between both.
 
 #ifndef MCFSKEL_FILTERS_SKELETONS_H
 #define MCFSKEL_FILTERS_SKELETONS_H
 
-#include "common.h"
+#include "filter_support.h"
 
-#include <skeleton/curve_skeleton.h>
+#include <skeleton/state.h>
 
 #include <optional>
 #include <vector>

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-/// @file Whole files by their names, in any alphabet.
+/// @file
+/// @brief Whole files by their names, in any alphabet.
 
 #ifndef MCFSKEL_FILES_H
 #define MCFSKEL_FILES_H
 
-#include <skeleton/errors.h>
+#include <skeleton/support.h>
 
 #include <QString>
 

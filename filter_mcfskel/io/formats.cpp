@@ -5,11 +5,7 @@
 
 #include "files.h"
 
-#include <io_skeleton/cg.h>
-#include <io_skeleton/graphml.h>
-#include <io_skeleton/json.h>
-#include <io_skeleton/skeleton_ply.h>
-#include <io_skeleton/swc.h>
+#include <skeleton/skeleton_files.h>
 
 #include <QFileInfo>
 

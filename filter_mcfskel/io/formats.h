@@ -1,16 +1,17 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-/// @file The file formats of skeletons: which there are, and layers to files and back. The adapters in
-/// hosts/ offer them in the host's import and export; a new format is a header in io_skeleton/ and a
+/// @file
+/// @brief The file formats of skeletons: which there are, and layers to files and back. The adapters in
+/// adapters/ offer them in the host's import and export; a new format is a header in vcg_ext/skeleton/io/ and a
 /// line in skeletonFormats().
 
 #ifndef MCFSKEL_FORMATS_H
 #define MCFSKEL_FORMATS_H
 
-#include "../layers.h"
+#include "../layers/layers.h"
 
-#include <io_skeleton/skeleton_file.h>
+#include <skeleton/skeleton_files.h>
 
 #include <wrap/io_trimesh/io_mask.h>
 

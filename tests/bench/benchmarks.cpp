@@ -10,10 +10,10 @@
 
 #include "read_mesh.h"
 
-#include <skeleton/check_input.h>
-#include <skeleton/cotangent_laplacian.h>
+#include <skeleton/input/check_input.h>
+#include <skeleton/flow/cotangent_weights.h>
 #include <skeleton/skeletonize.h>
-#include <skeleton/surface_rounding.h>
+#include <skeleton/mesh/surface_rounding.h>
 
 #include <benchmark/benchmark.h>
 

@@ -7,12 +7,12 @@
 #include "read_mesh.h"
 #include "report.h"
 
-#include <skeleton/check_input.h>
-#include <skeleton/parameters.h>
-#include <skeleton/refine.h>
-#include <skeleton/resampled_surface.h>
+#include <skeleton/input/check_input.h>
+#include <skeleton/core/parameters.h>
+#include <skeleton/refine/refine.h>
+#include <skeleton/resample/resampled_surface.h>
 #include <skeleton/skeletonize.h>
-#include <skeleton/surface_rounding.h>
+#include <skeleton/mesh/surface_rounding.h>
 
 #include <chrono>
 #include <exception>

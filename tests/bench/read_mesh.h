@@ -7,7 +7,7 @@
 #ifndef MCFSKEL_BENCH_READ_MESH_H
 #define MCFSKEL_BENCH_READ_MESH_H
 
-#include <skeleton/surface_mesh.h>
+#include <skeleton/mesh/surface_mesh.h>
 
 #include <vcg/complex/complex.h>
 #include <wrap/io_trimesh/export.h>

@@ -1,20 +1,21 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-/// @file What the fuzz targets share: bytes as a stream, what must hold, the tools on what was read.
+/// @file
+/// @brief What the fuzz targets share: bytes as a stream, what must hold, the tools on what was read.
 
 #ifndef MCFSKEL_FUZZ_FUZZING_H
 #define MCFSKEL_FUZZ_FUZZING_H
 
-#include "io_skeleton/cg.h"
-#include "io_skeleton/graphml.h"
-#include "io_skeleton/json.h"
-#include "io_skeleton/skeleton_ply.h"
-#include "io_skeleton/swc.h"
-#include "skeleton/branch_table.h"
-#include "skeleton/compare_skeletons.h"
-#include "skeleton/prune.h"
-#include "skeleton/resample_skeleton.h"
+#include <skeleton/io/cg.h>
+#include <skeleton/io/graphml.h>
+#include <skeleton/io/json.h>
+#include <skeleton/io/skeleton_ply.h>
+#include <skeleton/io/swc.h>
+#include <skeleton/graph/branch_table.h>
+#include <skeleton/graph/compare_skeletons.h>
+#include <skeleton/graph/prune.h>
+#include <skeleton/graph/resample_skeleton.h>
 
 #include <cstdint>
 #include <cstdio>

@@ -6,14 +6,14 @@
 #include "../unit/graphs.h"
 #include "../unit/shapes.h"
 
-#include "io_skeleton/cg.h"
-#include "io_skeleton/skeleton_ply.h"
-#include "io_skeleton/stage_ply.h"
-#include "io_skeleton/swc.h"
-#include "skeleton/collapse_to_curve.h"
-#include "skeleton/first_stage.h"
-#include "skeleton/held_vertices.h"
-#include "skeleton/flow.h"
+#include <skeleton/io/cg.h>
+#include <skeleton/io/skeleton_ply.h>
+#include <skeleton/io/stage_ply.h>
+#include <skeleton/io/swc.h>
+#include <skeleton/collapse/collapse_to_curve.h>
+#include <skeleton/flow/first_stage.h>
+#include <skeleton/flow/held_vertices.h>
+#include <skeleton/flow/flow.h>
 
 #include <cstdio>
 #include <exception>

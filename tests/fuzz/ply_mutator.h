@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /**
- * @file How inputs of the targets that read PLY are changed: a value in one of the tables for half of them,
+ * @file
+ * @brief How inputs of the targets that read PLY are changed: a value in one of the tables for half of them,
  * bytes for the others, most of which end in the header.
  */
 

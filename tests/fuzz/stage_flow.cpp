@@ -4,9 +4,9 @@
 #include "fuzzing.h"
 #include "ply_mutator.h"
 
-#include "io_skeleton/stage_ply.h"
-#include "skeleton/keep_sheets.h"
-#include "skeleton/flow.h"
+#include <skeleton/io/stage_ply.h>
+#include <skeleton/sheets/keep_sheets.h>
+#include <skeleton/flow/flow.h>
 
 /// Reads a stage, makes two steps, collapses it to a curve and to sheets, writes all and reads it again.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, size_t size)

@@ -4,8 +4,8 @@
 #include "fuzzing.h"
 #include "ply_mutator.h"
 
-#include "io_skeleton/stage_ply.h"
-#include "skeleton/vertex_kind.h"
+#include <skeleton/io/stage_ply.h>
+#include <skeleton/sheets/vertex_kind.h>
 
 /// What Load Stage does: reads, measures, tells the kinds; then Save Stage, which gives the same again.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, size_t size)

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-/// @file Runs an .mlx script on a mesh with the library of a built MeshLab, as its window does, and
+/// @file
+/// @brief Runs an .mlx script on a mesh with the library of a built MeshLab, as its window does, and
 /// saves the layer that is current in the end: run_script IO_BASE PLUGIN SCRIPT MESH OUTPUT...
 /// With --cancel in place of the outputs each filter is first cancelled at its first report of progress,
 /// then at its second, and so on, until it comes to its end; from the 200th on it is at reports further and

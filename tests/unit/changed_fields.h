@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-/// @file Files with other values in their fields: for the tests of the readers, and for their fuzz targets.
+/// @file
+/// @brief Files with other values in their fields: for the tests of the readers, and for their fuzz targets.
 
 #ifndef MCFSKEL_TESTS_CHANGED_FIELDS_H
 #define MCFSKEL_TESTS_CHANGED_FIELDS_H
 
-#include "io_skeleton/binary_ply.h"
+#include <skeleton/io/binary_ply.h>
 
 #include <algorithm>
 #include <cctype>

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-/// @file Skeletons made in code for the tests.
+/// @file
+/// @brief Skeletons made in code for the tests.
 
 #ifndef MCFSKEL_TESTS_CURVES_H
 #define MCFSKEL_TESTS_CURVES_H
 
-#include "skeleton/curve_skeleton.h"
+#include <skeleton/graph/curve_skeleton.h>
 
 #include <algorithm>
 #include <array>

@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-/// @file Skeletons made by hand for the tests of the file formats, and what to do to their files.
+/// @file
+/// @brief Skeletons made by hand for the tests of the file formats, and what to do to their files.
 
 #ifndef MCFSKEL_TESTS_GRAPHS_H
 #define MCFSKEL_TESTS_GRAPHS_H
 
-#include "skeleton/curve_skeleton.h"
+#include <skeleton/graph/curve_skeleton.h>
 
-#include "io_skeleton/format_error.h"
+#include <skeleton/io/format_error.h>
 
 #include <functional>
 #include <random>

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-/// @file Closed bodies that a flow does not like: coarse, spiky, flat, twisted, crossing themselves.
+/// @file
+/// @brief Closed bodies that a flow does not like: coarse, spiky, flat, twisted, crossing themselves.
 
 #ifndef MCFSKEL_TESTS_HOSTILE_BODIES_H
 #define MCFSKEL_TESTS_HOSTILE_BODIES_H

@@ -1,16 +1,17 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-/// @file Systems as the flow has them, and their direct solution by Eigen.
+/// @file
+/// @brief Systems as the flow has them, and their direct solution by Eigen.
 
 #ifndef MCFSKEL_TESTS_LINEAR_SYSTEMS_H
 #define MCFSKEL_TESTS_LINEAR_SYSTEMS_H
 
 #include "mesh_checks.h"
 
-#include "skeleton/breadth_first_order.h"
-#include "skeleton/cotangent_laplacian.h"
-#include "skeleton/elimination_order.h"
+#include <skeleton/mesh/breadth_first_numbering.h>
+#include <skeleton/flow/cotangent_weights.h>
+#include <skeleton/flow/fill_reducing_order.h>
 
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>

@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-/// @file What must hold of every mesh, stage and skeleton, said as the first thing that does not.
+/// @file
+/// @brief What must hold of every mesh, stage and skeleton, said as the first thing that does not.
 
 #ifndef MCFSKEL_TESTS_MESH_CHECKS_H
 #define MCFSKEL_TESTS_MESH_CHECKS_H
 
-#include "skeleton/curve_skeleton.h"
-#include "skeleton/stage.h"
-#include "skeleton/surface_mesh.h"
+#include <skeleton/graph/curve_skeleton.h>
+#include <skeleton/flow/stage.h>
+#include <skeleton/mesh/surface_mesh.h>
 
 #include <algorithm>
 #include <cmath>

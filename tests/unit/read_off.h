@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-/// @file Reads a triangle mesh of meshes/ (plain OFF).
+/// @file
+/// @brief Reads a triangle mesh of meshes/ (plain OFF).
 
 #ifndef MCFSKEL_TESTS_READ_OFF_H
 #define MCFSKEL_TESTS_READ_OFF_H

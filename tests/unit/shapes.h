@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-/// @file Surfaces made in code for the tests, each with a known topology and, where it has one, axis.
+/// @file
+/// @brief Surfaces made in code for the tests, each with a known topology and, where it has one, axis.
 
 #ifndef MCFSKEL_TESTS_SHAPES_H
 #define MCFSKEL_TESTS_SHAPES_H
 
-#include "skeleton/surface_mesh.h"
+#include <skeleton/mesh/surface_mesh.h>
 
 #include <array>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include "read_off.h"
 #include "shapes.h"
 
-#include "skeleton/mean_curvature_skeleton.h"
+#include <skeleton/mean_curvature_skeleton.h>
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include "read_off.h"
 #include "shapes.h"
 
-#include "skeleton/skeletonize.h"
+#include <skeleton/skeletonize.h>
 
 #include <gtest/gtest.h>
 

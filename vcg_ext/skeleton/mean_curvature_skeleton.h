@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-/// @file Curve skeletons of the meshes of VCG: the way in for programs that have one.
+/// @file
+/// @brief Curve skeletons of the meshes of VCG: the way in for programs that have one.
 
-#ifndef VCG_MEAN_CURVATURE_SKELETON_H
-#define VCG_MEAN_CURVATURE_SKELETON_H
+#ifndef VCG_MCF_MEAN_CURVATURE_SKELETON_H
+#define VCG_MCF_MEAN_CURVATURE_SKELETON_H
 
 #include "skeletonize.h"
 #include "trimesh.h"

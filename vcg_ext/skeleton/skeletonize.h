@@ -1,25 +1,26 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-/// @file Fig. 4 of the paper, top to bottom: from a closed surface to its skeleton.
+/// @file
+/// @brief Fig. 4 of the paper, top to bottom: from a closed surface to its skeleton.
 
 #ifndef VCG_MCF_SKELETONIZE_H
 #define VCG_MCF_SKELETONIZE_H
 
-#include "check_input.h"
-#include "curve_inside.h"
-#include "collapse_with_sheets.h"
-#include "flow.h"
-#include "held_vertices.h"
-#include "notes.h"
-#include "parameters.h"
-#include "poles.h"
-#include "progress.h"
-#include "refine.h"
-#include "resampled_surface.h"
-#include "start_of_flow.h"
-#include "surface_rounding.h"
-#include "transferred_nodes.h"
+#include <skeleton/collapse/curve_inside.h>
+#include <skeleton/core/notes.h>
+#include <skeleton/core/parameters.h>
+#include <skeleton/core/progress.h>
+#include <skeleton/flow/flow.h>
+#include <skeleton/flow/held_vertices.h>
+#include <skeleton/flow/start_of_flow.h>
+#include <skeleton/input/check_input.h>
+#include <skeleton/mesh/surface_rounding.h>
+#include <skeleton/poles/poles.h>
+#include <skeleton/refine/refine.h>
+#include <skeleton/resample/resampled_surface.h>
+#include <skeleton/sheets/collapse_with_sheets.h>
+#include <skeleton/spatial/transferred_nodes.h>
 
 #include <chrono>
 #include <functional>

@@ -1,15 +1,16 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-/// @file Between the meshes of VCG, of any type, and the arrays and lean meshes of this library.
+/// @file
+/// @brief Between the meshes of VCG, of any type, and the arrays and lean meshes of this library.
 
 #ifndef VCG_MCF_TRIMESH_H
 #define VCG_MCF_TRIMESH_H
 
-#include "errors.h"
-#include "progress.h"
-#include "surface_mesh.h"
-#include "ticker.h"
+#include <skeleton/core/errors.h>
+#include <skeleton/core/progress.h>
+#include <skeleton/core/ticker.h>
+#include <skeleton/mesh/surface_mesh.h>
 
 #include <vcg/complex/complex.h>
 

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief The adapter for MeshLab and pymeshlab from 2021.05 on: the catalogue as a FilterPlugin, the
+/// file formats as an IOPlugin.
+
+#ifndef MCFSKEL_MESHLAB_2021_H
+#define MCFSKEL_MESHLAB_2021_H
+
+#include "../filters.h"
+#include "json_export.h"
+
+class FilterMcfskelPlugin : public QObject, public FilterPlugin, public IOPlugin
+{
+	Q_OBJECT
+	MESHLAB_PLUGIN_IID_EXPORTER(FILTER_PLUGIN_IID)
+	Q_INTERFACES(FilterPlugin IOPlugin)
+
+public:
+	FilterMcfskelPlugin();
+
+	QString pluginName() const override;
+	QString vendor() const override;
+	QString filterName(ActionIDType id) const override;
+	QString pythonFilterName(ActionIDType id) const override;
+	QString filterInfo(ActionIDType id) const override;
+	FilterClass getClass(const QAction* action) const override;
+	FilterArity filterArity(const QAction* action) const override;
+	int getPreConditions(const QAction* action) const override;
+	int postCondition(const QAction* action) const override;
+	RichParameterList initParameterList(
+		const QAction* action, const MeshDocument& document) override;
+	std::map<std::string, QVariant> applyFilter(const QAction* action,
+		const RichParameterList& parameters, MeshDocument& document,
+		unsigned int& postConditionMask, vcg::CallBackPos* callback) override;
+
+	std::list<FileFormat> importFormats() const override;
+	std::list<FileFormat> exportFormats() const override;
+	void exportMaskCapability(
+		const QString& format, int& capability, int& defaultBits) const override;
+	RichParameterList initSaveParameter(
+		const QString& format, const MeshModel& layer) const override;
+	using IOPlugin::open;
+	void open(const QString& format, const QString& file, MeshModel& layer, int& mask,
+		const RichParameterList& parameters, vcg::CallBackPos* callback) override;
+	void save(const QString& format, const QString& file, MeshModel& layer, const int mask,
+		const RichParameterList& parameters, vcg::CallBackPos* callback) override;
+
+private:
+	/// Ends a reading or writing that has failed.
+	[[noreturn]] void fail(const QString& error);
+
+	mcfskel::host::JsonExport jsonExport_ {this};
+};
+
+#endif

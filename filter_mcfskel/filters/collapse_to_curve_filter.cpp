@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "all_filters.h"
+#include "filter_support.h"
+#include "sheet_choice.h"
+
+#include <skeleton/pipeline.h>
+#include <skeleton/support.h>
+
+namespace mcfskel {
+
+namespace mcf = vcg::tri::mcf;
+
+namespace {
+
+Results run(FilterRun& run)
+{
+	const StageLayer found = readStage(run.layer());
+	if (!found)
+		throw mcf::InvalidInput("The current layer '" + run.layer().label().toStdString()
+			+ (hasStageAttributes(run.layer())
+					? "' was a stage of the contraction, but its state is gone or its geometry was changed"
+					: "' is not a stage of the contraction")
+			+ ": make a layer NAME_meso_K current, or run 'Contraction Step' first.");
+	const double epsilon = readEpsilon(run.parameters);
+	if (run.parameters.flag("keep_sheets")) {
+		const mcf::SheetCollapse collapse =
+			mcf::collapseWithSheets(*found.stage, epsilon, run.progress, noteLog(run));
+		DocumentEdit edit(run.document);
+		edit.addMesoSkeleton(run.layer(), baseName(run.layer()) + "_skeleton", collapse.skeleton);
+		edit.writeNodes(found.surface, collapse.skeleton.node);
+		const Results results = sheetResults(collapse);
+		edit.commit();
+		return results;
+	}
+	const mcf::CurveSkeleton skeleton = mcf::collapseInside(*found.stage, epsilon, run.progress);
+
+	DocumentEdit edit(run.document);
+	const MeshModel* surface = run.document.getMesh(found.surface.layerId);
+	edit.addCurve(run.layer(), baseName(run.layer()) + "_skeleton",
+		{skeleton, found.surface, surface ? surface->label() : QString()});
+	edit.writeNodes(found.surface, skeleton.node);
+	const Results results = curveResults(skeleton);
+	edit.commit();
+	return results;
+}
+
+} // namespace
+
+FilterSpec collapseToCurveFilter()
+{
+	return {"generate_curve_skeleton_from_meso_mcf", menuName("Collapse to Curve"),
+		helpPage(
+			"Turns a stage of the contraction into a curve skeleton, a new layer of nodes and edges: "
+			"collapses its shortest edges until no face is left, without changing its topology. The "
+			"vertex quality is the local thickness of the shape, also kept as "
+			"<i>mcfskel_radius</i>.<br><br>"
+			"With <i>keep_sheets</i>, what has contracted to a sheet at this stage, or was kept as one by "
+			"the steps, stays a sheet of faces: early stages leave more of them, late ones curves.<br><br>"
+			"The surface layer, if it is still there, gets <i>mcfskel_node</i>: for each vertex the "
+			"skeleton vertex that it belongs to. Last stage of the skeletonization."),
+		FilterCategory::Remeshing, MeshModel::MM_FACENUMBER,
+		{epsilonParameter(), keepSheetsParameter()}, run};
+}
+
+} // namespace mcfskel

@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "all_filters.h"
+#include "filter_support.h"
+#include "sheet_choice.h"
+
+#include <skeleton/pipeline.h>
+#include <skeleton/support.h>
+
+#include <optional>
+
+namespace mcfskel {
+
+namespace mcf = vcg::tri::mcf;
+
+namespace {
+
+/// Where the contraction carries on from, and what has to be written on a surface that starts one.
+struct Start
+{
+	std::shared_ptr<const mcf::Stage> stage;
+	PoledSurface surface;
+	SurfaceLink link;
+};
+
+Start startOf(FilterRun& run, const mcf::Parameters& parameters)
+{
+	Start start;
+	if (const StageLayer found = readStage(run.layer())) {
+		start.stage = found.stage;
+		if (run.parameters.flag("fix_selected")) {
+			mcf::Stage held = *found.stage;
+			if (const std::vector<char> selected = readSelection(run.layer()); !selected.empty())
+				mcf::holdVertices(held, selected);
+			if (held.heldCount() == 0)
+				throw mcf::InvalidInput(
+					"This stage holds no vertex, and none of it is selected: "
+					"select the vertices to hold, or leave 'fix_selected' off.");
+			start.stage = std::make_shared<const mcf::Stage>(std::move(held));
+		}
+		start.link = found.surface;
+		if (parameters.keepSheets && !found.stage->hasSheets())
+			run.log(
+				"This stage keeps no sheets: they are told from the surface, when the first step "
+				"is made with 'keep_sheets'.");
+		return start;
+	}
+	if (hasStageAttributes(run.layer()))
+		run.log(
+			"This layer was a stage of the contraction, but its state is gone or its geometry was "
+			"changed: it is taken as a surface of its own.");
+	start.surface = surfaceWithPoles(run, parameters.poleMethod, run.progress.part(0, 0.08));
+	start.stage = std::make_shared<const mcf::Stage>(mcf::startOfFlow(*start.surface.surface.mesh,
+		*start.surface.poles, selectionToHold(run, start.surface.surface), parameters,
+		run.progress.part(0.08, 0.1), noteLog(run)));
+	start.link = linkTo(run.layer(), start.surface.surface);
+	return start;
+}
+
+Results run(FilterRun& run)
+{
+	mcf::Parameters parameters;
+	readFlow(run.parameters, parameters);
+	readSheets(run.parameters, parameters);
+	const int steps = run.parameters.integer("steps");
+	if (steps < 1)
+		throw mcf::InvalidParameter("Parameter steps must be at least 1.");
+	parameters.check();
+	const Start start = startOf(run, parameters);
+
+	KeptStages stages;
+	std::optional<KeptStages::FlowShare> share;
+	if (steps > 1)
+		share.emplace();
+	const mcf::Progress progress = run.progress.part(0.1, 0.95);
+	std::shared_ptr<const mcf::Stage> last = start.stage;
+	for (int i = 0; i < steps && !last->converged; ++i) {
+		last = std::make_shared<const mcf::Stage>(
+			mcf::step(*last, parameters, progress.part(double(i) / steps, double(i + 1) / steps)));
+		run.log(stageLine(mcf::figuresOf(*last)));
+		stages.add(last);
+	}
+	share.reset();
+	if (int(stages.size()) < steps)
+		run.log(QString("The contraction has converged: %1 of %2 steps were made.")
+					.arg(stages.size())
+					.arg(steps));
+
+	DocumentEdit edit(run.document);
+	MeshModel& source = run.layer();
+	addStages(edit, source, stages, start.link, run.progress.part(0.95, 1));
+	if (start.surface.computed)
+		edit.writePoles(source, start.surface.surface, start.surface.poles);
+	edit.writeNodes(start.link, last->node);
+	const Results results = stageResults(*last);
+	edit.commit();
+	return results;
+}
+
+} // namespace
+
+FilterSpec contractionStepFilter()
+{
+	std::vector<ParameterSpec> parameters = weightParameters();
+	parameters.push_back(epsilonParameter());
+	parameters.push_back(splitAngleParameter());
+	parameters.push_back({ParameterKind::Integer, "steps", 1, "Steps",
+		"Iterations to make, at least 1; each leaves a layer of its own, NAME_meso_K."});
+	parameters.push_back(fixSelectedParameter());
+	parameters.push_back(keepSheetsParameter());
+	parameters.push_back(sheetThresholdParameter());
+	return {"generate_meso_skeleton_mcf", menuName("Contraction Step"),
+		helpPage(
+			"Contracts the surface by one or more steps of mean curvature flow that is drawn to the "
+			"medial poles, and mends its triangles: a surface becomes a meso-skeleton, part volume, "
+			"part sheet, part curve, and in the end a curve. Each step is a new layer; the vertex "
+			"quality is the local thickness.<br><br>"
+			"Starts from a surface, or carries on from the layer of an earlier step: step by step it "
+			"is the same as Full Skeletonize. Lengths refer to the surface that the steps came from. "
+			"Third stage of the skeletonization."),
+		FilterCategory::Remeshing, MeshModel::MM_FACENUMBER, parameters, run};
+}
+
+} // namespace mcfskel

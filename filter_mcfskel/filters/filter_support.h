@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief What several filters share: parameters, the way to a surface with poles, numbers, texts.
+
+#ifndef MCFSKEL_FILTER_SUPPORT_H
+#define MCFSKEL_FILTER_SUPPORT_H
+
+#include "../filters.h"
+#include "../layers/kept_stages.h"
+#include "../layers/layers.h"
+
+#include <skeleton/state.h>
+#include <skeleton/support.h>
+
+#include <memory>
+
+namespace mcfskel {
+
+/// "Mean Curvature Skeleton: " and the filter's own name.
+QString menuName(const char* name);
+
+/// The help page of a filter: what it does, and the publication behind it.
+QString helpPage(const QString& whatItDoes);
+
+// Parameters that more than one filter has.
+
+ParameterSpec targetLengthParameter();
+ParameterSpec resampleIterationsParameter();
+ParameterSpec denoiseParameter();
+ParameterSpec poleMethodParameter();
+std::vector<ParameterSpec> weightParameters();
+ParameterSpec epsilonParameter();
+ParameterSpec splitAngleParameter();
+ParameterSpec fixSelectedParameter();
+
+// From values to the pipeline's parameters; each reads the ones of its filters.
+
+void readResampling(const ParameterValues& values, vcg::tri::mcf::Parameters& parameters);
+/// epsilon, as a fraction of the diagonal; 0 stands for the default, which a script that serves
+/// meshes of any size cannot know in mesh units.
+double readEpsilon(const ParameterValues& values);
+void readFlow(const ParameterValues& values, vcg::tri::mcf::Parameters& parameters);
+vcg::tri::mcf::PoleMethod readPoleMethod(const ParameterValues& values);
+
+// Reports, for Python and for the log.
+
+Results stageResults(const vcg::tri::mcf::Stage& stage);
+Results curveResults(const vcg::tri::mcf::CurveSkeleton& skeleton);
+QString stageLine(const vcg::tri::mcf::StageFigures& figures);
+
+/**
+ * The selected vertices of the current surface layer, if the parameter fix_selected is set; else empty.
+ * @throws InvalidInput if it is set and no vertex is selected.
+ */
+std::vector<char> selectionToHold(const FilterRun& run, const SurfaceLayer& surface);
+
+/// Writes the repairs of a surface into the log, once.
+void logNotes(const FilterRun& run, const SurfaceLayer& surface);
+
+/// Writes the library's notes into the log; valid as long as the run.
+vcg::tri::mcf::NoteCallback noteLog(const FilterRun& run);
+
+/// What a layer made from a surface will be.
+SurfaceLayer compactSurface(std::shared_ptr<const vcg::tri::mcf::SurfaceMesh> mesh);
+
+/// A surface together with its poles.
+struct PoledSurface
+{
+	SurfaceLayer surface;
+	std::shared_ptr<const vcg::tri::mcf::PoleSet> poles;
+	/// Whether the poles were computed just now, and are not on the layer yet.
+	bool computed = false;
+};
+
+/// The poles that the current surface layer carries; if it has none, computes them and says so.
+PoledSurface surfaceWithPoles(
+	FilterRun& run, vcg::tri::mcf::PoleMethod method, const vcg::tri::mcf::Progress& progress);
+
+/// NAME_meso_K.
+QString stageLabel(const QString& name, const vcg::tri::mcf::Stage& stage);
+
+/// Layers of the stages of a run, NAME_meso_K, in the frame of the layer that they come from. @throws Cancelled
+void addStages(DocumentEdit& edit, const MeshModel& source, KeptStages& stages,
+	const SurfaceLink& surface, const vcg::tri::mcf::Progress& progress);
+
+} // namespace mcfskel
+
+#endif

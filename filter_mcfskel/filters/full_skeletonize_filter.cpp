@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "all_filters.h"
+#include "filter_support.h"
+#include "sheet_choice.h"
+
+#include <skeleton/skeletonize.h>
+#include <skeleton/support.h>
+
+#include <optional>
+
+namespace mcfskel {
+
+namespace mcf = vcg::tri::mcf;
+
+namespace {
+
+/// The numbers of a run, for Python and for the log.
+Results resultsOf(const mcf::Skeletonization& run, bool keepSheets)
+{
+	Results results = stageResults(*run.stage);
+	if (run.sheets)
+		results.merge(sheetResults(*run.sheets));
+	else
+		results.merge(
+			keepSheets ? sheetResults(withoutSheets(run.curve)) : curveResults(run.curve));
+	results["refined"] = run.refined;
+	results["seconds_resample"] = run.seconds.resample;
+	results["seconds_poles"] = run.seconds.poles;
+	results["seconds_contraction"] = run.seconds.contraction;
+	results["seconds_collapse"] = run.seconds.collapse;
+	results["seconds_refine"] = run.seconds.refine;
+	return results;
+}
+
+Results run(FilterRun& run)
+{
+	mcf::Parameters parameters;
+	parameters.resample = run.parameters.flag("resample");
+	parameters.refine = run.parameters.flag("refine");
+	readSheets(run.parameters, parameters);
+	readResampling(run.parameters, parameters);
+	readFlow(run.parameters, parameters);
+	parameters.poleMethod = readPoleMethod(run.parameters);
+	parameters.maxIterations = run.parameters.integer("max_iterations");
+	parameters.check();
+	const int keepStages = run.parameters.integer("keep_stages");
+	if (keepStages < 0)
+		throw mcf::InvalidParameter("Parameter keep_stages must be at least 0.");
+
+	const SurfaceLayer read = readSurface(run.layer(), run.progress.part(0, 0.02));
+	logNotes(run, read);
+	mcf::SurfaceInput surfaceInput {read.mesh, selectionToHold(run, read)};
+	if (!parameters.resample)
+		surfaceInput.poles = readPoles(run.layer(), read, run.progress.part(0.02, 0.02));
+	if (surfaceInput.poles)
+		run.log("Taking the medial poles that the layer carries.");
+
+	KeptStages kept; // the last one is always among them
+	std::optional<KeptStages::FlowShare> share;
+	mcf::Observer observer;
+	observer.onNote = noteLog(run);
+	observer.onFigures = [&](const mcf::StageFigures& figures) { run.log(stageLine(figures)); };
+	if (keepStages > 0) {
+		observer.every = keepStages;
+		observer.onStage = [&](mcf::Stage stage) {
+			kept.add(std::make_shared<const mcf::Stage>(std::move(stage)));
+		};
+		observer.onPhase = [&](mcf::Phase ended) {
+			if (ended == mcf::Phase::Poles)
+				share.emplace();
+			else
+				share.reset();
+		};
+	}
+	const mcf::Skeletonization result =
+		mcf::skeletonize(surfaceInput, parameters, run.progress.part(0.02, 0.99), observer);
+	if (kept.empty() || kept.last()->iteration != result.stage->iteration)
+		kept.add(result.stage);
+
+	DocumentEdit edit(run.document);
+	MeshModel& input = run.layer();
+	const QString name = baseName(input);
+	MeshModel* surface = &input;
+	SurfaceLayer contracted = read;
+	if (parameters.resample) {
+		surface = &edit.addSurface(
+			input, name + "_resampled", *result.surface, run.progress.part(0.99, 0.99));
+		contracted = compactSurface(result.surface);
+	}
+	const SurfaceLink link = linkTo(*surface, contracted);
+	addStages(edit, input, kept, link, run.progress.part(0.99, 1));
+	if (result.sheets)
+		edit.addMesoSkeleton(input, name + "_skeleton", result.sheets->skeleton);
+	else
+		edit.addCurve(input, name + "_skeleton", {result.curve, link, surface->label()});
+	if (!surfaceInput.poles)
+		edit.writePoles(*surface, contracted, result.poles);
+	edit.writeNodes(*surface, *contracted.vertexOfSlot, result.nodeOfSurface());
+	if (parameters.resample)
+		edit.writeNodes(input, *read.vertexOfSlot, result.node);
+	Results results = resultsOf(result, parameters.keepSheets);
+	edit.commit();
+	return results;
+}
+
+} // namespace
+
+FilterSpec fullSkeletonizeFilter()
+{
+	const mcf::Parameters defaults;
+	std::vector<ParameterSpec> parameters = {
+		{ParameterKind::Boolean, "resample", double(defaults.resample), "Resample first",
+			"Covers the surface with even triangles first, as in the paper. Without, the skeleton is "
+			"only as good as the triangles of the input. On a coarse surface, where edges are longer "
+			"than 4 % of the diagonal and than the shape is thick, they are halved for the contraction, "
+			"so that the skeleton stays inside; not with held vertices or sheets."},
+		targetLengthParameter(),
+		resampleIterationsParameter().asAdvanced(),
+		denoiseParameter(),
+	};
+	for (const ParameterSpec& weight : weightParameters())
+		parameters.push_back(weight);
+	parameters.push_back(epsilonParameter());
+	parameters.push_back(splitAngleParameter());
+	parameters.push_back({ParameterKind::Integer, "keep_stages", 0, "Keep every k-th stage",
+		"Every k-th meso-skeleton becomes a layer NAME_meso_K; 0 keeps the last one only."});
+	parameters.push_back(ParameterSpec {ParameterKind::Integer, "max_iterations",
+		double(defaults.maxIterations), "Most iterations",
+		"The contraction stops after this many iterations even if it has not converged; it usually "
+		"does after 10 to 40."}
+							 .asAdvanced());
+	parameters.push_back(poleMethodParameter().asAdvanced());
+	parameters.push_back({ParameterKind::Boolean, "refine", double(defaults.refine),
+		"Refine the skeleton",
+		"Goes beyond the paper at the end: removes spurs, samples the branches evenly, centres and "
+		"smooths them, extends the tips to the ends of their features, and grows branches into limbs "
+		"that the curve lacks. Without, the skeleton is the paper's own. Also a filter of its own."});
+	parameters.push_back(fixSelectedParameter());
+	parameters.push_back(keepSheetsParameter());
+	parameters.push_back(sheetThresholdParameter());
+	return {"generate_curve_skeleton_mcf", menuName("Full Skeletonize"),
+		helpPage(
+			"Computes the curve skeleton of a closed surface: a graph of nodes and edges in the "
+			"middle of the shape, with one component for each of its components and one cycle for "
+			"each of its handles. Resamples the surface, finds its medial poles, contracts it until "
+			"no volume is left, collapses the result to curves and refines these; each is a filter of "
+			"its own, too.<br><br>"
+			"New layers: the resampled surface, the last (or every k-th) stage of the contraction, and "
+			"the skeleton. The skeleton's vertex quality is the local thickness; the vertex attribute "
+			"<i>mcfskel_node</i> of the surfaces tells the skeleton vertex of each of their "
+			"vertices."),
+		FilterCategory::Remeshing, MeshModel::MM_FACENUMBER, parameters, run};
+}
+
+} // namespace mcfskel

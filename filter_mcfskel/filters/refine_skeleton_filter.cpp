@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "all_filters.h"
+#include "skeletons.h"
+
+#include <skeleton/pipeline.h>
+
+#include <string>
+#include <utility>
+
+namespace mcfskel {
+
+namespace mcf = vcg::tri::mcf;
+
+namespace {
+
+Results run(FilterRun& run)
+{
+	const CurveLayer found = skeletonOn(run.layer());
+	const SkeletonSurface surface = requireSurface(run, found, run.progress.part(0, 0.1));
+	const CurveLayer curve = skeletonOf(run, found, surface, run.progress.part(0.1, 0.2));
+	mcf::RefineParameters parameters;
+	parameters.spurProminence = run.parameters.real("spur_prominence");
+	parameters.smoothing = run.parameters.real("smoothing");
+	parameters.check();
+	mcf::Refinement refinement = mcf::refineChecked(
+		curve.skeleton, *surface.surface.mesh, parameters, run.progress.part(0.2, 0.95));
+	if (const std::string text = refinement.report.text(); !text.empty())
+		run.log(QString::fromStdString(text));
+
+	Results results = curveResults(refinement.skeleton);
+	results["refined"] = refinement.report.fraction();
+	addDerivedSkeleton(
+		run, curve, std::move(refinement.skeleton), "refined", false, run.progress.part(0.95, 1));
+	return results;
+}
+
+} // namespace
+
+FilterSpec refineSkeletonFilter()
+{
+	const mcf::RefineParameters defaults;
+	return {"generate_refined_skeleton_mcf", menuName("Refine Skeleton"),
+		helpPage(
+			"Makes the current skeleton a better one of its surface, as a new layer NAME_refined: "
+			"removes spurs, makes one of shattered junctions, samples the branches evenly, centres the "
+			"nodes in the maximal balls of the surface and smooths the branches, extends the tips to "
+			"the ends of their features, and grows branches into limbs that the curve lacks. "
+			"Components and cycles stay as they are, and nothing leaves the shape: a component for which "
+			"that cannot be had keeps its curve as it is. The log says so, and the result "
+			"<i>refined</i> is the fraction of the components that are refined.<br><br>"
+			"The surface's <i>mcfskel_node</i> follows. This stage goes beyond the paper."),
+		FilterCategory::Remeshing, MeshModel::MM_NONE,
+		{surfaceParameter("The surface that the skeleton is refined in."),
+			{ParameterKind::Real, "smoothing", defaults.smoothing, "Smoothness",
+				"How smooth the branches become, against how well centred; at least 0, sane are 4 to "
+				"400."},
+			ParameterSpec {ParameterKind::Real, "spur_prominence", defaults.spurProminence,
+				"Spur prominence",
+				"A terminal branch whose end ball sticks out of the ball at its junction by less than "
+				"this part of the latter's radius is a spur, 0 to 1, and so is one that ends where a "
+				"shorter one does. More removes small features, 0 none."}
+				.asAdvanced()},
+		run};
+}
+
+} // namespace mcfskel

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "all_filters.h"
+#include "filter_support.h"
+
+#include <skeleton/pipeline.h>
+
+#include <memory>
+#include <utility>
+
+namespace mcfskel {
+
+namespace mcf = vcg::tri::mcf;
+
+namespace {
+
+Results run(FilterRun& run)
+{
+	mcf::Parameters parameters;
+	readResampling(run.parameters, parameters);
+	parameters.check();
+	const SurfaceLayer surface = readSurface(run.layer(), run.progress.part(0, 0.1));
+	logNotes(run, surface);
+	mcf::ResampledSurface made =
+		mcf::resampledSurface(*surface.mesh, parameters, run.progress.part(0.1, 1), noteLog(run));
+	const SurfaceLayer resampled =
+		compactSurface(std::make_shared<const mcf::SurfaceMesh>(std::move(made.mesh)));
+	const mcf::SurfaceMesh& mesh = *resampled.mesh;
+
+	DocumentEdit edit(run.document);
+	MeshModel& layer = edit.addSurface(
+		run.layer(), baseName(run.layer()) + "_resampled", mesh, run.progress.part(1, 1));
+	edit.attachSurface(layer, resampled);
+	Results results = {{"vertices", mesh.vertexCount()}, {"faces", mesh.faceCount()},
+		{"edge_length_mean", mcf::meanEdgeLength(mesh)}};
+	edit.commit();
+	return results;
+}
+
+} // namespace
+
+FilterSpec resampleFilter()
+{
+	return {"meshing_isotropic_resampling_mcf", menuName("Resample"),
+		helpPage(
+			"Covers the surface with triangles of even size, as a new layer: the skeleton is only as "
+			"good as the sampling that it is computed from. Splits long edges, collapses short ones, "
+			"flips edges towards six neighbours for each vertex, evens the vertices out along the "
+			"surface and puts them back onto it; the topology stays.<br><br>"
+			"First stage of the skeletonization. Needs a closed two-manifold triangle mesh."),
+		FilterCategory::Remeshing, MeshModel::MM_FACENUMBER,
+		{targetLengthParameter(), resampleIterationsParameter(), denoiseParameter()}, run};
+}
+
+} // namespace mcfskel

@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief What differs between MeshLab's two plugin interfaces, under one name each, so that the
+/// filters and layers are written once. MCFSKEL_HOST_API is 2020 up to release 2020.12, 2021 since;
+/// MCFSKEL_RENAMED_PARAMETERS is 1 since release 2023.12.
+
+#ifndef MCFSKEL_HOST_API_H
+#define MCFSKEL_HOST_API_H
+
+#if MCFSKEL_HOST_API == 2020
+#include <common/interfaces.h>
+
+#include <Eigen/Core>
+
+#include <QMetaType>
+
+/// Later releases declare it themselves.
+Q_DECLARE_METATYPE(Eigen::VectorXd)
+#else
+#include <common/plugins/interfaces/filter_plugin.h>
+#include <common/plugins/interfaces/io_plugin.h>
+
+#include <common/parameters/rich_parameter_list.h>
+#endif
+
+#include <QApplication>
+#include <QWidget>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace mcfskel::host {
+
+/// Whether somebody looks at the layers: in MeshLab's main window, which scripts do not have.
+inline bool hasWindow()
+{
+	const QWidgetList windows = QApplication::topLevelWidgets();
+	return std::any_of(windows.begin(), windows.end(),
+		[](const QWidget* window) { return window->inherits("QMainWindow"); });
+}
+
+#if MCFSKEL_RENAMED_PARAMETERS
+using RichPercentage = ::RichPercentage;
+using RichFileOpen = ::RichFileOpen;
+using RichFileSave = ::RichFileSave;
+#else
+using RichPercentage = ::RichAbsPerc;
+using RichFileOpen = ::RichOpenFile;
+using RichFileSave = ::RichSaveFile;
+#endif
+
+#if MCFSKEL_HOST_API == 2020
+
+using FilterBase = MeshFilterInterface;
+/// The document as a filter's parameters may see it.
+using ParameterDocument = MeshDocument;
+
+/// A parameter of MeshLab's; this age cannot mark one as advanced.
+template <class Rich, class... Arguments>
+Rich makeParameter(bool /*advanced*/, Arguments&&... arguments)
+{
+	return Rich(std::forward<Arguments>(arguments)...);
+}
+
+inline MeshModel* currentLayer(ParameterDocument& document)
+{
+	return document.mm();
+}
+
+inline int layerId(const RichParameterList& list, const QString& name)
+{
+	return list.getMesh(name)->id();
+}
+
+inline void updateBoxAndNormals(MeshModel& layer)
+{
+	layer.UpdateBoxAndNormals();
+}
+
+inline std::vector<const MeshModel*> layersOf(const MeshDocument& document)
+{
+	return {document.meshList.begin(), document.meshList.end()};
+}
+
+inline void removeLayer(MeshDocument& document, int id)
+{
+	document.delMesh(document.getMesh(id));
+}
+
+#else
+
+using FilterBase = FilterPlugin;
+using ParameterDocument = const MeshDocument;
+
+template <class Rich, class... Arguments>
+Rich makeParameter(bool advanced, Arguments&&... arguments)
+{
+	return Rich(std::forward<Arguments>(arguments)..., advanced);
+}
+
+/// The current layer as a RichMesh takes it.
+inline unsigned currentLayer(ParameterDocument& document)
+{
+	return document.mm() ? unsigned(document.mm()->id()) : 0;
+}
+
+inline int layerId(const RichParameterList& list, const QString& name)
+{
+	return int(list.getMeshId(name));
+}
+
+inline void updateBoxAndNormals(MeshModel& layer)
+{
+	layer.updateBoxAndNormals();
+}
+
+inline std::vector<const MeshModel*> layersOf(const MeshDocument& document)
+{
+	std::vector<const MeshModel*> layers;
+	for (const MeshModel& layer : document.meshIterator())
+		layers.push_back(&layer);
+	return layers;
+}
+
+inline void removeLayer(MeshDocument& document, int id)
+{
+	document.delMesh(unsigned(id));
+}
+
+#endif
+
+} // namespace mcfskel::host
+
+#endif

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief Quality and colour on layers that are there, and faces on layers of points.
+
+#ifndef MCFSKEL_FIELDS_H
+#define MCFSKEL_FIELDS_H
+
+#include "layers.h"
+
+#include <skeleton/state.h>
+
+#include <vector>
+
+namespace mcfskel {
+
+/// Joins the vertices of a new layer by triangles.
+void addFaces(MeshModel& layer, const std::vector<vcg::tri::mcf::Triangle>& triangles);
+
+/// The vertex quality of a layer, for each vertex that is not deleted; empty if it has none.
+std::vector<double> vertexQuality(const MeshModel& layer);
+
+/// Sets the vertex quality; one value for each vertex that is not deleted.
+void setVertexQuality(MeshModel& layer, const std::vector<double>& values);
+
+/// As above for a surface layer, one value for each vertex of `surface`; 0 where there is none.
+void setVertexQuality(
+	MeshModel& layer, const SurfaceLayer& surface, const std::vector<double>& values);
+
+/// Colours the vertices from blue for `low` through green to red for `high`.
+void setVertexColours(MeshModel& layer, const std::vector<double>& values, double low, double high);
+
+/**
+ * For each face slot of a layer its part; -1 where the face was left out.
+ * @param ofFace  one for each face of `surface`, which the layer was read as.
+ * @throws Cancelled
+ */
+std::vector<int> facePartsOfSlots(const MeshModel& layer, const SurfaceLayer& surface,
+	const std::vector<int>& ofFace, const vcg::tri::mcf::Progress& progress);
+
+/// Sets the quality of each face slot to its part, and its colour to one for that part; what has no
+/// part, -1, is grey.
+void setFaceParts(MeshModel& layer, const std::vector<int>& ofSlot);
+
+} // namespace mcfskel
+
+#endif

@@ -1,0 +1,238 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief Between the host's layers and the pipeline: reading surfaces and stages from layers,
+/// writing results as new layers and as custom attributes.
+///
+/// What users and scripts see are the attributes mcfskel_*. They hold the host's scalar, often a
+/// float, while the pipeline counts in double; so each layer also carries its exact state, in one more
+/// attribute (attributes.h). Steps made one by one are then the same, bit for bit, as a full run.
+/// The state counts only as long as the layer's geometry is what it was when the state was written.
+
+#ifndef MCFSKEL_LAYERS_H
+#define MCFSKEL_LAYERS_H
+
+#include "../host/host_api.h"
+#include "stage_fields.h"
+
+#include <skeleton/state.h>
+
+#include <QString>
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace mcfskel {
+
+/// A surface layer as the pipeline takes it: checked, compact, in double.
+struct SurfaceLayer
+{
+	std::shared_ptr<const vcg::tri::mcf::SurfaceMesh> mesh;
+	/// For each vertex slot of the layer, deleted ones included, the vertex of `mesh`, or -1.
+	std::shared_ptr<const std::vector<int>> vertexOfSlot;
+	/// What had to be repaired, for the log.
+	std::vector<std::string> notes;
+};
+
+/// Which layer a stage or skeleton comes from.
+struct SurfaceLink
+{
+	int layerId = -1;
+	/// Of the layer's geometry, so that another layer is never taken for it.
+	std::uint64_t fingerprint = 0;
+	std::shared_ptr<const std::vector<int>> vertexOfSlot;
+};
+
+/// A stage of the contraction as found on a layer.
+struct StageLayer
+{
+	std::shared_ptr<const vcg::tri::mcf::Stage> stage;
+	SurfaceLink surface;
+
+	explicit operator bool() const { return stage != nullptr; }
+};
+
+/// A skeleton as found on a layer.
+struct CurveLayer
+{
+	/// Exact where the layer still is what a filter made; else what the layer shows, the radius from
+	/// its attribute or empty. `node` is empty where the correspondence is not known.
+	vcg::tri::mcf::CurveSkeleton skeleton;
+	/// The surface whose vertices `skeleton.node` counts.
+	SurfaceLink surface;
+	QString surfaceName;
+
+	/// For each vertex of the surface's layer its node or -1; empty if not known.
+	std::vector<int> nodeOfLayerVertex() const;
+};
+
+/**
+ * The length, in mesh units, that 100 % of a Length means on this layer: the bounding box diagonal; of
+ * a stage, or a skeleton as a filter made it, that of its surface: the same at every step.
+ */
+double referenceDiagonal(const MeshModel& layer);
+
+/// A name without file type and without what the filters append: NAME of NAME_meso_4.
+QString baseName(QString name);
+
+/// The layer's name without file type and without what the filters append: NAME of NAME_meso_4.
+QString baseName(const MeshModel& layer);
+
+/**
+ * Reads and checks a surface layer; the layer itself is not changed.
+ * @throws InvalidInput if it is empty, has no faces, is a stage of the contraction, is not a closed
+ *         two-manifold (see checkedSurface()), or has an attribute mcfskel_* of a foreign type;
+ *         Cancelled.
+ */
+SurfaceLayer readSurface(
+	const MeshModel& layer, const vcg::tri::mcf::Progress& progress = vcg::tri::mcf::Progress());
+
+/**
+ * The selected vertices of a layer.
+ * @param vertexOfSlot  for each vertex slot of the layer the vertex that it is, or -1.
+ * @return 1 for the selected ones of `vertices` vertices; empty if none is selected.
+ */
+std::vector<char> readSelection(
+	const MeshModel& layer, const std::vector<int>& vertexOfSlot, int vertices);
+
+/// As above for a layer whose slots are its vertices, as those of a stage are.
+std::vector<char> readSelection(const MeshModel& layer);
+
+/// The stage that a layer holds; false if it is none, or if its geometry was edited since.
+StageLayer readStage(const MeshModel& layer);
+
+/**
+ * Reads a skeleton from a layer of edges, of any origin. A single node without edges counts if a
+ * filter made it.
+ * @throws InvalidInput if the layer has faces, no edges, or an edge from a vertex to itself.
+ */
+CurveLayer readCurve(const MeshModel& layer);
+
+/// Puts a skeleton into a new, empty layer.
+void fillCurve(MeshModel& layer, const CurveLayer& curve);
+
+/// The values of mcfskel_node on a surface layer, for each vertex; empty if it has none.
+std::vector<int> readNodes(const MeshModel& layer);
+
+/// Whether a layer was a stage once, so that it is worth a word in the log that it is none any more.
+bool hasStageAttributes(const MeshModel& layer);
+
+/**
+ * The poles that a surface layer carries, one for each vertex of `surface`; null if it has none, or
+ * none that fit its vertices. Exact ones unless somebody has changed the visible ones.
+ * @throws Cancelled
+ */
+std::shared_ptr<const vcg::tri::mcf::PoleSet> readPoles(
+	const MeshModel& layer, const SurfaceLayer& surface, const vcg::tri::mcf::Progress& progress);
+
+/**
+ * Changes to a document, all or none: what was added is removed again unless commit() is reached, and what
+ * was there is not changed before.
+ * Layers that were there before must have gone through readSurface() or readStage().
+ */
+class DocumentEdit
+{
+public:
+	explicit DocumentEdit(MeshDocument& document);
+	~DocumentEdit();
+	DocumentEdit(const DocumentEdit&) = delete;
+	DocumentEdit& operator=(const DocumentEdit&) = delete;
+
+	/// A new surface layer in the frame of `source`. @throws Cancelled
+	MeshModel& addSurface(const MeshModel& source, const QString& label,
+		const vcg::tri::mcf::SurfaceMesh& mesh, const vcg::tri::mcf::Progress& progress);
+
+	/// A new layer of points without faces in the frame of `source`.
+	MeshModel& addPoints(
+		const MeshModel& source, const QString& label, const std::vector<vcg::Point3d>& points);
+
+	/// A new layer of nodes and edges in the frame of `source`; the radius is also the quality.
+	MeshModel& addCurve(const MeshModel& source, const QString& label,
+		const std::vector<vcg::Point3d>& nodes, const std::vector<std::array<int, 2>>& edges,
+		const std::vector<double>& radius);
+
+	/// The same with all that the skeleton knows, its correspondence included.
+	MeshModel& addCurve(const MeshModel& source, const QString& label, const CurveLayer& curve);
+
+	/// A new layer of curves and sheets, with mcfskel_kind and mcfskel_radius; the radius is also the
+	/// quality.
+	MeshModel& addMesoSkeleton(
+		const MeshModel& source, const QString& label, const vcg::tri::mcf::MesoSkeleton& skeleton);
+
+	/// A new layer of a stage, with all that the next step needs. @throws Cancelled
+	MeshModel& addStage(const MeshModel& source, const QString& label,
+		std::shared_ptr<const vcg::tri::mcf::Stage> stage, const StageFields& fields,
+		const SurfaceLink& surface, const vcg::tri::mcf::Progress& progress);
+
+	/// As above, read from files: in the frame of their surface's layer, if that is there.
+	MeshModel& addCurve(const QString& label, const CurveLayer& curve);
+	MeshModel& addStage(const QString& label, std::shared_ptr<const vcg::tri::mcf::Stage> stage,
+		const StageFields& fields, const SurfaceLink& surface,
+		const vcg::tri::mcf::Progress& progress);
+
+	/// Gives a layer its surface in full precision.
+	void attachSurface(MeshModel& layer, const SurfaceLayer& surface);
+
+	/// Writes poles as attributes of a surface layer, and gives it its surface in full precision.
+	void writePoles(MeshModel& layer, const SurfaceLayer& surface,
+		std::shared_ptr<const vcg::tri::mcf::PoleSet> poles);
+
+	/// Writes mcfskel_node: for each vertex of the layer's surface the vertex it has merged into.
+	void writeNodes(
+		MeshModel& layer, const std::vector<int>& vertexOfSlot, const std::vector<int>& node);
+
+	/// As above for a surface known by its link, if that layer is still there and unchanged.
+	void writeNodes(const SurfaceLink& surface, const std::vector<int>& node);
+
+	/**
+	 * Comes last in a filter: whatever else may fail, such as the memory for its results, has been done. Keeps
+	 * the changes and makes the layer added last the current one. In MeshLab's window that one
+	 * is seen at once: it lies inside the layers that it was made from, so these are hidden, and so
+	 * are the other new ones; curves and points are coloured by their quality, and not shaded. Where
+	 * there is no window nothing of this is done: scripts use visibility to say which layers a filter
+	 * works on, and colours would be saved with the layer.
+	 */
+	void commit();
+
+private:
+	/// An attribute that a layer did not have.
+	struct NewAttribute
+	{
+		MeshModel* layer;
+		const char* name;
+	};
+
+	MeshModel& addLayer(const MeshModel& source, const QString& label);
+	MeshModel& addLayer(const SurfaceLink& surface, const QString& label);
+	MeshModel& addLayer(const Matrix44m& frame, const QString& label);
+	/// To be called before an attribute is made.
+	void noteNew(MeshModel& layer, const char* attribute);
+	void changeState(MeshModel& layer, const SurfaceLayer& surface,
+		std::shared_ptr<const vcg::tri::mcf::PoleSet> poles);
+	void present();
+
+	MeshDocument& document;
+	int previousLayer;
+	std::vector<int> added;
+	std::vector<NewAttribute> newAttributes;
+	/// What commit() does to layers that may have been there before. It cannot fail: memory is had by then.
+	std::vector<std::function<void()>> changes;
+	/// The layers that the added ones were made from.
+	std::vector<int> sources;
+	bool committed = false;
+};
+
+/// The link to a surface layer, for the stages that will come from it.
+SurfaceLink linkTo(const MeshModel& layer, const SurfaceLayer& surface);
+
+/// The link to the layer of a document that has this fingerprint, if there is one.
+SurfaceLink linkTo(
+	const MeshDocument& document, std::uint64_t fingerprint, std::vector<int> vertexOfSlot);
+
+} // namespace mcfskel
+
+#endif

@@ -1,0 +1,280 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "layer_state.h"
+
+#include <QRegularExpression>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace mcfskel {
+
+namespace {
+
+/// Whether each pole is at its radius from its vertex, as those of an edited mesh are not.
+bool fits(const mcf::PoleSet& poles, const mcf::SurfaceMesh& mesh)
+{
+	const double tolerance = 1e-4 * mesh.bounds().Diag();
+	for (int v = 0; v < mesh.vertexSlots(); ++v) {
+		if (!std::isfinite(poles.radius[v]))
+			return false;
+		if (!poles.has(v))
+			continue;
+		const double distance = vcg::Distance(poles.centre[v], mesh.position[v]);
+		if (!(std::abs(distance - poles.radius[v]) <= tolerance))
+			return false;
+	}
+	return true;
+}
+
+/// Whether the exact poles are what the host's scalars show.
+bool sameInHost(const mcf::PoleSet& exact, const mcf::PoleSet& shown)
+{
+	for (size_t v = 0; v < exact.radius.size(); ++v) {
+		if (Scalarm(exact.radius[v]) != Scalarm(shown.radius[v]))
+			return false;
+		if (exact.has(int(v)) && toHost(exact.centre[v]) != toHost(shown.centre[v]))
+			return false;
+	}
+	return true;
+}
+
+} // namespace
+
+double referenceDiagonal(const MeshModel& layer)
+{
+	vcg::Box3d box;
+	const StatePointer state = findState(layer.cm);
+	if (state && state->diagonal > 0 && validState(layer))
+		return state->diagonal;
+	if (state && state->stage)
+		for (const vcg::Point3d& p : *state->stage.stage->surface)
+			box.Add(p);
+	else if (box = liveBounds(layer.cm); !box.IsNull()) {
+		const mcf::SurfaceRounding rounded(box);
+		box.min = rounded(box.min);
+		box.max = rounded(box.max);
+	}
+	const double diagonal = box.IsNull() ? 0 : box.Diag();
+	return std::isfinite(diagonal) ? diagonal : 0;
+}
+
+QString baseName(QString name)
+{
+	static const QRegularExpression copyNumber("\\(\\d+\\)$");
+	static const QRegularExpression fileType("\\.[A-Za-z0-9]{1,5}$");
+	static const QRegularExpression appended(
+		"_(resampled|meso_\\d+|skeleton|refined|poles|pruned|smoothed|medial|balls)$");
+	name.remove(copyNumber);
+	name.remove(fileType);
+	name.remove(appended);
+	return name.isEmpty() ? QString("mesh") : name;
+}
+
+QString baseName(const MeshModel& layer)
+{
+	return baseName(layer.label());
+}
+
+SurfaceLayer readSurface(const MeshModel& layer, const mcf::Progress& progress)
+{
+	requireOwnAttributes(layer);
+	const std::string label = "'" + layer.label().toStdString() + "'";
+	if (const StatePointer state = validState(layer)) {
+		if (state->stage)
+			throw mcf::InvalidInput("The current layer " + label
+				+ " is a stage of the contraction, not a surface: make the surface layer current.");
+		if (state->surface.mesh)
+			return state->surface;
+	}
+	const CMeshO& mesh = layer.cm;
+	if (mesh.fn == 0 && mesh.en > 0)
+		throw mcf::InvalidInput("The current layer " + label
+			+ " is a curve, edges without faces: make the surface layer current.");
+
+	const char* const what = "Reading the layer";
+	const int slotCount = int(mesh.vert.size());
+	std::vector<int> pointOfSlot;
+	pointOfSlot.reserve(mesh.vert.size());
+	std::vector<vcg::Point3d> points;
+	points.reserve(size_t(mesh.vn));
+	vcg::Box3d box;
+	mcf::detail::reportedLoop(slotCount, progress.part(0, 0.1), what, [&](int slot) {
+		const CVertexO& v = mesh.vert[size_t(slot)];
+		pointOfSlot.push_back(v.IsD() ? -1 : int(points.size()));
+		if (v.IsD())
+			return;
+		points.push_back(toDouble(v.cP()));
+		box.Add(points.back());
+	});
+	const mcf::SurfaceRounding rounded(box);
+	mcf::detail::reportedLoop(int(points.size()), progress.part(0.1, 0.1), what,
+		[&](int i) { points[size_t(i)] = rounded(points[size_t(i)]); });
+	std::vector<mcf::Triangle> triangles;
+	triangles.reserve(size_t(mesh.fn));
+	mcf::detail::reportedLoop(int(mesh.face.size()), progress.part(0.1, 0.2), what, [&](int i) {
+		const CFaceO& f = mesh.face[size_t(i)];
+		if (f.IsD())
+			return;
+		mcf::Triangle triangle;
+		for (int k = 0; k < 3; ++k)
+			triangle[size_t(k)] = pointOfSlot[vcg::tri::Index(mesh, f.cV(k))];
+		triangles.push_back(triangle);
+	});
+	mcf::CheckedSurface checked = mcf::checkedSurface(points, triangles, progress.part(0.2, 1));
+	auto vertexOfSlot = std::make_shared<std::vector<int>>();
+	vertexOfSlot->reserve(pointOfSlot.size());
+	mcf::detail::reportedLoop(slotCount, progress.part(1, 1), what, [&](int slot) {
+		const int point = pointOfSlot[size_t(slot)];
+		vertexOfSlot->push_back(point < 0 ? -1 : checked.vertexOfInput[size_t(point)]);
+	});
+	return {std::make_shared<const mcf::SurfaceMesh>(std::move(checked.mesh)), vertexOfSlot,
+		std::move(checked.notes)};
+}
+
+std::vector<char> readSelection(
+	const MeshModel& layer, const std::vector<int>& vertexOfSlot, int vertices)
+{
+	std::vector<char> selected(size_t(vertices), 0);
+	bool any = false;
+	for (size_t slot = 0; slot < layer.cm.vert.size(); ++slot) {
+		const CVertexO& v = layer.cm.vert[slot];
+		if (v.IsD() || !v.IsS() || vertexOfSlot[slot] < 0)
+			continue;
+		selected[size_t(vertexOfSlot[slot])] = 1;
+		any = true;
+	}
+	return any ? selected : std::vector<char>();
+}
+
+std::vector<char> readSelection(const MeshModel& layer)
+{
+	std::vector<int> identity(layer.cm.vert.size());
+	std::iota(identity.begin(), identity.end(), 0);
+	return readSelection(layer, identity, int(identity.size()));
+}
+
+StageLayer readStage(const MeshModel& layer)
+{
+	const StatePointer state = validState(layer);
+	return state ? state->stage : StageLayer();
+}
+
+std::vector<int> CurveLayer::nodeOfLayerVertex() const
+{
+	std::vector<int> result;
+	if (skeleton.node.empty() || !surface.vertexOfSlot)
+		return result;
+	for (int v : *surface.vertexOfSlot)
+		result.push_back(v < 0 ? -1 : skeleton.node[size_t(v)]);
+	return result;
+}
+
+CurveLayer readCurve(const MeshModel& layer)
+{
+	if (const StatePointer state = validState(layer); state && state->curve)
+		return *state->curve;
+	const std::string label = "'" + layer.label().toStdString() + "'";
+	const CMeshO& mesh = layer.cm;
+	const auto* radius = findAttribute(mesh.vert_attr, radiusAttribute);
+	if (mesh.fn > 0)
+		throw mcf::InvalidInput("The layer " + label
+			+ " has faces, it is no curve skeleton: make a layer of nodes and edges current.");
+	if (mesh.en == 0 && !(mesh.vn == 1 && radius))
+		throw mcf::InvalidInput("The layer " + label
+			+ " has no edges, it is no curve skeleton: make a layer of nodes and edges current.");
+
+	CurveLayer curve;
+	std::vector<int> nodeOfSlot(mesh.vert.size(), -1);
+	for (int slot : liveSlots(mesh)) {
+		nodeOfSlot[size_t(slot)] = int(curve.skeleton.position.size());
+		curve.skeleton.position.push_back(toDouble(mesh.vert[size_t(slot)].cP()));
+		if (radius && isOfType<Scalarm>(*radius))
+			curve.skeleton.radius.push_back(double(valuesOf<Scalarm>(*radius)[slot]));
+	}
+	auto& edges = curve.skeleton.edges;
+	for (const CEdgeO& e : mesh.edge) {
+		if (e.IsD())
+			continue;
+		const auto ends = std::minmax(
+			nodeOfSlot[vcg::tri::Index(mesh, e.cV(0))], nodeOfSlot[vcg::tri::Index(mesh, e.cV(1))]);
+		if (ends.first == ends.second)
+			throw mcf::InvalidInput("The layer " + label + " has an edge from a vertex to itself.");
+		edges.push_back({ends.first, ends.second});
+	}
+	std::sort(edges.begin(), edges.end());
+	edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+	return curve;
+}
+
+std::vector<int> readNodes(const MeshModel& layer)
+{
+	std::vector<int> result;
+	const auto* attribute = findAttribute(layer.cm.vert_attr, nodeAttribute);
+	if (!attribute || !isOfType<Scalarm>(*attribute))
+		return result;
+	for (int slot : liveSlots(layer.cm)) {
+		const double value = double(valuesOf<Scalarm>(*attribute)[slot]);
+		// Negated, so that NaN counts as no node.
+		result.push_back(!(value >= 0 && value <= 1e9) ? -1 : int(value));
+	}
+	return result;
+}
+
+bool hasStageAttributes(const MeshModel& layer)
+{
+	return findAttribute(layer.cm.vert_attr, fixedAttribute) != nullptr;
+}
+
+std::shared_ptr<const mcf::PoleSet> readPoles(
+	const MeshModel& layer, const SurfaceLayer& surface, const mcf::Progress& progress)
+{
+	const char* const what = "Reading the layer";
+	progress.report(0, what);
+	const auto* centreFound = findAttribute(layer.cm.vert_attr, poleAttribute);
+	const auto* radiusFound = findAttribute(layer.cm.vert_attr, poleRadiusAttribute);
+	if (!centreFound || !radiusFound)
+		return nullptr;
+	const auto* centre = valuesOf<Point3m>(*centreFound);
+	const auto* radius = valuesOf<Scalarm>(*radiusFound);
+
+	auto shown = std::make_shared<mcf::PoleSet>();
+	const size_t count = size_t(surface.mesh->vertexSlots());
+	shown->centre = mcf::detail::filledArray(count, vcg::Point3d(0, 0, 0), progress, what);
+	shown->radius = mcf::detail::filledArray(count, -1.0, progress, what);
+	const std::vector<int>& vertexOfSlot = *surface.vertexOfSlot;
+	mcf::detail::reportedLoop(int(vertexOfSlot.size()), progress, what, [&](int slot) {
+		const int v = vertexOfSlot[size_t(slot)];
+		if (v < 0)
+			return;
+		shown->centre[size_t(v)] = toDouble(centre[slot]);
+		shown->radius[size_t(v)] = double(radius[slot]);
+	});
+	progress.report(1, what);
+	const StatePointer state = validState(layer);
+	if (state && state->poles && sameInHost(*state->poles, *shown))
+		return state->poles;
+	return fits(*shown, *surface.mesh) ? shown : nullptr;
+}
+
+SurfaceLink linkTo(const MeshModel& layer, const SurfaceLayer& surface)
+{
+	return {layer.id(), fingerprint(layer.cm), surface.vertexOfSlot};
+}
+
+SurfaceLink linkTo(
+	const MeshDocument& document, std::uint64_t wanted, std::vector<int> vertexOfSlot)
+{
+	SurfaceLink link;
+	link.fingerprint = wanted;
+	for (const MeshModel* layer : host::layersOf(document))
+		if (link.layerId < 0 && layer->cm.vert.size() == vertexOfSlot.size()
+			&& fingerprint(layer->cm) == wanted)
+			link.layerId = layer->id();
+	link.vertexOfSlot = std::make_shared<const std::vector<int>>(std::move(vertexOfSlot));
+	return link;
+}
+
+} // namespace mcfskel

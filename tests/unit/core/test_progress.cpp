@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include <skeleton/core/errors.h>
+#include <skeleton/core/progress.h>
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+using namespace vcg::tri::mcf;
+
+namespace {
+
+/// A progress that writes down its percentages.
+Progress recorder(std::vector<int>& percents)
+{
+	return Progress([&](int percent, const char*) {
+		percents.push_back(percent);
+		return true;
+	});
+}
+
+} // namespace
+
+TEST(Progress, ReportsFractionsAsPercents)
+{
+	std::vector<int> percents;
+	const Progress progress = recorder(percents);
+	for (double fraction : {0.0, 0.25, 0.5, 1.0})
+		progress.report(fraction, "work");
+	EXPECT_EQ(percents, std::vector<int>({0, 25, 50, 100}));
+}
+
+TEST(Progress, APartIsAWindow)
+{
+	std::vector<int> percents;
+	const Progress half = recorder(percents).part(0.5, 1);
+	half.report(0, "work");
+	half.report(1, "work");
+	const Progress nested = half.part(0.5, 0.75); // 0.75 to 0.875 of the whole
+	nested.report(0, "work");
+	nested.report(1, "work");
+	EXPECT_EQ(percents, std::vector<int>({50, 100, 75, 87}));
+}
+
+TEST(Progress, StaysInItsWindow)
+{
+	std::vector<int> percents;
+	const Progress window = recorder(percents).part(0.25, 0.5);
+	window.report(-3, "work");
+	window.report(7, "work");
+	EXPECT_EQ(percents, std::vector<int>({25, 50}));
+}
+
+TEST(Progress, PassesOnWhatIsBeingDone)
+{
+	std::string said;
+	const Progress progress([&](int, const char* what) {
+		said = what;
+		return true;
+	});
+	progress.part(0, 0.5).report(0.5, "Contracting");
+	EXPECT_EQ(said, "Contracting");
+}
+
+TEST(Progress, CancelsWhenTheCallbackSaysSo)
+{
+	int calls = 0;
+	const Progress progress([&](int, const char*) { return ++calls < 3; });
+	EXPECT_NO_THROW(progress.report(0, "work"));
+	EXPECT_NO_THROW(progress.part(0, 0.1).report(0.5, "work"));
+	EXPECT_THROW(progress.report(0.2, "work"), Cancelled);
+	EXPECT_EQ(calls, 3);
+}
+
+TEST(Progress, IsSilentByDefault)
+{
+	EXPECT_NO_THROW(Progress().part(0, 0.5).report(1, "work"));
+}
+
+TEST(Errors, AreAllErrors)
+{
+	// One handler at the boundary catches them all, and can still tell them apart.
+	EXPECT_THROW(throw InvalidInput("x"), Error);
+	EXPECT_THROW(throw InvalidParameter("x"), Error);
+	EXPECT_THROW(throw SolverError("x"), Error);
+	EXPECT_THROW(throw Cancelled(), Error);
+	EXPECT_STREQ(InvalidInput("what is wrong").what(), "what is wrong");
+}

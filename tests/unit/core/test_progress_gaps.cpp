@@ -1,0 +1,205 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// No stage is silent for long: measured by the work between two reports, not by a clock, which
+// would measure the machine.
+
+#include "shapes.h"
+
+#include <skeleton/input/check_input.h>
+#include <skeleton/core/errors.h>
+#include <skeleton/flow/first_stage.h>
+#include <skeleton/core/reported_arrays.h>
+#include <skeleton/mesh/measured_surface.h>
+#include <skeleton/input/denoise.h>
+#include <skeleton/spatial/point_tree.h>
+#include <skeleton/refine/refine.h>
+#include <skeleton/resample/resample.h>
+#include <skeleton/flow/flow.h>
+#include <skeleton/input/soup_repair.h>
+#include <skeleton/poles/voronoi_poles.h>
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <utility>
+#include <vector>
+
+using namespace vcg::tri::mcf;
+
+namespace {
+
+/// Runs a job; returns how often it reported, or -1 if the bar went backwards.
+int reportsOf(const std::function<void(const Progress&)>& job)
+{
+	int reports = 0, last = 0;
+	bool forward = true;
+	job(Progress([&](int percent, const char*) {
+		forward = forward && percent >= last;
+		last = percent;
+		++reports;
+		return true;
+	}));
+	return forward ? reports : -1;
+}
+
+/// A vertex takes no stage more than some 5 us between two reports: 40 ms.
+constexpr int mostVerticesBetweenReports = 8192;
+
+} // namespace
+
+TEST(ProgressGaps, ReadingADenseSurfaceReportsAsItGrows)
+{
+	const shapes::Soup soup = shapes::sphere(7);
+	const SurfaceMesh mesh = soup.mesh();
+	const int wanted = mesh.vertexCount() / mostVerticesBetweenReports;
+	EXPECT_GE(reportsOf([&](const Progress& p) { checkedSurface(soup.points, soup.triangles, p); }),
+		wanted / 4); // these take less than a microsecond for a vertex
+	EXPECT_GE(reportsOf([&](const Progress& p) { PointTree(mesh.position, p); }), wanted / 4);
+	EXPECT_GE(reportsOf([&](const Progress& p) { measureNoise(mesh, p); }), wanted);
+}
+
+/// What a surface that is not closed as given takes in addition: edges sorted, faces turned, fans told.
+TEST(ProgressGaps, RepairingADenseSurfaceReportsAsItGrows)
+{
+	const shapes::Soup closed = shapes::sphere(7), unmerged = shapes::unmerged(closed);
+	shapes::Soup turned = closed, doubled = closed, open = closed;
+	for (size_t f = 0; f < turned.triangles.size(); f += 10)
+		std::swap(turned.triangles[f][0], turned.triangles[f][1]);
+	doubled.triangles.push_back(doubled.triangles[5]);
+	open.triangles.pop_back();
+	for (const shapes::Soup& soup : {unmerged, turned, doubled}) {
+		const int wanted = int(soup.triangles.size()) / mostVerticesBetweenReports;
+		EXPECT_GE(
+			reportsOf([&](const Progress& p) { repairedSoup(soup.points, soup.triangles, p); }),
+			4 * wanted); // faces, edges, sides, fans
+		EXPECT_GE(
+			reportsOf([&](const Progress& p) { checkedSurface(soup.points, soup.triangles, p); }),
+			5 * wanted);
+	}
+	const int wanted = int(open.triangles.size()) / mostVerticesBetweenReports;
+	EXPECT_GE(reportsOf([&](const Progress& p) {
+		EXPECT_THROW(repairedSoup(open.points, open.triangles, p), InvalidInput);
+	}),
+		4 * wanted); // faces and edges, as given and merged
+}
+
+TEST(ProgressGaps, RepairIsCancelledAtAnyReport)
+{
+	const shapes::Soup soup = shapes::unmerged(shapes::sphere(5));
+	const int reports =
+		reportsOf([&](const Progress& p) { repairedSoup(soup.points, soup.triangles, p); });
+	for (int last = 1; last <= reports; ++last) {
+		int heard = 0;
+		const Progress progress([&](int, const char*) { return ++heard < last; });
+		EXPECT_THROW(repairedSoup(soup.points, soup.triangles, progress), Cancelled);
+		EXPECT_EQ(heard, last);
+	}
+}
+
+TEST(ProgressGaps, PolesAndStepsReportAsTheSurfaceGrows)
+{
+	const SurfaceMesh mesh = shapes::sphere(6).mesh();
+	const int wanted = mesh.vertexCount() / mostVerticesBetweenReports;
+	Parameters parameters;
+	parameters.epsilon = 1e-5; // nothing is coarsened
+	Stage stage;
+	EXPECT_GE(
+		reportsOf([&](const Progress& p) { stage = firstStage(mesh, parameters, nullptr, p); }),
+		4 * wanted); // four stages
+	EXPECT_EQ(stage.mesh.vertexCount(), mesh.vertexCount());
+	EXPECT_GE(
+		reportsOf([&](const Progress& p) { stage = step(stage, parameters, p); }), 2 * wanted);
+}
+
+TEST(ProgressGaps, ResamplingReportsAsItsInputGrows)
+{
+	const SurfaceMesh mesh = shapes::sphere(7).mesh();
+	const int wanted = mesh.vertexCount() / mostVerticesBetweenReports;
+	EXPECT_GE(reportsOf([&](const Progress& p) { MeasuredSurface(mesh, p); }), wanted);
+	const MeasuredSurface surface(mesh);
+	EXPECT_GE(reportsOf([&](const Progress& p) { smoothed(surface, {2}, p); }), 2 * wanted);
+	SurfaceMesh coarse;
+	const int reports =
+		reportsOf([&](const Progress& p) { coarse = resample(surface, {0.3}, 1, p); });
+	EXPECT_LT(coarse.vertexCount(), mesh.vertexCount() / 50);
+	EXPECT_GE(reports, 4 * wanted); // ordering, creases, coarsening
+}
+
+TEST(ProgressGaps, ResamplingReportsAsItsResultGrows)
+{
+	const SurfaceMesh mesh = shapes::sphere(3).mesh();
+	SurfaceMesh fine;
+	const int reports = reportsOf([&](const Progress& p) { fine = resample(mesh, {0.03}, 5, p); });
+	EXPECT_GE(reports, 5 * 4 * fine.vertexCount() / mostVerticesBetweenReports); // rounds, passes
+}
+
+/// Between two reports some MB may be touched that nobody has touched before: these come slowly.
+TEST(ProgressGaps, LargeArraysAreMadeInPieces)
+{
+	constexpr size_t count = 10'000'000;
+	constexpr int wanted = int(count * sizeof(int) >> 22);
+	std::vector<int> filled, copied;
+	EXPECT_GE(reportsOf([&](const Progress& p) { filled = detail::filledArray(count, 7, p, ""); }),
+		wanted);
+	EXPECT_EQ(filled, std::vector<int>(count, 7));
+	filled[count / 2] = 8;
+	EXPECT_GE(
+		reportsOf([&](const Progress& p) { copied = detail::copiedArray(filled, p, ""); }), wanted);
+	EXPECT_EQ(copied, filled);
+	detail::fillReported(copied, 3, 9, Progress(), "");
+	EXPECT_EQ(copied, std::vector<int>(3, 9));
+}
+
+TEST(ProgressGaps, WhatADenseSurfaceIsToldAtTheEndReportsAsItGrows)
+{
+	const SurfaceMesh mesh = shapes::sphere(7).mesh();
+	const int wanted = mesh.vertexCount() / mostVerticesBetweenReports;
+	EXPECT_GE(reportsOf([&](const Progress& p) { mesh.copied(p); }), wanted / 4);
+	EXPECT_GE(reportsOf([&](const Progress& p) { mesh.volume(p); }), wanted / 4);
+	EXPECT_GE(reportsOf([&](const Progress& p) { SurfaceMesh(mesh).compact(p); }), wanted / 4);
+	const Stage stage = firstStage(mesh, Parameters());
+	EXPECT_GE(reportsOf([&](const Progress& p) {
+		Stage first = stage;
+		first.frames.reset(); // as where a stage was read, or its poles were given
+		StageFrames(first, p);
+	}),
+		wanted / 4);
+}
+
+namespace {
+
+/// The poles of a mesh, cancelled at the given report; how many reports there were.
+int cancelledAt(const SurfaceMesh& mesh, int report)
+{
+	int reports = 0;
+	EXPECT_THROW(voronoiPoles(mesh, Progress([&](int, const char*) { return ++reports < report; })),
+		Cancelled);
+	return reports;
+}
+
+} // namespace
+
+TEST(ProgressGaps, QhullReportsAsItsPointsGrow)
+{
+	constexpr int mostPointsBetweenReports = 512; // each takes some 50 us: 25 ms
+	const SurfaceMesh mesh = shapes::sphere(5).mesh();
+	int reports = 0, last = 0, steps = 0;
+	PoleSet poles;
+	EXPECT_GE(reports = reportsOf([&](const Progress& p) {
+		poles = voronoiPoles(mesh, Progress([&](int percent, const char* what) {
+			steps += percent > last;
+			last = percent;
+			p.report(percent / 100.0, what);
+			return true;
+		}));
+	}),
+		mesh.vertexCount() / mostPointsBetweenReports);
+	EXPECT_GE(steps, 50); // the bar moves all the way, not only at both ends
+	// Cancelled wherever it is, none but the report that says so follows, and a new run is whole.
+	for (int report = 1; report < reports; report += 1 + reports / 40)
+		EXPECT_EQ(cancelledAt(mesh, report), report);
+	const PoleSet again = voronoiPoles(mesh);
+	EXPECT_EQ(again.radius, poles.radius);
+	EXPECT_EQ(again.centre, poles.centre);
+}

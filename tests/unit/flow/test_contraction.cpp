@@ -1,0 +1,395 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "linear_systems.h"
+#include "mesh_checks.h"
+#include "shapes.h"
+#include "threads.h"
+
+#include <skeleton/flow/contraction.h>
+#include <skeleton/poles/shrinking_balls.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+using namespace vcg::tri::mcf;
+using vcg::Point3d;
+
+namespace {
+
+Stage stageWithPoles(const shapes::Soup& soup)
+{
+	const SurfaceMesh mesh = soup.mesh();
+	return initialStage(mesh, shrinkingBallPoles(mesh));
+}
+
+/// The quadratic form of Eq. 6 at the start of a step, spelled out from the paper.
+struct Energy
+{
+	const Stage& start;
+	double wL, wH, wM;
+	std::vector<double> weight;
+	std::vector<char> pulled; ///< whether the vertex has a medial term
+
+	Energy(const Stage& start, const Parameters& p) :
+			start(start), wL(p.wL), wH(p.wH * publishedWeightUnit), wM(p.wM * publishedWeightUnit),
+			weight(cotangentWeights(start.mesh)), pulled(start.pole.size())
+	{
+		const std::vector<Point3d> normal = start.mesh.vertexNormals();
+		for (size_t v = 0; v < pulled.size(); ++v)
+			pulled[v] = start.poleRadius[v] >= 0
+				&& (start.pole[v] - start.mesh.position[v]) * normal[v] <= 0;
+	}
+
+	double operator()(const std::vector<Point3d>& x) const
+	{
+		double sum = 0;
+		for (int v = 0; v < int(x.size()); ++v) {
+			if (start.fixed[v])
+				continue;
+			Point3d Lx(0, 0, 0);
+			start.mesh.forEachOutgoing(
+				v, [&](int h) { Lx += (x[v] - x[start.mesh.target(h)]) * weight[h]; });
+			sum += wL * wL * Lx.SquaredNorm();
+			sum += wH * wH * vcg::SquaredDistance(x[v], start.mesh.position[v]);
+			if (pulled[v])
+				sum += wM * wM * vcg::SquaredDistance(x[v], start.pole[v]);
+		}
+		return sum;
+	}
+
+	/// The exact minimum, by Eigen.
+	std::vector<Point3d> minimum() const
+	{
+		std::vector<int> unknown(start.fixed.size(), -1);
+		int n = 0;
+		for (size_t v = 0; v < unknown.size(); ++v)
+			if (!start.fixed[v])
+				unknown[v] = n++;
+		std::vector<Eigen::Triplet<double>> entries;
+		Eigen::MatrixXd known = Eigen::MatrixXd::Zero(n, 3), right(n, 3);
+		std::vector<double> D(n);
+		for (int v = 0; v < int(unknown.size()); ++v) {
+			const int i = unknown[v];
+			if (i < 0)
+				continue;
+			start.mesh.forEachOutgoing(v, [&](int h) {
+				const int w = start.mesh.target(h);
+				entries.emplace_back(i, i, wL * weight[h]);
+				if (unknown[w] >= 0)
+					entries.emplace_back(i, unknown[w], -wL * weight[h]);
+				else
+					for (int k = 0; k < 3; ++k)
+						known(i, k) -= wL * weight[h] * start.mesh.position[w][k];
+			});
+			D[i] = wH * wH + (pulled[v] ? wM * wM : 0);
+			for (int k = 0; k < 3; ++k)
+				right(i, k) = wH * wH * start.mesh.position[v][k]
+					+ (pulled[v] ? wM * wM * start.pole[v][k] : 0);
+		}
+		systems::Sparse M(n, n);
+		M.setFromTriplets(entries.begin(), entries.end());
+		const Eigen::MatrixXd X =
+			systems::solved(systems::Sparse(M * M) + systems::diagonal(D), right - M * known);
+		std::vector<Point3d> x = start.mesh.position;
+		for (size_t v = 0; v < unknown.size(); ++v)
+			if (unknown[v] >= 0)
+				for (int k = 0; k < 3; ++k)
+					x[v][k] = X(unknown[v], k);
+		return x;
+	}
+};
+
+double largestMove(const std::vector<Point3d>& a, const std::vector<Point3d>& b)
+{
+	double largest = 0;
+	for (size_t v = 0; v < a.size(); ++v)
+		largest = std::max(largest, vcg::Distance(a[v], b[v]));
+	return largest;
+}
+
+} // namespace
+
+TEST(Contraction, MovesAComponentAsItWouldAlone)
+{
+	const std::vector<shapes::Soup> soups = {shapes::torus(1, 0.3, 90, 30), shapes::tetrahedron(),
+		shapes::moved(shapes::torus(1, 0.4, 80, 40), {5, 0, 0}),
+		shapes::moved(shapes::capsule(), {0, 5, 0})};
+	shapes::Soup soup;
+	PoleSet poles;
+	std::vector<Point3d> expected;
+	for (const shapes::Soup& alone : soups) {
+		const SurfaceMesh mesh = alone.mesh();
+		const PoleSet own = shrinkingBallPoles(mesh);
+		soup = shapes::joined({soup, alone});
+		poles.centre.insert(poles.centre.end(), own.centre.begin(), own.centre.end());
+		poles.radius.insert(poles.radius.end(), own.radius.begin(), own.radius.end());
+		Stage stage = initialStage(mesh, own);
+		contract(stage, Parameters());
+		expected.insert(expected.end(), stage.mesh.position.begin(), stage.mesh.position.end());
+	}
+	const Stage start = initialStage(soup.mesh(), poles);
+	for (int threads : {1, 2, 5}) {
+		const ThreadCount limit(threads);
+		Stage stage = start;
+		contract(stage, Parameters());
+		EXPECT_EQ(stage.mesh.position, expected) << threads; // to the last bit
+	}
+}
+
+TEST(Contraction, LargeSystemsAreTheSameOnAnyNumberOfThreads)
+{
+	const SurfaceMesh mesh = shapes::jittered(shapes::torus(1, 0.3, 220, 100), 0.002).mesh();
+	Stage stage = initialStage(mesh, shrinkingBallPoles(mesh));
+	for (size_t v = 0; v < stage.fixed.size(); v += 7)
+		stage.fixed[v] = 1;
+	const auto systemOn = [&](int threads) {
+		const ThreadCount limit(threads);
+		return flowSystem(stage, Parameters());
+	};
+	const FlowSystem one = systemOn(1);
+	ASSERT_GT(one.vertex.size(), 1u << 14); // as many as several threads share
+	for (int threads : {2, 5}) {
+		const FlowSystem several = systemOn(threads);
+		EXPECT_EQ(several.vertex, one.vertex);
+		EXPECT_EQ(several.M.start, one.M.start);
+		EXPECT_EQ(several.M.excess, one.M.excess);
+		EXPECT_EQ(several.M.diagonal, one.M.diagonal);
+		EXPECT_EQ(several.D, one.D);
+		EXPECT_EQ(several.b, one.b);
+		const auto isSame = [](const SparseEntry& x, const SparseEntry& y) {
+			return x.index == y.index && x.value == y.value;
+		};
+		EXPECT_TRUE(std::equal(several.M.entries.begin(), several.M.entries.end(),
+			one.M.entries.begin(), one.M.entries.end(), isSame));
+	}
+}
+
+TEST(Contraction, MinimisesEquationSix)
+{
+	for (const shapes::Soup& soup : {shapes::jittered(shapes::torus(), 0.005), shapes::capsule(),
+			 shapes::plate(2, 3), shapes::octahedron(), shapes::tetrahedron()}) {
+		const Stage start = stageWithPoles(soup);
+		const Energy energy(start, Parameters());
+		Stage stage = start;
+		contract(stage, Parameters());
+		const double before = energy(start.mesh.position), after = energy(stage.mesh.position);
+		const double least = energy(energy.minimum());
+		EXPECT_LT(after, before);
+		EXPECT_GE(after, least * (1 - 1e-9));
+		// The solver stops at one per cent of its residual: less in the energy.
+		EXPECT_LT(after - least, 1e-3 * (before - least));
+		EXPECT_LT(largestMove(stage.mesh.position, energy.minimum()),
+			0.05 * largestMove(stage.mesh.position, start.mesh.position));
+	}
+}
+
+TEST(Contraction, AnyOtherPositionsHaveMoreEnergy)
+{
+	const Stage start = stageWithPoles(shapes::capsule());
+	Stage stage = start;
+	contract(stage, Parameters());
+	const Energy energy(start, Parameters());
+	const double least = energy(stage.mesh.position);
+	for (unsigned seed = 0; seed < 20; ++seed) {
+		std::vector<Point3d> other = stage.mesh.position;
+		const std::vector<Point3d> offset = systems::randomColumns(int(other.size()), seed);
+		for (size_t v = 0; v < other.size(); ++v)
+			other[v] += offset[v] * 0.01;
+		EXPECT_GT(energy(other), least);
+	}
+	for (const Point3d& by : {Point3d(0.02, 0, 0), Point3d(0, 0.02, 0), Point3d(0, 0, -0.02)}) {
+		std::vector<Point3d> moved = stage.mesh.position, grown = moved;
+		for (size_t v = 0; v < moved.size(); ++v) {
+			moved[v] += by;
+			grown[v] *= 1 + by[0] + by[1] + by[2];
+		}
+		EXPECT_GT(energy(moved), least);
+		EXPECT_GT(energy(grown), least);
+	}
+}
+
+TEST(Contraction, FixedVerticesStayAndTheOthersKnowThem)
+{
+	Stage start = stageWithPoles(shapes::jittered(shapes::torus(), 0.005));
+	for (size_t v = 0; v < start.fixed.size(); v += 7)
+		start.fixed[v] = 1;
+	Stage stage = start;
+	contract(stage, Parameters());
+	for (size_t v = 0; v < start.fixed.size(); ++v) {
+		if (start.fixed[v]) {
+			EXPECT_EQ(stage.mesh.position[v], start.mesh.position[v]);
+		}
+		else {
+			EXPECT_NE(stage.mesh.position[v], start.mesh.position[v]);
+		}
+	}
+	const std::vector<Point3d> minimum = Energy(start, Parameters()).minimum();
+	EXPECT_LT(largestMove(stage.mesh.position, minimum),
+		0.05 * largestMove(start.mesh.position, minimum));
+}
+
+TEST(Contraction, AllFixedIsAllStill)
+{
+	Stage stage = stageWithPoles(shapes::sphere(1));
+	stage.fixed.assign(stage.fixed.size(), 1);
+	const std::vector<Point3d> before = stage.mesh.position;
+	contract(stage, Parameters());
+	EXPECT_EQ(stage.mesh.position, before);
+}
+
+TEST(Contraction, WithoutMedialWeightThePolesDoNotMatter)
+{
+	Parameters plain;
+	plain.wM = 0;
+	Stage with = stageWithPoles(shapes::plate(1)), without = with, wrong = with;
+	without.poleRadius.assign(without.poleRadius.size(), -1);
+	for (Point3d& p : wrong.pole)
+		p += Point3d(5, 6, 7);
+	for (Stage* stage : {&with, &without, &wrong})
+		contract(*stage, plain);
+	EXPECT_EQ(with.mesh.position, without.mesh.position);
+	EXPECT_EQ(with.mesh.position, wrong.mesh.position);
+}
+
+TEST(Contraction, APoleThatLiesOutwardsDoesNotPull)
+{
+	Stage inner = stageWithPoles(shapes::capsule()), outer = inner, none = inner;
+	const std::vector<Point3d> normal = inner.mesh.vertexNormals();
+	for (size_t v = 0; v < outer.pole.size(); ++v)
+		outer.pole[v] = outer.mesh.position[v] + normal[v];
+	none.poleRadius.assign(none.poleRadius.size(), -1);
+	for (Stage* stage : {&inner, &outer, &none})
+		contract(*stage, Parameters());
+	EXPECT_EQ(outer.mesh.position, none.mesh.position);
+	EXPECT_GT(largestMove(inner.mesh.position, none.mesh.position), 0.01);
+}
+
+TEST(Contraction, PolesPullTowardsTheMedialAxis)
+{
+	// The capsule's axis: with the medial term its vertices come closer to it.
+	const auto meanDistance = [](double wM) {
+		Stage stage = stageWithPoles(shapes::capsule());
+		Parameters parameters;
+		parameters.wM = wM;
+		contract(stage, parameters);
+		double sum = 0;
+		for (const Point3d& p : stage.mesh.position)
+			sum += std::hypot(p[1], p[2]);
+		return sum / double(stage.mesh.position.size());
+	};
+	EXPECT_LT(meanDistance(40), meanDistance(20));
+	EXPECT_LT(meanDistance(20), 0.9 * meanDistance(0));
+}
+
+TEST(Contraction, VolumeAndAreaDecrease)
+{
+	for (const shapes::Soup& soup : {shapes::sphere(3), shapes::torus(), shapes::capsule(),
+			 shapes::plate(3), shapes::box(), shapes::octahedron(), shapes::tetrahedron()})
+		for (double wM : {0.0, 40.0}) {
+			Stage stage = stageWithPoles(soup);
+			Parameters parameters;
+			parameters.wM = wM;
+			double volume = stage.mesh.volume(), area = stage.mesh.area();
+			for (int i = 0; i < 3; ++i) {
+				contract(stage, parameters);
+				EXPECT_LT(
+					stage.mesh.volume(), volume + 1e-12); // of a point, nothing is left to lose
+				EXPECT_LT(stage.mesh.area(), area);
+				EXPECT_GT(
+					stage.mesh.volume(), -1e-3 * soup.mesh().volume()); // it does not turn over
+				volume = stage.mesh.volume();
+				area = stage.mesh.area();
+			}
+		}
+}
+
+TEST(Contraction, SmootherAndSlowerAsTheWeightsSay)
+{
+	const auto volumeAfter = [](double wL, double wH) {
+		Stage stage = stageWithPoles(shapes::torus());
+		Parameters parameters;
+		parameters.wL = wL;
+		parameters.wH = wH;
+		parameters.wM = 0;
+		contract(stage, parameters);
+		return stage.mesh.volume();
+	};
+	EXPECT_LT(volumeAfter(2, 20), volumeAfter(1, 20));
+	EXPECT_LT(volumeAfter(1, 20), volumeAfter(1, 40));
+	EXPECT_NEAR(
+		volumeAfter(1, 20), volumeAfter(2, 40), 1e-3 * volumeAfter(1, 20)); // the ratio counts
+}
+
+TEST(Contraction, DoesNotDependOnScaleAndPlace)
+{
+	const Stage start = stageWithPoles(shapes::jittered(shapes::torus(), 0.005));
+	Stage stage = start;
+	contract(stage, Parameters());
+	const auto mapped = [&](double scale, const Point3d& shift) {
+		Stage other = start;
+		for (size_t v = 0; v < other.pole.size(); ++v) {
+			other.mesh.position[v] = other.mesh.position[v] * scale + shift;
+			other.pole[v] = other.pole[v] * scale + shift;
+		}
+		contract(other, Parameters());
+		for (Point3d& p : other.mesh.position)
+			p = (p - shift) / scale;
+		return largestMove(other.mesh.position, stage.mesh.position);
+	};
+	EXPECT_LT(mapped(std::ldexp(1.0, -20), {0, 0, 0}), 1e-9);
+	EXPECT_LT(mapped(std::ldexp(1.0, 20), {0, 0, 0}), 1e-9);
+	EXPECT_LT(
+		mapped(1e-6, {0, 0, 0}), 1e-6); // rounded otherwise, and moves are in single precision
+	EXPECT_LT(mapped(1e6, {0, 0, 0}), 1e-6);
+	EXPECT_LT(mapped(1, {1000, -2000, 500}), 1e-6);
+	EXPECT_LT(mapped(1e-6, {1e-3, 1e-3, 1e-3}), 1e-6);
+}
+
+TEST(Contraction, ThrowsInsteadOfLeavingTheNumbers)
+{
+	Stage stage = stageWithPoles(shapes::sphere(2));
+	stage.mesh.position[3] = Point3d(std::nan(""), 0, 0);
+	EXPECT_THROW(contract(stage, Parameters()), SolverError);
+}
+
+TEST(Contraction, APoleThatIsNoNumberDoesNotPull)
+{
+	Stage bad = stageWithPoles(shapes::sphere(2)), none = bad;
+	bad.pole[3] = Point3d(std::nan(""), 0, 0);
+	none.poleRadius[3] = -1;
+	contract(bad, Parameters());
+	contract(none, Parameters());
+	EXPECT_EQ(bad.mesh.position, none.mesh.position);
+}
+
+TEST(Contraction, ExtremeWeightsAreSolvedToo)
+{
+	// Any weight that Parameters::check() takes must give a step, or a clear error.
+	for (double wL : {1e-3, 1.0, 100.0})
+		for (double wH : {1e-2, 20.0, 1e4})
+			for (double wM : {0.0, 40.0, 1e4}) {
+				Stage stage = stageWithPoles(shapes::torus());
+				Parameters parameters;
+				parameters.wL = wL;
+				parameters.wH = wH;
+				parameters.wM = wM;
+				const double volume = stage.mesh.volume();
+				SCOPED_TRACE(
+					testing::Message() << "w_L " << wL << ", w_H " << wH << ", w_M " << wM);
+				ASSERT_NO_THROW(contract(stage, parameters));
+				EXPECT_LT(stage.mesh.volume(), volume);
+				EXPECT_LT(stage.mesh.bounds().Diag(), 1.01 * stage.diagonal[0]);
+			}
+}
+
+TEST(Contraction, CanBeCancelled)
+{
+	Stage stage = stageWithPoles(shapes::sphere(2));
+	EXPECT_THROW(
+		contract(stage, Parameters(), Progress([](int, const char*) { return false; })), Cancelled);
+}

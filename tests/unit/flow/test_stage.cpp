@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "mesh_checks.h"
+#include "shapes.h"
+
+#include <skeleton/flow/flow.h>
+#include <skeleton/flow/stage.h>
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <vector>
+
+using namespace vcg::tri::mcf;
+using vcg::Point3d;
+
+namespace {
+
+Stage plainStage(const shapes::Soup& soup)
+{
+	const SurfaceMesh mesh = soup.mesh();
+	return initialStage(mesh, checks::noPoles(mesh));
+}
+
+} // namespace
+
+TEST(Stage, ZeroIsTheSurface)
+{
+	const shapes::Soup soup =
+		shapes::joined({shapes::box(1, 2, 3), shapes::moved(shapes::torus(), {5, 0, 0})});
+	const Stage stage = plainStage(soup);
+	EXPECT_EQ(checks::stageError(stage), "");
+	EXPECT_EQ(stage.mesh.position, soup.points);
+	EXPECT_EQ(*stage.surface, soup.points);
+	EXPECT_EQ(stage.iteration, 0);
+	EXPECT_FALSE(stage.converged);
+	EXPECT_EQ(stage.areaFraction(), 1);
+	EXPECT_EQ(stage.volumeFraction(), 1);
+	EXPECT_EQ(stage.fixedFraction(), 0);
+	std::vector<int> itself(soup.points.size());
+	std::iota(itself.begin(), itself.end(), 0);
+	EXPECT_EQ(stage.node, itself);
+}
+
+TEST(Stage, MeasuresEachComponentByItself)
+{
+	const Stage stage = plainStage(
+		shapes::joined({shapes::box(1, 2, 3), shapes::moved(shapes::box(2, 2, 2), {9, 9, 9})}));
+	ASSERT_EQ(stage.diagonal.size(), 2u);
+	EXPECT_DOUBLE_EQ(stage.diagonal[0], std::sqrt(14.0));
+	EXPECT_DOUBLE_EQ(stage.diagonal[1], std::sqrt(12.0));
+	EXPECT_DOUBLE_EQ(stage.initialArea[0], 22);
+	EXPECT_DOUBLE_EQ(stage.initialArea[1], 24);
+	EXPECT_DOUBLE_EQ(stage.initialVolume, 14);
+}
+
+TEST(Stage, FractionsAreOfTheWhole)
+{
+	Stage stage = plainStage(shapes::box());
+	stage.area = {1.5};
+	stage.volume = 0.25;
+	stage.fixed = {1, 1, 0, 0, 0, 0, 0, 0};
+	EXPECT_DOUBLE_EQ(stage.areaFraction(), 0.25);
+	EXPECT_DOUBLE_EQ(stage.volumeFraction(), 0.25);
+	EXPECT_DOUBLE_EQ(stage.fixedFraction(), 0.25);
+}
+
+TEST(Stage, RadiusIsTheMeanDistanceToTheMergedSurface)
+{
+	const std::vector<Point3d> position = {{0, 0, 0}, {10, 0, 0}, {5, 5, 5}};
+	const std::vector<Point3d> surface = {{1, 0, 0}, {0, 3, 0}, {10, 0, 4}, {99, 99, 99}};
+	EXPECT_EQ(
+		meanSurfaceDistance(position, surface, {0, 0, 1, -1}), std::vector<double>({2, 4, -1}));
+}
+
+TEST(Stage, AVertexMadeByASplitHasItsNeighboursRadius)
+{
+	Stage stage = plainStage(shapes::octahedron());
+	// Three vertices have no surface vertex; the others stand for points at distance 2.
+	stage.surface = std::make_shared<const std::vector<Point3d>>(
+		std::vector<Point3d> {stage.mesh.position[0] + Point3d(2, 0, 0),
+			stage.mesh.position[1] + Point3d(0, 2, 0), stage.mesh.position[2] + Point3d(0, 0, 2)});
+	stage.node = {0, 1, 2};
+	for (double r : stageRadius(stage))
+		EXPECT_DOUBLE_EQ(r, 2);
+}
+
+TEST(Stage, RadiiOfASphereAtItsCentre)
+{
+	Stage stage = contractToSkeleton(plainStage(shapes::sphere(3)), Parameters());
+	for (double r : stageRadius(stage))
+		EXPECT_NEAR(r, 1, 0.05);
+}

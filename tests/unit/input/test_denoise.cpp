@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "shapes.h"
+
+#include <skeleton/input/check_input.h>
+#include <skeleton/input/denoise.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace {
+
+using namespace vcg::tri::mcf;
+
+SurfaceMesh meshOf(const shapes::Soup& soup)
+{
+	return checkedSurface(soup.points, soup.triangles).mesh;
+}
+
+/// Moves each vertex by a normal deviate of the given standard deviation in each coordinate.
+SurfaceMesh noisy(SurfaceMesh mesh, double sigma)
+{
+	std::mt19937 random(7);
+	for (vcg::Point3d& p : mesh.position)
+		for (int k = 0; k < 3; ++k) {
+			// Twelve uniform deviates: the same numbers with every standard library.
+			double sum = -6;
+			for (int i = 0; i < 12; ++i)
+				sum += double(random()) / double(std::mt19937::max());
+			p[k] += sigma * sum;
+		}
+	return mesh;
+}
+
+/// Root mean square distance of the vertices from the sphere of radius 1.
+double roughness(const SurfaceMesh& mesh)
+{
+	double sum = 0;
+	for (const vcg::Point3d& p : mesh.position)
+		sum += std::pow(p.Norm() - 1, 2);
+	return std::sqrt(sum / double(mesh.position.size()));
+}
+
+TEST(Noise, LevelIsTheDeviationThatWasAdded)
+{
+	const SurfaceMesh clean = meshOf(shapes::sphere(5));
+	for (double sigma : {0.003, 0.01})
+		EXPECT_NEAR(noiseLevel(noisy(clean, sigma))[0], sigma, 0.1 * sigma);
+}
+
+TEST(Noise, LevelScalesWithTheMesh)
+{
+	const SurfaceMesh mesh = noisy(meshOf(shapes::sphere(4)), 0.01);
+	const double level = noiseLevel(mesh)[0];
+	for (double scale : {1e-6, 1e6}) {
+		SurfaceMesh other = mesh;
+		for (vcg::Point3d& p : other.position)
+			p = p * scale + vcg::Point3d(1, 2, 3) * scale;
+		EXPECT_NEAR(noiseLevel(other)[0] / scale, level, 1e-6 * level);
+	}
+}
+
+TEST(Noise, CleanSurfacesAreLeftAlone)
+{
+	for (const shapes::Soup& soup : {shapes::sphere(3), shapes::sphere(5), shapes::torus(),
+			 shapes::capsule(), shapes::box(), shapes::tetrahedron(), shapes::plate(3)}) {
+		const NoiseReport report = measureNoise(meshOf(soup));
+		EXPECT_FALSE(report.isNoisy());
+	}
+}
+
+TEST(Noise, MoreNoiseIsSmoothedMore)
+{
+	const SurfaceMesh clean = meshOf(shapes::sphere(5));
+	const double diagonal = clean.bounds().Diag();
+	const int few = measureNoise(noisy(clean, 1.2e-3 * diagonal)).rounds[0];
+	const int many = measureNoise(noisy(clean, 5e-3 * diagonal)).rounds[0];
+	EXPECT_GT(few, 0);
+	EXPECT_GT(many, few);
+}
+
+TEST(Noise, OnlyTheNoisyComponentIsSmoothed)
+{
+	const SurfaceMesh clean = meshOf(shapes::sphere(5));
+	const SurfaceMesh rough = noisy(clean, 0.01);
+	shapes::Soup both = shapes::joined({{clean.position, clean.triangles()},
+		shapes::moved({rough.position, rough.triangles()}, vcg::Point3d(5, 0, 0))});
+	const SurfaceMesh mesh = meshOf(both);
+	const NoiseReport report = measureNoise(mesh);
+	ASSERT_EQ(report.rounds.size(), 2u);
+	EXPECT_EQ(report.rounds[0], 0);
+	EXPECT_GT(report.rounds[1], 0);
+	const SurfaceMesh calm = smoothed(mesh, report.rounds);
+	for (size_t v = 0; v < clean.position.size(); ++v)
+		EXPECT_EQ(calm.position[v], mesh.position[v]);
+}
+
+TEST(Noise, SmoothingRemovesNoiseAndKeepsTheVolume)
+{
+	const SurfaceMesh clean = meshOf(shapes::sphere(5));
+	const SurfaceMesh rough = noisy(clean, 0.01);
+	const SurfaceMesh calm = smoothed(rough, {40});
+	EXPECT_LT(roughness(calm), 0.4 * roughness(rough));
+	EXPECT_NEAR(calm.volume(), clean.volume(), 0.01 * clean.volume());
+	EXPECT_EQ(calm.triangles(), rough.triangles());
+}
+
+TEST(Noise, SmoothingCanBeCancelled)
+{
+	const SurfaceMesh mesh = meshOf(shapes::sphere(2));
+	const Progress stop([](int, const char*) { return false; });
+	EXPECT_THROW(smoothed(mesh, {10}, stop), Cancelled);
+}
+
+} // namespace

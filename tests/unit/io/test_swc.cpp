@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "graphs.h"
+
+#include <skeleton/io/swc.h>
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+using namespace graphs;
+
+namespace {
+
+size_t lineOfError(const std::string& text)
+{
+	return errorLine([](std::istream& in) { readSwc(in); }, text);
+}
+
+/// The edges of a skeleton under other names.
+std::set<std::pair<int, int>> renamed(
+	const std::vector<std::array<int, 2>>& edges, const std::vector<int>& name)
+{
+	std::set<std::pair<int, int>> result;
+	for (const auto& [a, b] : edges)
+		result.insert(std::minmax(name[size_t(a)], name[size_t(b)]));
+	return result;
+}
+
+} // namespace
+
+TEST(SpanningForest, CutsEachCycleAtItsThinnestEdge)
+{
+	const CurveSkeleton s = ringWithTailAndY();
+	const SpanningForest forest = spanningForest(s);
+	EXPECT_EQ(int(forest.cuts.size()), statistics(s).cycles);
+	// The edges at node 3 (radius 0.1) are the thinnest; the one that comes later in order is cut.
+	EXPECT_EQ(forest.cuts, (std::vector<std::array<int, 2>> {{3, 4}}));
+}
+
+TEST(SpanningForest, RootsEachTreeAtItsThickestNode)
+{
+	const SpanningForest forest = spanningForest(ringWithTailAndY());
+	std::vector<int> roots;
+	for (size_t v = 0; v < forest.parent.size(); ++v)
+		if (forest.parent[v] < 0)
+			roots.push_back(int(v));
+	EXPECT_EQ(roots, (std::vector<int> {2, 7}));
+}
+
+TEST(SpanningForest, EveryNodeComesAfterItsParent)
+{
+	const SpanningForest forest = spanningForest(ringWithTailAndY());
+	std::set<int> seen {-1};
+	for (int v : forest.order) {
+		EXPECT_TRUE(seen.count(forest.parent[size_t(v)]));
+		EXPECT_TRUE(seen.insert(v).second);
+	}
+	EXPECT_EQ(seen.size(), 12u);
+}
+
+TEST(SpanningForest, CompleteGraph)
+{
+	CurveSkeleton s;
+	for (int i = 0; i < 20; ++i) {
+		s.position.emplace_back(i, i * i, 0);
+		s.radius.push_back(1 + i % 7);
+		for (int j = 0; j < i; ++j)
+			s.edges.push_back({j, i});
+	}
+	tidyEdges(s.edges);
+	EXPECT_EQ(spanningForest(s).cuts.size(), 190u - 19u);
+}
+
+TEST(Swc, ReadsBackAsTheSameGraphWithoutItsCuts)
+{
+	const CurveSkeleton s = ringWithTailAndY();
+	SwcReport report;
+	std::istringstream in(written([&](std::ostream& out) { report = writeSwc(out, s); }));
+	const CurveSkeleton read = readSwc(in).skeleton;
+
+	ASSERT_EQ(read.position.size(), s.position.size());
+	std::vector<int> place;
+	for (size_t v = 0; v < s.position.size(); ++v) {
+		place.push_back(report.idOfNode[v] - 1);
+		EXPECT_EQ(read.position[size_t(place[v])], s.position[v]);
+		EXPECT_EQ(read.radius[size_t(place[v])], s.radius[v]);
+	}
+	std::set<std::pair<int, int>> expected = renamed(s.edges, place);
+	for (const auto& cut : renamed(report.cuts, place))
+		EXPECT_EQ(expected.erase(cut), 1u) << "a cut is an edge";
+	std::vector<int> same(read.position.size());
+	std::iota(same.begin(), same.end(), 0);
+	EXPECT_EQ(renamed(read.edges, same), expected);
+	EXPECT_EQ(statistics(read).cycles, 0);
+	EXPECT_EQ(statistics(read).components, statistics(s).components);
+}
+
+TEST(Swc, ListsItsCutsInTheFileAndInWarnings)
+{
+	SwcReport report;
+	const std::string text =
+		written([&](std::ostream& out) { report = writeSwc(out, ringWithTailAndY()); });
+	ASSERT_EQ(report.cuts.size(), 1u);
+	ASSERT_EQ(report.warnings.size(), 1u);
+	const std::string ids =
+		std::to_string(report.idOfNode[3]) + " " + std::to_string(report.idOfNode[4]);
+	EXPECT_NE(text.find("# cycle cut between " + ids + "\n"), text.npos);
+	EXPECT_NE(report.warnings[0].find("3 and 4"), std::string::npos);
+}
+
+TEST(Swc, IdsRunFromOneAndParentsComeFirst)
+{
+	std::istringstream in(written([](std::ostream& out) { writeSwc(out, ringWithTailAndY()); }));
+	FieldReader lines(in);
+	int expected = 1;
+	while (lines.nextLine()) {
+		if (lines.isComment())
+			continue;
+		ASSERT_EQ(lines.count(), 7u);
+		EXPECT_EQ(lines.integer(0, 0, 99, "id"), expected);
+		const int parent = lines.integer(6, -1, 99, "parent");
+		EXPECT_TRUE(parent == -1 || (parent >= 1 && parent < expected));
+		++expected;
+	}
+	EXPECT_EQ(expected, 12);
+}
+
+TEST(Swc, WithoutRadiusSaysSo)
+{
+	CurveSkeleton s = ringWithTailAndY();
+	s.radius.clear();
+	SwcReport report;
+	std::istringstream in(written([&](std::ostream& out) { report = writeSwc(out, s); }));
+	EXPECT_EQ(report.warnings.size(), 2u);
+	EXPECT_EQ(readSwc(in).skeleton.radius, std::vector<double>(11, 0.0));
+}
+
+TEST(Swc, ReadsParentsThatComeLaterAndAnyIds)
+{
+	std::istringstream in(
+		"# from elsewhere\n10 3 0 0 0 1 7\n7 1 1 0 0 2 -1\n\n 0 3 2 0 0 0.5 10\n");
+	const CurveSkeleton s = readSwc(in).skeleton;
+	EXPECT_EQ(s.edges, (std::vector<std::array<int, 2>> {{0, 1}, {0, 2}}));
+	EXPECT_EQ(s.radius, (std::vector<double> {1, 2, 0.5}));
+}
+
+TEST(Swc, ErrorsCarryTheirLine)
+{
+	const std::string root = "# a file\n1 0 0 0 0 1 -1\n";
+	EXPECT_EQ(lineOfError(root + "2 0 1 0 0 1\n"), 3u) << "a field too few";
+	EXPECT_EQ(lineOfError(root + "2 0 1 0 0 1 1 1\n"), 3u) << "a field too many";
+	EXPECT_EQ(lineOfError(root + "2 0 1 0 inf 1 1\n"), 3u);
+	EXPECT_EQ(lineOfError(root + "2 0 1 0 1e37 1 1\n"), 3u) << "too far away to work with";
+	EXPECT_EQ(lineOfError(root + "2 0 1 0 0 -1 1\n"), 3u) << "a radius below 0";
+	EXPECT_EQ(lineOfError(root + "2 0 1 0 0 nan 1\n"), 3u);
+	EXPECT_EQ(lineOfError(root + "2 0 1 0 0 1e37 1\n"), 3u);
+	EXPECT_EQ(lineOfError(root + "1 0 1 0 0 1 1\n"), 3u) << "an id twice";
+	EXPECT_EQ(lineOfError(root + "-2 0 1 0 0 1 1\n"), 3u);
+	EXPECT_EQ(lineOfError(root + "2.5 0 1 0 0 1 1\n"), 3u);
+	EXPECT_EQ(lineOfError(root + "2 soma 1 0 0 1 1\n"), 3u);
+	EXPECT_EQ(lineOfError(root + "2 0 1 0 0 1 -2\n"), 3u);
+	EXPECT_EQ(lineOfError(root + "2 0 1 0 0 1 9\n3 0 1 0 0 1 1\n"), 3u) << "no such parent";
+	EXPECT_EQ(lineOfError(root + "2 0 1 0 0 1 2\n"), 3u) << "its own parent";
+	EXPECT_GE(lineOfError(root + "2 0 1 0 0 1 3\n3 0 1 0 0 1 2\n"), 3u) << "its own grandparent";
+}
+
+TEST(Swc, DamagedFilesAreReadOrRefused)
+{
+	const std::string file = written([](std::ostream& out) { writeSwc(out, ringWithTailAndY()); });
+	readDamaged(file, 3000, [](std::istream& in) {
+		try {
+			const CurveSkeleton s = readSwc(in).skeleton;
+			EXPECT_NO_THROW(requireWritable(s));
+			EXPECT_EQ(statistics(s).cycles, 0);
+		}
+		catch (const FormatError& error) {
+			EXPECT_GT(error.line(), 0u);
+		}
+	});
+}

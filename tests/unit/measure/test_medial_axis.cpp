@@ -1,0 +1,142 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// The medial axis as a layer, on shapes whose medial axis is known.
+
+#include "shapes.h"
+#include <skeleton/measure/medial_axis.h>
+#include <skeleton/poles/poles.h>
+#include <skeleton/poles/shrinking_balls.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace vcg::tri::mcf;
+using vcg::Point3d;
+
+namespace {
+
+/// A plate of 4 by 4 by 0.5 about the origin: its medial axis is a sheet in z = 0 with slopes to the rim.
+const SurfaceMesh& plate()
+{
+	static const SurfaceMesh mesh =
+		shapes::moved(shapes::cells(
+						  64, 64, 8, [](int, int, int) { return true; }, 1.0 / 16),
+			{-2, -2, -0.25})
+			.mesh();
+	return mesh;
+}
+
+const PoleSet& platePoles()
+{
+	static const PoleSet poles = shrinkingBallPoles(plate());
+	return poles;
+}
+
+TEST(MedialLayer, MiddleSheetOfAPlate)
+{
+	MedialLayerParameters p;
+	p.leastAngle = 150;
+	const MedialLayer layer = medialLayer(plate(), platePoles(), true, p);
+	double area = 0;
+	for (const Triangle& t : layer.triangles) {
+		const Point3d& a = layer.position[t[0]];
+		area += ((layer.position[t[1]] - a) ^ (layer.position[t[2]] - a)).Norm() / 2;
+	}
+	for (size_t v = 0; v < layer.position.size(); ++v) {
+		EXPECT_NEAR(layer.position[v][2], 0, 0.02);
+		EXPECT_NEAR(layer.radius[v], 0.25, 0.02);
+	}
+	// The flat part reaches to a quarter from the rim, seen from above and from below.
+	EXPECT_NEAR(area, 2 * 3.5 * 3.5, 0.1 * 24.5);
+}
+
+TEST(MedialLayer, AnglesAreThoseOfTheTwoContacts)
+{
+	const std::vector<double> angle = poleAngles(plate(), platePoles());
+	for (int v = 0; v < plate().vertexSlots(); ++v) {
+		const Point3d& p = plate().position[v];
+		if (std::max(std::abs(p[0]), std::abs(p[1])) < 1.5) {
+			EXPECT_NEAR(angle[v], 180, 5);
+		}
+	}
+}
+
+TEST(MedialLayer, AnglesOfAComponentAreThoseThatItHasAlone)
+{
+	// A ring round the centre of a ball, where all the ball's poles are.
+	const shapes::Soup ball = shapes::sphere(3), ring = shapes::torus(0.5, 0.1);
+	const auto anglesOf = [](const shapes::Soup& soup) {
+		return poleAngles(soup.mesh(), medialPoles(soup.mesh(), PoleMethod::Balls));
+	};
+	std::vector<double> alone = anglesOf(ball);
+	const std::vector<double> ofRing = anglesOf(ring);
+	alone.insert(alone.end(), ofRing.begin(), ofRing.end());
+	EXPECT_EQ(anglesOf(shapes::joined({ball, ring})), alone);
+}
+
+TEST(MedialLayer, FiltersByAngleAndRadius)
+{
+	for (double least : {0.0, 60.0, 120.0}) {
+		MedialLayerParameters p;
+		p.leastAngle = least;
+		p.leastRadius = 0.1;
+		const MedialLayer layer = medialLayer(plate(), platePoles(), false, p);
+		EXPECT_TRUE(layer.triangles.empty());
+		EXPECT_GT(layer.position.size(), 5000u);
+		for (size_t v = 0; v < layer.position.size(); ++v) {
+			EXPECT_GE(layer.angle[v], least);
+			EXPECT_GE(layer.radius[v], 0.1);
+			EXPECT_EQ(layer.position[v], platePoles().centre[layer.source[v]]);
+		}
+	}
+	MedialLayerParameters tooThick;
+	tooThick.leastRadius = 0.3;
+	EXPECT_TRUE(medialLayer(plate(), platePoles(), true, tooThick).position.empty());
+}
+
+TEST(MedialLayer, NoTriangleIsStretched)
+{
+	const SurfaceMesh mesh = shapes::jittered(shapes::torus(), 0.01).mesh();
+	MedialLayerParameters p;
+	p.leastAngle = 0;
+	p.mostStretch = 0.5;
+	const MedialLayer layer = medialLayer(mesh, shrinkingBallPoles(mesh), true, p);
+	for (const Triangle& t : layer.triangles)
+		for (int k = 0; k < 3; ++k) {
+			const int a = t[k], b = t[(k + 1) % 3];
+			double longest = 0;
+			for (int i = 0; i < 3; ++i)
+				longest = std::max(longest,
+					vcg::Distance(mesh.position[layer.source[t[i]]],
+						mesh.position[layer.source[t[(i + 1) % 3]]]));
+			EXPECT_LE(vcg::Distance(layer.position[a], layer.position[b]), 0.5 * longest);
+		}
+}
+
+TEST(MedialLayer, EveryPointOfAJoinedLayerIsUsed)
+{
+	const MedialLayer layer = medialLayer(plate(), platePoles(), true);
+	std::vector<char> used(layer.position.size(), 0);
+	for (const Triangle& t : layer.triangles)
+		for (int v : t)
+			used[v] = 1;
+	EXPECT_EQ(std::count(used.begin(), used.end(), 1), long(used.size()));
+}
+
+TEST(MedialLayer, RefusesParametersOutOfRange)
+{
+	MedialLayerParameters p;
+	p.leastAngle = 200;
+	EXPECT_THROW(medialLayer(plate(), platePoles(), true, p), InvalidParameter);
+	p = {};
+	p.leastRadius = -1;
+	EXPECT_THROW(medialLayer(plate(), platePoles(), true, p), InvalidParameter);
+	p = {};
+	p.mostStretch = 0;
+	EXPECT_THROW(medialLayer(plate(), platePoles(), true, p), InvalidParameter);
+}
+
+} // namespace

@@ -1,0 +1,183 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// Closest points, insides and maximal balls, against brute force and shapes with known answers.
+
+#include "mesh_checks.h"
+#include "shapes.h"
+
+#include <skeleton/spatial/closest_surface.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <vector>
+
+using namespace vcg::tri::mcf;
+using vcg::Point3d;
+
+namespace {
+
+std::vector<int> allVertices(const SurfaceMesh& mesh)
+{
+	std::vector<int> all(mesh.vertexSlots());
+	std::iota(all.begin(), all.end(), 0);
+	return all;
+}
+
+double distanceByBruteForce(const SurfaceMesh& mesh, const Point3d& x)
+{
+	double least = std::numeric_limits<double>::infinity();
+	for (const Triangle& t : mesh.triangles())
+		least = std::min(least,
+			detail::closestOnTriangle(
+				mesh.position[t[0]], mesh.position[t[1]], mesh.position[t[2]], x)
+				.squaredDistance);
+	return std::sqrt(least);
+}
+
+std::vector<Point3d> randomPoints(const SurfaceMesh& mesh, int count)
+{
+	std::mt19937 random(5);
+	const vcg::Box3d box = mesh.bounds();
+	std::vector<Point3d> points;
+	for (int i = 0; i < count; ++i) {
+		Point3d p;
+		for (int k = 0; k < 3; ++k)
+			p[k] = box.min[k]
+				+ (1.2 * random() / double(std::mt19937::max()) - 0.1) * (box.max[k] - box.min[k]);
+		points.push_back(p);
+	}
+	return points;
+}
+
+class OnShapes : public testing::TestWithParam<shapes::Soup>
+{
+};
+
+TEST_P(OnShapes, DistanceIsThatOfBruteForceButForTheSamplesSpacing)
+{
+	const SurfaceMesh mesh = GetParam().mesh();
+	const double spacing = mesh.bounds().Diag() / 50;
+	const ClosestSurface closest(mesh, allVertices(mesh), spacing);
+	for (const Point3d& x : randomPoints(mesh, 200)) {
+		const double exact = distanceByBruteForce(mesh, x);
+		const ClosestSurface::Hit hit = closest.closest(x);
+		EXPECT_GE(hit.distance, exact - 1e-12);
+		EXPECT_LE(hit.distance, exact + spacing * spacing / std::max(exact, spacing));
+		EXPECT_NEAR(Distance(hit.point, x), hit.distance, 1e-12);
+		EXPECT_LE(distanceByBruteForce(mesh, hit.point), 1e-9) << "the point is on the surface";
+		EXPECT_GE(closest.closest(x, 0).distance, exact - 1e-12) << "begun at a far face";
+		EXPECT_LE(
+			closest.closest(x, 0).distance, exact + spacing * spacing / std::max(exact, spacing));
+	}
+}
+
+TEST_P(OnShapes, ExactDistanceIsThatOfBruteForce)
+{
+	const SurfaceMesh mesh = GetParam().mesh();
+	for (double part : {50, 5}) {
+		const ClosestSurface closest(mesh, allVertices(mesh), mesh.bounds().Diag() / part);
+		for (const Point3d& x : randomPoints(mesh, 200)) {
+			const double exact = distanceByBruteForce(mesh, x);
+			EXPECT_NEAR(closest.closestExactly(x).distance, exact, 1e-12);
+			EXPECT_LE(closest.emptyRadius(x), exact + 1e-12);
+		}
+	}
+}
+
+TEST_P(OnShapes, InsideIsThatOfTheWindingNumber)
+{
+	const SurfaceMesh mesh = GetParam().mesh();
+	const ClosestSurface closest(mesh, allVertices(mesh), mesh.bounds().Diag() / 50);
+	int inside = 0, outside = 0;
+	for (const Point3d& x : randomPoints(mesh, 200)) {
+		if (distanceByBruteForce(mesh, x) < 1e-3)
+			continue;
+		const bool isInside = checks::windingNumber(mesh, x) > 0.5;
+		EXPECT_EQ(closest.clearance(x) > 0, isInside);
+		++(isInside ? inside : outside);
+	}
+	EXPECT_GT(inside, 5);
+	EXPECT_GT(outside, 5);
+}
+
+TEST_P(OnShapes, MaximalBallIsEmptyAndTouchesTwice)
+{
+	const SurfaceMesh mesh = GetParam().mesh();
+	const double spacing = mesh.bounds().Diag() / 50;
+	const ClosestSurface closest(mesh, allVertices(mesh), spacing);
+	for (const Point3d& x : randomPoints(mesh, 200)) {
+		const ClosestSurface::Hit hit = closest.closest(x);
+		if (hit.distance < spacing || !closest.isInside(x, hit))
+			continue;
+		const ClosestSurface::Ball ball = closest.maximalBall(x, hit, 0, -1);
+		ASSERT_GE(ball.face, 0) << "something bounds every inner ball";
+		EXPECT_GE(ball.radius, hit.distance * (1 - 1e-9));
+		EXPECT_NEAR(Distance(ball.centre, hit.point), ball.radius, 1e-9);
+		EXPECT_NEAR(
+			distanceByBruteForce(mesh, ball.centre), ball.radius, spacing * spacing / ball.radius);
+		EXPECT_GT(ball.spokeAngle, 0);
+	}
+}
+
+INSTANTIATE_TEST_SUITE_P(ClosestSurface, OnShapes,
+	testing::Values(shapes::torus(), shapes::capsule(), shapes::sphere(2), shapes::box(3, 2, 1),
+		shapes::plate(2), shapes::jittered(shapes::torus(1, 0.4), 0.01)));
+
+TEST(ClosestSurface, BallInATubeHasTheTubesRadius)
+{
+	const SurfaceMesh mesh = shapes::capsule(2, 0.35, 128).mesh();
+	const ClosestSurface closest(mesh, allVertices(mesh), 0.05);
+	for (double x : {-0.8, -0.33, 0.0, 0.51, 0.9}) {
+		const Point3d aside(x, 0.1, 0.07);
+		const ClosestSurface::Ball ball =
+			closest.maximalBall(aside, closest.closest(aside), 0.01, -1);
+		// A facet's normal misses the axis by up to half the facet's width.
+		EXPECT_NEAR(ball.radius, 0.35, 0.01);
+		EXPECT_NEAR(std::hypot(ball.centre[1], ball.centre[2]), 0, 0.01);
+	}
+}
+
+TEST(ClosestSurface, BallInAPlateReachesFromWallToWall)
+{
+	const SurfaceMesh mesh = shapes::box(6, 6, 1).mesh();
+	const ClosestSurface closest(mesh, allVertices(mesh), 0.1);
+	const Point3d low(3.1, 2.7, 0.2);
+	const ClosestSurface::Ball ball = closest.maximalBall(low, closest.closest(low), 0, -1);
+	EXPECT_NEAR(ball.radius, 0.5, 1e-3);
+	EXPECT_NEAR(ball.centre[2], 0.5, 1e-3);
+	EXPECT_NEAR(ball.spokeAngle, M_PI, 1e-2);
+}
+
+TEST(ClosestSurface, FollowingGivesWhatSearchingGives)
+{
+	const SurfaceMesh mesh = shapes::torus(1, 0.3, 120, 40).mesh();
+	const ClosestSurface closest(mesh, allVertices(mesh), 0.05);
+	const Point3d x(1.05, 0, 0.02), moved(1.04, 0.03, 0.01);
+	const ClosestSurface::Hit hit = closest.closest(x);
+	const ClosestSurface::Hit followed = closest.closestFrom(moved, hit.face);
+	EXPECT_NEAR(followed.distance, closest.closest(moved).distance, 2e-3);
+	const ClosestSurface::Ball before = closest.maximalBall(x, hit, 1e-3, -1);
+	const ClosestSurface::Ball ball = closest.maximalBallFrom(moved, followed, before);
+	EXPECT_NEAR(ball.radius, 0.3, 0.01);
+}
+
+TEST(ClosestSurface, LooksOnlyAtTheGivenComponents)
+{
+	const SurfaceMesh mesh =
+		shapes::joined({shapes::sphere(2), shapes::moved(shapes::sphere(2), Point3d(5, 0, 0))})
+			.mesh();
+	std::vector<int> first;
+	for (int v = 0; v < mesh.vertexSlots(); ++v)
+		if (mesh.position[v][0] < 2)
+			first.push_back(v);
+	const ClosestSurface closest(mesh, first, 0.1);
+	EXPECT_NEAR(closest.closest(Point3d(5, 0, 0)).distance, 4, 0.05);
+	EXPECT_LT(closest.clearance(Point3d(5, 0, 0)), 0);
+}
+
+} // namespace

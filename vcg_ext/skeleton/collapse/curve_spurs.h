@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief Spurs of the curve that a stage collapses to: the last vertices to be fixed leave some.
+
+#ifndef VCG_MCF_CURVE_SPURS_H
+#define VCG_MCF_CURVE_SPURS_H
+
+#include <skeleton/graph/curve_skeleton.h>
+#include <skeleton/core/progress.h>
+#include <skeleton/graph/prune.h>
+#include <skeleton/graph/skeleton_branches.h>
+#include <skeleton/flow/stage.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace vcg::tri::mcf::detail {
+
+/**
+ * Removes the terminal branches whose prominence() is below `least`: they stand for no feature of the
+ * shape. Balls reach to the nearest vertex of their component's surface. What had merged into a spur
+ * goes to its junction. Branches with held nodes stay.
+ * @param component  that each node belongs to.
+ * @param held       for each node, whether it is held in its place.
+ * @post radius of junctions and tips is that of their balls.
+ * @throws Cancelled. Complexity: O(surface vertices * (junctions + tips)).
+ */
+inline CurveSkeleton withoutSpurs(CurveSkeleton skeleton, const Stage& stage,
+	const std::vector<int>& component, const std::vector<char>& held, double least,
+	const Progress& progress)
+{
+	constexpr double infinity = std::numeric_limits<double>::infinity();
+	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
+	const bool branched = std::any_of(
+		neighbours.begin(), neighbours.end(), [](const auto& n) { return n.size() > 2; });
+	if (!branched)
+		return skeleton;
+	const std::vector<int> componentOfPoint =
+		componentOfSurfaceVertices(stage, progress.part(0, 0));
+	for (size_t v = 0; v < neighbours.size(); ++v) {
+		if (held[v]) {
+			skeleton.radius[v] = infinity;
+			continue;
+		}
+		if (neighbours[v].size() == 2)
+			continue;
+		progress.report(double(v) / neighbours.size(), "Collapsing to curves");
+		double squared = infinity;
+		for (size_t s = 0; s < stage.surface->size(); ++s)
+			if (componentOfPoint[s] == component[v])
+				squared =
+					std::min(squared, SquaredDistance(skeleton.position[v], (*stage.surface)[s]));
+		skeleton.radius[v] = std::sqrt(squared);
+	}
+	return withoutTerminalBranches(
+		std::move(skeleton), least, [](const CurveSkeleton& s, const Branch& branch) {
+			const bool isHeld = std::any_of(branch.nodes.begin(), branch.nodes.end(),
+				[&](int v) { return std::isinf(s.radius[v]); });
+			return isHeld ? infinity : terminalProminence(s, branch);
+		});
+}
+
+} // namespace vcg::tri::mcf::detail
+
+#endif

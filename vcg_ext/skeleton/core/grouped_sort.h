@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief Millions of entries sorted in pieces between which the user can cancel.
+
+#ifndef VCG_MCF_GROUPED_SORT_H
+#define VCG_MCF_GROUPED_SORT_H
+
+#include "reported_arrays.h"
+#include "progress.h"
+#include "ticker.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace vcg::tri::mcf::detail {
+
+/// How many entries are sorted, or merged, between two reports: some milliseconds.
+constexpr size_t sortedAtOnce = size_t(1) << 15;
+
+/**
+ * Sorts array[from, to) by operator<, small pieces first, which are then merged.
+ * @throws Cancelled
+ */
+template <class T>
+void sortReported(
+	std::vector<T>& array, size_t from, size_t to, const Progress& progress, const char* what)
+{
+	const size_t count = to - from;
+	int passes = 1, pass = 0;
+	for (size_t width = sortedAtOnce; width < count; width *= 2)
+		++passes;
+	const auto report = [&](size_t done) {
+		progress.report((pass + double(done) / double(count)) / passes, what);
+	};
+	const auto at = [&](size_t i) { return array.begin() + std::ptrdiff_t(i); };
+	for (size_t begin = from; begin < to; begin += sortedAtOnce) {
+		report(begin - from);
+		std::sort(at(begin), at(std::min(to, begin + sortedAtOnce)));
+	}
+	std::vector<T> merged;
+	merged.reserve(passes > 1 ? count : 0);
+	for (size_t width = sortedAtOnce; width < count; width *= 2) {
+		++pass;
+		merged.clear();
+		for (size_t begin = from; begin < to; begin += 2 * width) {
+			const size_t middle = std::min(to, begin + width), end = std::min(to, middle + width);
+			for (size_t i = begin, j = middle; i < middle || j < end;) {
+				if (merged.size() % sortedAtOnce == 0)
+					report(merged.size());
+				const bool left = j == end || (i < middle && !(array[j] < array[i]));
+				merged.push_back(array[left ? i++ : j++]);
+			}
+		}
+		for (size_t begin = 0; begin < count; begin += sortedAtOnce) {
+			report(count);
+			const size_t end = std::min(count, begin + sortedAtOnce);
+			std::copy(merged.begin() + std::ptrdiff_t(begin), merged.begin() + std::ptrdiff_t(end),
+				at(from + begin));
+		}
+	}
+}
+
+/// Entries in groups that are numbered from 0, each group sorted.
+template <class Entry>
+class SortedGroups
+{
+public:
+	SortedGroups() = default;
+
+	/**
+	 * @param groupOf  of an index from 0 to count - 1: its group, below `groups`.
+	 * @param entryOf  of such an index: its entry, to be sorted by operator<.
+	 * @throws Cancelled
+	 * Complexity: O(groups + count log(entries of the largest group)).
+	 */
+	template <class GroupOf, class EntryOf>
+	SortedGroups(int count, size_t groups, const GroupOf& groupOf, const EntryOf& entryOf,
+		const Progress& progress, const char* what)
+	{
+		// A group's place counts up to its end as it is filled, which is where the next one begins.
+		start = filledArray(groups + 2, 0, progress, what);
+		reportedLoop(
+			count, progress.part(0.1, 0.25), what, [&](int i) { ++start[size_t(groupOf(i)) + 2]; });
+		reportedLoop(int(groups), progress.part(0.25, 0.35), what,
+			[&](int g) { start[size_t(g) + 2] += start[size_t(g) + 1]; });
+		entries = filledArray(size_t(count), Entry(), progress.part(0.35, 1), what);
+		reportedLoop(count, progress.part(0.45, 0.75), what,
+			[&](int i) { entries[size_t(start[size_t(groupOf(i)) + 1]++)] = entryOf(i); });
+		const Progress sorting = progress.part(0.75, 1);
+		forEachRange(sorting, what, [&](int, size_t from, size_t to) {
+			if (to - from > sortedAtOnce)
+				sortReported(entries, from, to, sorting.part(shareOf(from), shareOf(to)), what);
+			else
+				std::sort(
+					entries.begin() + std::ptrdiff_t(from), entries.begin() + std::ptrdiff_t(to));
+		});
+	}
+
+	/// Calls visit(group, first entry, end of its entries) for each group that has any, in order.
+	/// @throws Cancelled
+	template <class Visit>
+	void forEach(const Progress& progress, const char* what, Visit&& visit) const
+	{
+		forEachRange(progress, what, [&](int g, size_t from, size_t to) {
+			visit(g, entries.data() + from, entries.data() + to);
+		});
+	}
+
+private:
+	std::vector<int> start; ///< of each group; the end of the last one; one more
+	std::vector<Entry> entries;
+
+	double shareOf(size_t i) const { return double(i) / double(entries.size()); }
+
+	/// Reports by groups and entries, whichever are more.
+	template <class Visit>
+	void forEachRange(const Progress& progress, const char* what, Visit&& visit) const
+	{
+		progress.report(0, what);
+		size_t sinceReport = 0;
+		for (size_t g = 0; g + 2 < start.size(); ++g) {
+			const size_t from = size_t(start[g]), to = size_t(start[g + 1]);
+			sinceReport += 1 + (to - from);
+			if (sinceReport > sortedAtOnce) {
+				progress.report(shareOf(from), what);
+				sinceReport = 0;
+			}
+			if (from < to)
+				visit(int(g), from, to);
+		}
+	}
+};
+
+} // namespace vcg::tri::mcf::detail
+
+#endif

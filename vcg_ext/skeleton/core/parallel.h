@@ -1,0 +1,218 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief Loops whose rounds do not depend on each other, on all cores where OpenMP is there.
+
+#ifndef VCG_MCF_PARALLEL_H
+#define VCG_MCF_PARALLEL_H
+
+#include "progress.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <cstdlib>
+#include <exception>
+#include <mutex>
+#include <numeric>
+#include <thread>
+#include <vector>
+
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+namespace vcg::tri::mcf {
+
+namespace detail {
+
+/// Whether that many threads can be started now. Their memory stays with the system's library for the next ones.
+inline bool canStartThreads(int count)
+{
+	std::mutex all;
+	std::vector<std::thread> threads;
+	bool started = true;
+	{
+		const std::lock_guard<std::mutex> untilAllRun(all);
+		try {
+			threads.reserve(size_t(count));
+			for (int i = 0; i < count; ++i)
+				threads.emplace_back([&all] { const std::lock_guard<std::mutex> wait(all); });
+		}
+		catch (const std::exception&) { // std::system_error, std::bad_alloc
+			started = false;
+		}
+	}
+	for (std::thread& thread : threads)
+		thread.join();
+	return started;
+}
+
+/// Whether there is memory for the small things without which OpenMP and the loader end the process.
+inline bool hasReserve()
+{
+	constexpr size_t reserve = 1 << 20;
+	void* const volatile block = std::malloc(reserve); // volatile: else the compiler leaves it out
+	std::free(block);
+	return block != nullptr;
+}
+
+/**
+ * The number of threads for a loop: OpenMP's, or 1 where the system refuses that many.
+ *
+ * GCC's OpenMP ends the process where it cannot start a thread. It keeps its threads for the next loop with
+ * as many, so that only a change of their number has to be tried out.
+ */
+inline int threadsForLoop()
+{
+#ifdef _OPENMP
+	const int wanted = omp_in_parallel() ? 1 : omp_get_max_threads();
+	if (wanted <= 1 || !hasReserve())
+		return 1;
+	static thread_local int running = 1;
+	if (wanted != running) {
+		if (!canStartThreads(wanted - 1))
+			return 1;
+		running = wanted;
+	}
+	return wanted;
+#else
+	return 1;
+#endif
+}
+
+/// Calls work(whether this is the calling thread) on several threads at once. @pre work throws nothing.
+template <class Work>
+void onThreads([[maybe_unused]] int threads, const Work& work)
+{
+#ifdef _OPENMP
+	// A team of one would take the place of the others, which are kept for the next loop.
+	if (threads > 1) {
+#pragma omp parallel num_threads(threads)
+		work(omp_get_thread_num() == 0);
+		return;
+	}
+#endif
+	work(true);
+}
+
+} // namespace detail
+
+/**
+ * Calls body(begin, end) for consecutive blocks of [0, count), several at once.
+ *
+ * The blocks do not depend on the number of threads, so that a body whose result depends on its
+ * block alone gives the same bits on any machine. The calling thread reports in between.
+ * @param blocksPerReport  fewer where a round takes more than some 10 us.
+ * @throws what body throws for one of the blocks, such as std::bad_alloc; Cancelled.
+ */
+template <class Body>
+void forEachBlock(int count, const Progress& progress, const char* what, const Body& body,
+	int blocksPerReport = 32)
+{
+	constexpr int blockSize = 256;
+	progress.report(0, what);
+	const int blocks = (count + blockSize - 1) / blockSize;
+	const int threads = detail::threadsForLoop();
+	std::atomic<bool> failed = false;
+	std::exception_ptr error;
+	for (int first = 0; first < blocks; first += blocksPerReport) {
+		const int last = std::min(first + blocksPerReport, blocks);
+		std::atomic<int> next = first;
+		detail::onThreads(threads, [&](bool) {
+			try {
+				for (int block; !failed && (block = next++) < last;)
+					body(block * blockSize, std::min((block + 1) * blockSize, count));
+			}
+			catch (...) {
+				if (!failed.exchange(true))
+					error = std::current_exception();
+			}
+		});
+		if (error)
+			std::rethrow_exception(error);
+		progress.report(double(last) / blocks, what);
+	}
+}
+
+/**
+ * Calls body(begin, end, progress) for the parts [start[i], start[i + 1]) of a range, the largest ones first,
+ * several at once.
+ *
+ * The calling thread reports: in its own parts, and while it waits for the last ones of others, whose progress
+ * only tells them that the job is cancelled.
+ * @param start of each part, rising, and the end of the last one; not all parts are empty.
+ * @throws what body throws for one of the parts; Cancelled.
+ */
+template <class Body>
+void forEachPart(
+	const std::vector<int>& start, const Progress& progress, const char* what, const Body& body)
+{
+	[[maybe_unused]] constexpr double leastForTeam = 1 << 12; // in less, the others hardly wake up
+	const int count = int(start.size()) - 1;
+	const auto size = [&](int part) { return start[part + 1] - start[part]; };
+	std::vector<int> order(count);
+	std::iota(order.begin(), order.end(), 0);
+	std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return size(a) > size(b); });
+	std::vector<double> before(1, 0); // how much of the range is done by then, in this order
+	for (int part : order)
+		before.push_back(before.back() + size(part));
+	const double total = before.back();
+	std::atomic<int> next = 0, done = 0;
+	std::atomic<bool> stop = false;
+	std::vector<std::exception_ptr> errors(count + 1);
+	const auto guarded = [&](std::exception_ptr& error, const auto& call) {
+		try {
+			call();
+		}
+		catch (...) {
+			error = std::current_exception();
+			stop = true;
+		}
+	};
+	const auto work = [&](bool reports) {
+		const Progress silent([&](int, const char*) { return !stop; });
+		for (int i; !stop && (i = next++) < count; ++done)
+			guarded(errors[i], [&] {
+				const Progress window = progress.part(before[i] / total, before[i + 1] / total);
+				body(start[order[i]], start[order[i] + 1], reports ? window : silent);
+			});
+		constexpr int reportEvery = 1 << 10; // some hundred us
+		for (int i = 0; reports && !stop && done < count; ++i) {
+			if (i % reportEvery == 0)
+				guarded(errors[count], [&] { progress.report(1, what); });
+			std::this_thread::yield();
+		}
+	};
+	detail::onThreads(total >= leastForTeam ? detail::threadsForLoop() : 1, work);
+	std::exception_ptr cancelled;
+	for (const std::exception_ptr& error : errors)
+		if (error)
+			try {
+				std::rethrow_exception(error);
+			}
+			catch (const Cancelled&) {
+				cancelled = error; // perhaps by an error in another part
+			}
+	if (cancelled)
+		std::rethrow_exception(cancelled);
+}
+
+/// Parts of [0, count) for forEachPart(), one for each thread; a single one if count is less than `leastForTeam`.
+inline std::vector<int> rangesForThreads(int count, [[maybe_unused]] int leastForTeam)
+{
+	int parts = 1;
+#ifdef _OPENMP
+	if (count >= leastForTeam)
+		parts = omp_get_max_threads();
+#endif
+	std::vector<int> start;
+	for (int i = 0; i <= parts; ++i)
+		start.push_back(int(std::int64_t(count) * i / parts));
+	return start;
+}
+
+} // namespace vcg::tri::mcf
+
+#endif

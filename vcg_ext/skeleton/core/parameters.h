@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief Every knob of the pipeline: default, unit and the equation it belongs to.
+
+#ifndef VCG_MCF_PARAMETERS_H
+#define VCG_MCF_PARAMETERS_H
+
+#include "errors.h"
+#include "has_qhull.h"
+
+#include <cmath>
+#include <string>
+
+namespace vcg::tri::mcf {
+
+/// Where the medial poles of the surface come from (Sec. 4.5).
+enum class PoleMethod {
+	Voronoi, ///< the Voronoi diagram of the vertices, as in the paper; needs Qhull: see has_qhull.h
+	Balls    ///< shrinking balls (Ma, Bae, Choi 2012): the same poles, faster, and never outside
+};
+
+/**
+ * What the user may choose. Lengths are fractions of the bounding box diagonal of a connected
+ * component, so that each component of a scene is treated as it would be alone. The box is that along
+ * the principal axes, see PrincipalFrame, but for targetLength, where it stands straight.
+ */
+struct Parameters
+{
+	/// Smoothness weight w_L (Eq. 6), in the paper's units; > 0.
+	double wL = 1;
+	/// Velocity weight w_H (Eq. 6), in the paper's units; > 0. Larger: smaller steps, more of them.
+	double wH = 20;
+	/// Medial weight w_M (Eq. 6), in the paper's units; >= 0. 0: plain mean curvature skeleton.
+	double wM = 40;
+	/// Edges shorter than this are collapsed (Sec. 4.3); fraction of the diagonal, in (0, maxEpsilon].
+	double epsilon = 0.002;
+	static constexpr double maxEpsilon = 0.1;
+	/// An edge whose two opposite angles are wider is split (Sec. 4.3); degrees, in [60, 180).
+	double splitAngle = 110;
+	/// The flow stops after this many iterations even if it has not converged; >= 0.
+	int maxIterations = 500;
+	PoleMethod poleMethod = PoleMethod::Balls;
+	/// Keep sheets of the medial axis where the shape is flat, instead of contracting them to curves.
+	bool keepSheets = false;
+	/// What is a sheet: where the sheetness (see sheetness.h) is above this; in [0, 1]. 0: nearly the
+	/// medial axis; 1: curves only.
+	double sheetThreshold = 0.85;
+	/// Resample the surface first (first line of Fig. 4).
+	bool resample = true;
+	/// Edge length of the resampling, fraction of the diagonal; 0: chosen by defaultTargetLength().
+	double targetLength = 0;
+	/// Rounds of the resampling; >= 0.
+	int resampleIterations = 5;
+	/// Measure the noise of the surface and smooth it before the resampling: see noise.h.
+	bool denoise = true;
+	/// Refine the curve at the end: see refine.h. Without, it is the paper's own.
+	bool refine = true;
+
+	/// @throws InvalidParameter naming the first parameter that is out of its range.
+	void check() const
+	{
+		require(wL > 0 && std::isfinite(wL), "w_l", "greater than 0");
+		require(wH > 0 && std::isfinite(wH), "w_h", "greater than 0");
+		require(wM >= 0 && std::isfinite(wM), "w_m", "at least 0");
+		require(
+			epsilon > 0 && epsilon <= maxEpsilon, "epsilon", "between 0 and 10 % of the diagonal");
+		require(splitAngle >= 60 && splitAngle < 180, "split_angle", "in [60, 180) degrees");
+		require(maxIterations >= 0, "max_iterations", "at least 0");
+		require(sheetThreshold >= 0 && sheetThreshold <= 1, "sheet_threshold", "between 0 and 1");
+		require(targetLength >= 0 && targetLength <= 0.5, "target_length",
+			"between 0 and 50 % of the diagonal");
+		require(resampleIterations >= 0, "resample_iterations", "at least 0");
+		require(poleMethod != PoleMethod::Voronoi || hasQhull, "pole_method",
+			"'balls': this program is built without Qhull, which finds the poles of 'voronoi'");
+	}
+
+private:
+	static void require(bool holds, const char* name, const char* range)
+	{
+		if (!holds)
+			throw InvalidParameter(std::string("Parameter ") + name + " must be " + range + ".");
+	}
+};
+
+} // namespace vcg::tri::mcf
+
+#endif

@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief Large arrays, made in pieces between which the user can cancel.
+///
+/// Memory that nobody has touched before can come slowly, a few GB in ten seconds on a virtual machine:
+/// to make an array of a hundred MB in one go would be a silence of half a second.
+
+#ifndef VCG_MCF_REPORTED_ARRAYS_H
+#define VCG_MCF_REPORTED_ARRAYS_H
+
+#include "progress.h"
+#include "ticker.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdlib>
+#include <vector>
+
+namespace vcg::tri::mcf::detail {
+
+/**
+ * Lets the allocator keep what is freed between two steps for the next one, which needs as much, rather than
+ * give it back to the system and fault it in anew, page by page.
+ *
+ * glibc's malloc keeps twice the largest block that was freed so far, up to 64 MB; so a block of nearly half of
+ * that is taken and freed, of which nothing is touched. Elsewhere it has no effect.
+ */
+inline void keepFreedMemory()
+{
+	void* volatile block = std::malloc(31 << 20); // volatile: else compilers leave both calls out
+	std::free(block);
+}
+
+/// How many elements of a large array are made between two reports: 4 MB.
+template <class T>
+constexpr size_t pieceOf = (size_t(1) << 22) / sizeof(T);
+
+/**
+ * Makes an array `count` elements long, all of them `value`, whatever it was before.
+ * @param progress what follows in this window need not know: only its beginning is reported.
+ * @throws Cancelled
+ */
+template <class T>
+void fillReported(
+	std::vector<T>& array, size_t count, const T& value, const Progress& progress, const char* what)
+{
+	array.clear();
+	array.reserve(count);
+	while (array.size() < count) {
+		progress.report(0, what);
+		array.resize(std::min(count, array.size() + pieceOf<T>), value);
+	}
+}
+
+/// An array of `count` elements, all of them `value`: see fillReported().
+template <class T>
+std::vector<T> filledArray(size_t count, const T& value, const Progress& progress, const char* what)
+{
+	std::vector<T> array;
+	fillReported(array, count, value, progress, what);
+	return array;
+}
+
+/// A copy of an array, made and reported as by fillReported().
+template <class T>
+std::vector<T> copiedArray(const std::vector<T>& array, const Progress& progress, const char* what)
+{
+	std::vector<T> copy;
+	copy.reserve(array.size());
+	while (copy.size() < array.size()) {
+		progress.report(0, what);
+		const size_t end = std::min(array.size(), copy.size() + pieceOf<T>);
+		copy.insert(copy.end(), array.begin() + long(copy.size()), array.begin() + long(end));
+	}
+	return copy;
+}
+
+/// 0, 1, 2, ..., count - 1, made in pieces between which the user can cancel.
+/// @throws Cancelled
+inline std::vector<int> numberedArray(size_t count, const Progress& progress, const char* what)
+{
+	std::vector<int> numbers;
+	numbers.reserve(count);
+	reportedLoop(int(count), progress, what, [&](int i) { numbers.push_back(i); });
+	return numbers;
+}
+
+} // namespace vcg::tri::mcf::detail
+
+#endif

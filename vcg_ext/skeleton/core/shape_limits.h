@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief The coordinates and lengths that can be worked with.
+
+#ifndef VCG_MCF_SHAPE_LIMITS_H
+#define VCG_MCF_SHAPE_LIMITS_H
+
+#include <vcg/space/point3.h>
+
+#include <cmath>
+
+namespace vcg::tri::mcf {
+
+/// What single precision, in which some hosts keep their layers, holds with room for sums; cubes of it
+/// are far from the limits of double precision.
+constexpr double maxCoordinate = 1e36, minSize = 1e-36;
+
+/// Whether a point is finite and not too far from the origin.
+inline bool isUsablePlace(const Point3d& p)
+{
+	for (int k = 0; k < 3; ++k)
+		if (!(std::abs(p[k]) <= maxCoordinate)) // negated, so that NaN fails
+			return false;
+	return true;
+}
+
+/// Whether a length can be a shape's unit.
+inline bool isUsableSize(double length)
+{
+	return length >= minSize && length <= 4 * maxCoordinate; // the diagonal of the range is shorter
+}
+
+} // namespace vcg::tri::mcf
+
+#endif

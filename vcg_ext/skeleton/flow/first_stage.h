@@ -1,0 +1,242 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief From a surface to the stage that the flow starts from: edge lengths, poles, numbering.
+
+#ifndef VCG_MCF_FIRST_STAGE_H
+#define VCG_MCF_FIRST_STAGE_H
+
+#include "halved_edges.h"
+#include "stage.h"
+
+#include <skeleton/core/parameters.h>
+#include <skeleton/core/progress.h>
+#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/ticker.h>
+#include <skeleton/mesh/breadth_first_numbering.h>
+#include <skeleton/mesh/components.h>
+#include <skeleton/mesh/components_at_rest.h>
+#include <skeleton/mesh/measured_surface.h>
+#include <skeleton/poles/poles.h>
+#include <skeleton/resample/progressive_coarsening.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/**
+ * Edges up to this many epsilon are merged before the flow starts. The flow would collapse them in
+ * its first iterations, at many times the cost; three epsilon lose the tips of fingers.
+ */
+constexpr double coarseningOfEpsilon = 2;
+
+/**
+ * A surface is dense where less than this part of its vertices is left on the mesh that the flow starts
+ * on. Its poles are then found on that mesh alone, which is as fine as other input of the flow is.
+ * Against the dense surface they cost several times as much, and balls held by its finest bumps, near
+ * their vertices, draw them nowhere: the flow takes up to 1.7 times as many iterations.
+ */
+constexpr double leftOfDenseSurface = 0.5;
+
+/**
+ * The surface as the flow starts on it: without edges far below epsilon, on which time would go
+ * that changes nothing, and without those that are too long for it.
+ *
+ * The vertices of `mesh` are a subset of the surface's, where they were, and of the middles of its
+ * long edges, in breadth-first order: neighbours in the mesh are neighbours in memory.
+ */
+struct FlowSurface
+{
+	SurfaceMesh mesh;
+	/// For each vertex of `mesh` the surface's vertex that it is, -1 for the middle of an edge.
+	std::vector<int> survivor;
+	/// The surface with its long edges halved, see withHalvedEdges(), in an order that follows from the
+	/// places of its vertices; nothing where none are too long.
+	std::optional<SurfaceMesh> finer;
+	/// For each vertex of `mesh` the vertex of `finer` that it is; empty where there is none.
+	std::vector<int> inFiner;
+	/// For each vertex of the surface the vertex of `mesh` that it has merged into.
+	std::vector<int> node;
+	/// Connected component of each vertex of `mesh`, in the order of connectedComponents().
+	std::vector<int> component;
+	/// Diagonal, see MeasuredSurface, and area of each component of the surface.
+	std::vector<double> diagonal, area;
+	/// 1 for the components that rest, see componentsAtRest().
+	std::vector<char> rests;
+};
+
+/**
+ * Merges edges shorter than two epsilon, see coarsen(), and halves those of coarse components that
+ * are too long, see coarseComponents().
+ * @param surface  compact, closed.
+ * @param epsilon  as in Parameters, of the diagonal of each component.
+ * @param polesOfSurface (progress): gives the poles of all vertices of the surface, a PoleSet; called
+ *                 once if a component may be coarse.
+ * @throws Cancelled. Complexity: O(V + F), and O(s log s) for s halved edges.
+ */
+template <class PolesOfSurface>
+FlowSurface surfaceForFlow(const SurfaceMesh& surface, double epsilon,
+	PolesOfSurface&& polesOfSurface, const Progress& progress = Progress())
+{
+	FlowSurface result;
+	Numbering number = breadthFirstOrder(surface, {}, progress.part(0, 0.1));
+	SurfaceMesh& mesh = result.mesh;
+	mesh = surface.renumbered(number.vertex, number.face, {}, progress.part(0.1, 0.2));
+	const auto isAny = [](const std::vector<char>& coarse) {
+		return std::find(coarse.begin(), coarse.end(), 1) != coarse.end();
+	};
+	const auto moving = [&](std::vector<char> components) {
+		for (size_t c = 0; c < components.size(); ++c)
+			components[c] &= !result.rests[c];
+		return components;
+	};
+	bool mayBeCoarse = false;
+	{
+		const MeasuredSurface measured(
+			mesh, number.component, number.components, progress.part(0.2, 0.3));
+		result.diagonal = measured.diagonals();
+		result.area = measured.areas();
+		result.rests = componentsAtRest(measured, progress.part(0.3, 0.3));
+		mayBeCoarse =
+			isAny(moving(coarseComponents(measured, epsilon, {}, progress.part(0.3, 0.3))));
+	}
+	if (mayBeCoarse) {
+		const Progress part = progress.part(0.3, 0.3);
+		const MeasuredSurface measured(surface, part);
+		const std::vector<char> coarse =
+			moving(coarseComponents(measured, epsilon, polesOfSurface(part).radius, part));
+		if (isAny(coarse)) {
+			const SurfaceMesh halved =
+				withHalvedEdges(measured, longestEdgesForFlow(measured, coarse, epsilon), part);
+			const std::vector<int> component = connectedComponents(halved, nullptr, part);
+			const auto placeOf = [&](int v) {
+				return measured.frame(component[v]).onGrid(halved.position[v]);
+			};
+			number = breadthFirstOrder(halved,
+				leastHalfEdges(halved, component, measured.components(), placeOf, part), part);
+			mesh = halved.renumbered(number.vertex, number.face, number.firstCorner, part);
+			result.finer = mesh.copied(part);
+		}
+	}
+	std::vector<double> length;
+	for (double diagonal : result.diagonal)
+		length.push_back(coarseningOfEpsilon * epsilon * diagonal);
+	std::vector<int> mergedInto = coarsen(
+		mesh, [&](int v) { return length[number.component[v]]; }, progress.part(0.3, 0.9));
+	const std::vector<int> place = mesh.compact(progress.part(0.9, 0.93));
+	result.component = renumbered(number.component, place, mesh.vertexSlots());
+	result.survivor.assign(mesh.vertexSlots(), -1);
+	result.inFiner.resize(result.finer ? mesh.vertexSlots() : 0);
+	const char* const what = "Ordering the surface";
+	const Progress end = progress.part(0.93, 1);
+	detail::fillReported(result.node, size_t(surface.vertexSlots()), -1, end, what);
+	detail::reportedLoop(surface.vertexSlots(), end, what, [&](int v) {
+		const int ordered = number.vertex[v];
+		result.node[v] = place[mergedInto[ordered]];
+		if (place[ordered] >= 0)
+			result.survivor[place[ordered]] = v;
+	});
+	if (result.finer)
+		for (size_t v = 0; v < place.size(); ++v)
+			if (place[v] >= 0)
+				result.inFiner[place[v]] = int(v);
+	return result;
+}
+
+/**
+ * Stage 0: the surface with edges of the flow's length, and its poles.
+ *
+ * Components that rest, see componentsAtRest(), are fixed from the start.
+ *
+ * Lengths, areas and volumes are measured on the surface itself, and its vertices keep their
+ * correspondence. Poles are found for the vertices that remain, against all that their component has on the
+ * surface; where it is dense, see leftOfDenseSurface, against those that remain. Those in the middle of
+ * halved edges have theirs against those of the finer surface.
+ *
+ * @param surface    compact, closed; see checkedSurface().
+ * @param parameters epsilon and poleMethod are used.
+ * @param poles      of all vertices of the surface where they are known already; null: they are
+ *                   computed. Those in the middle of halved edges are always computed.
+ * @throws SolverError, Cancelled, InvalidParameter. Complexity: O(V log V), dominated by the poles.
+ */
+inline Stage firstStage(const SurfaceMesh& surface, const Parameters& parameters,
+	const PoleSet* poles = nullptr, const Progress& progress = Progress())
+{
+	parameters.check();
+	const double polesFrom = poles ? 1 : 0.3;
+	PoleSet found;
+	const auto polesOfSurface = [&](const Progress& part) -> const PoleSet& {
+		if (!poles) {
+			found = medialPoles(surface, parameters.poleMethod, part);
+			poles = &found;
+		}
+		return *poles;
+	};
+	FlowSurface start =
+		surfaceForFlow(surface, parameters.epsilon, polesOfSurface, progress.part(0, polesFrom));
+	Stage stage;
+	stage.component = std::move(start.component);
+	stage.node = std::move(start.node);
+	stage.diagonal = std::move(start.diagonal);
+	const size_t count = start.survivor.size();
+	stage.pole.resize(count);
+	stage.poleRadius.resize(count);
+	// The vertices of the mesh that are the surface's, those that are not, and what they are.
+	std::vector<int> own, added, ownOf, addedOf;
+	for (size_t v = 0; v < count; ++v) {
+		const bool isOwn = start.survivor[v] >= 0;
+		(isOwn ? own : added).push_back(int(v));
+		(isOwn ? ownOf : addedOf).push_back(isOwn ? start.survivor[v] : start.inFiner[v]);
+	}
+	const auto take = [&](int v, const PoleSet& from, size_t i) {
+		stage.pole[v] = from.centre[i];
+		stage.poleRadius[v] = from.radius[i];
+	};
+	if (poles)
+		for (size_t i = 0; i < own.size(); ++i)
+			take(own[i], *poles, size_t(ownOf[i]));
+	else {
+		const Progress part = progress.part(polesFrom, 1);
+		if (double(count) < leftOfDenseSurface * surface.vertexSlots())
+			found = polesAt(start.mesh, own, parameters.poleMethod, part);
+		else {
+			const std::vector<int> component =
+				componentOfSurfaceVertices(stage, part.part(0, 0.01));
+			stage.findFrames(surface.position, component, part.part(0.01, 0.02));
+			found = polesAt(surface, component, *stage.frames, ownOf, parameters.poleMethod,
+				part.part(0.02, 1));
+		}
+		for (size_t i = 0; i < own.size(); ++i)
+			take(own[i], found, i);
+	}
+	if (!added.empty()) {
+		found = polesAt(*start.finer, addedOf, parameters.poleMethod, progress.part(polesFrom, 1));
+		for (size_t i = 0; i < added.size(); ++i)
+			take(added[i], found, i);
+	}
+	for (size_t v = 0; v < count; ++v)
+		stage.fixed.push_back(start.rests[stage.component[v]]);
+	stage.held.assign(count, 0);
+	stage.sheet.assign(count, 0);
+	stage.initialArea = std::move(start.area);
+	const Progress end = progress.part(1, 1);
+	stage.initialVolume = surface.volume(end);
+	stage.surface = std::make_shared<const std::vector<Point3d>>(
+		detail::copiedArray(surface.position, end, "Copying the surface"));
+	stage.surfaceTriangles = std::make_shared<const std::vector<Triangle>>(surface.triangles(end));
+	stage.mesh = std::move(start.mesh);
+	const Extent extent =
+		measuredExtent(stage.mesh, stage.component, std::vector<double>(stage.diagonal.size(), 1));
+	stage.area = extent.area;
+	stage.volume = extent.volume;
+	return stage;
+}
+
+} // namespace vcg::tri::mcf
+
+#endif

@@ -1,0 +1,198 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief The loop of Fig. 4: one step of the contraction, and all steps until it has converged.
+
+#ifndef VCG_MCF_FLOW_H
+#define VCG_MCF_FLOW_H
+
+#include "contraction.h"
+#include "degeneracy.h"
+#include "local_remeshing.h"
+#include "sheet_marks.h"
+#include "stage.h"
+#include "stage_frames.h"
+
+#include <skeleton/core/parameters.h>
+#include <skeleton/core/progress.h>
+#include <skeleton/core/ticker.h>
+#include <skeleton/mesh/breadth_first_numbering.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+namespace detail {
+
+/// After every so many steps a stage is numbered anew, so that neighbours are near each other in memory and
+/// in the elimination order. Stage 0 is numbered so by surfaceForFlow().
+constexpr int renumberEvery = 4;
+
+/// step() of a stage that has entered its frames.
+inline void stepInFrames(
+	Stage& stage, const StageFrames& frames, const Parameters& parameters, const Progress& progress)
+{
+	SurfaceMesh& mesh = stage.mesh;
+	const int before = mesh.vertexSlots();
+	contract(stage, parameters, progress.part(0, 0.8));
+	for (int v = 0; v < mesh.vertexSlots(); ++v)
+		if (!stage.fixed[v])
+			mesh.position[v] = PrincipalFrame::rounded(mesh.position[v]);
+	MergeForest forest(mesh.vertexSlots());
+	const std::vector<int> candidates =
+		collapseShortEdges(stage, parameters.epsilon, forest, progress.part(0.8, 0.9));
+	splitWideAngles(stage, parameters, forest, progress.part(0.9, 1));
+	fixDegenerateVertices(stage, candidates, parameters.epsilon);
+	fixArrivedSheets(stage, parameters.epsilon);
+
+	// Vertices that have merged, or are new, are between grid points; so are the poles of new ones.
+	const auto toGrid = [&](int v) {
+		if (!stage.held[v])
+			mesh.position[v] = PrincipalFrame::rounded(mesh.position[v]);
+	};
+	std::vector<int> mergedInto(before);
+	for (int v = 0; v < before; ++v) {
+		mergedInto[v] = forest.find(v);
+		if (mergedInto[v] != v)
+			toGrid(mergedInto[v]);
+	}
+	for (int v = before; v < mesh.vertexSlots(); ++v) {
+		toGrid(v);
+		stage.pole[v] = PrincipalFrame::rounded(stage.pole[v]);
+	}
+	const std::vector<int> newVertex = (stage.iteration + 1) % renumberEvery == 0
+		? renumberBreadthFirst(mesh, progress.part(1, 1))
+		: mesh.compact();
+	for (int& node : stage.node)
+		node = newVertex[mergedInto[node]];
+	const auto renumber = [&](auto& ofVertex) {
+		ofVertex = renumbered(ofVertex, newVertex, mesh.vertexSlots());
+	};
+	renumber(stage.pole);
+	renumber(stage.poleRadius);
+	renumber(stage.fixed);
+	renumber(stage.held);
+	renumber(stage.sheet);
+	renumber(stage.component);
+
+	const Extent extent = frames.extent(stage);
+	constexpr double settled = 1e-4;
+	stage.converged = true;
+	for (size_t c = 0; c < extent.area.size(); ++c)
+		stage.converged &=
+			std::abs(extent.area[c] - stage.area[c]) < settled * stage.initialArea[c];
+	stage.area = extent.area;
+	stage.volume = extent.volume;
+	stage.converged &=
+		stage.volumeFraction() < 0.05 || stage.fixedFraction() > 0.5 || stage.heldCount() > 0;
+	stage.iteration = std::min(stage.iteration + 1, Stage::maxIteration);
+	stage.epsilon = parameters.epsilon;
+}
+
+} // namespace detail
+
+/**
+ * One iteration of the loop of Fig. 4: weights and contraction, then connectivity, then degeneracy.
+ *
+ * Convergence: in every component the area changed by less than 1e-4 of the surface's area, and there
+ * is nothing left to contract: less than 5 % of the volume (in the end it is some 1e-5), or most
+ * vertices are fixed (a body thinner than epsilon keeps its volume). The area alone would take a flow
+ * for finished that a large w_H makes slow; it must do where vertices are held, since they may hold
+ * any volume open. A converged stage stays as it is.
+ *
+ * All of it happens in the shape's own coordinates, see StageFrames.
+ * @return the next stage; the given one is not changed.
+ * @throws SolverError, InvalidParameter, Cancelled.
+ */
+inline Stage step(Stage stage, const Parameters& parameters, const Progress& progress = Progress())
+{
+	parameters.check();
+	if (stage.converged)
+		return stage;
+	StageFrames frames(stage, progress.part(0, 0));
+	frames.enter(stage);
+	detail::stepInFrames(stage, frames, parameters, progress);
+	frames.leave(stage);
+	return stage;
+}
+
+/// Callbacks invoked during the contraction. Unset ones cost nothing.
+struct StageObserver
+{
+	/// Called with stages as step() would make them, the observer's own, e.g. to keep them; may be empty.
+	/// Each costs a copy.
+	std::function<void(Stage)> onStage;
+	/// Every which iteration onStage is called, >= 1.
+	int every = 1;
+	/// Called with the figures of each new stage; may be empty.
+	std::function<void(const StageFigures&)> onFigures;
+};
+
+/**
+ * Repeats step() until the flow has converged or parameters.maxIterations are made.
+ * @throws as step().
+ */
+inline Stage contractToSkeleton(Stage stage, const Parameters& parameters,
+	const Progress& progress = Progress(), const StageObserver& observer = StageObserver())
+{
+	parameters.check();
+	const Progress begin = progress.part(0, 0), end = progress.part(1, 1);
+	StageFrames frames(stage, begin); // found by the surface's own correspondence
+	// The surface, and the first stages, have many more vertices than the others. Only what becomes of
+	// the vertices of one of them is followed, until half of these are gone; the surface's are told when
+	// somebody looks, and at the end.
+	const std::vector<int> ofSurface = std::move(stage.node);
+	std::vector<int> ofFirst(stage.mesh.vertexSlots());
+	std::iota(ofFirst.begin(), ofFirst.end(), 0);
+	stage.node = ofFirst;
+	const auto goesOn = [&] {
+		return !stage.converged && stage.iteration < parameters.maxIterations;
+	};
+	// Held vertices have places outside that those inside do not tell: each step finds them again.
+	const bool staysInside = stage.heldCount() == 0 && goesOn();
+	if (staysInside)
+		frames.enter(stage);
+	const auto outside = [&](Stage inside, const Progress& part) {
+		if (staysInside)
+			frames.leave(inside);
+		std::vector<int> node;
+		node.reserve(ofSurface.size());
+		detail::reportedLoop(int(ofSurface.size()), part, "Contracting",
+			[&](int s) { node.push_back(inside.node[ofFirst[ofSurface[s]]]); });
+		inside.node = std::move(node);
+		return inside;
+	};
+	double done = 0;
+	while (goesOn()) {
+		// The area falls by a like factor each iteration: its logarithm tells how far it is.
+		const double next = done + 0.1 * (1 - done);
+		const Progress part = progress.part(done, next);
+		if (staysInside)
+			detail::stepInFrames(stage, frames, parameters, part);
+		else
+			stage = step(std::move(stage), parameters, part);
+		done = next;
+		if (observer.onFigures)
+			observer.onFigures(figuresOf(stage));
+		if (observer.onStage && stage.iteration % observer.every == 0)
+			observer.onStage(outside(stage, part.part(1, 1)));
+		if (2 * size_t(stage.mesh.vertexSlots()) < stage.node.size()) {
+			for (int& node : ofFirst)
+				node = stage.node[node];
+			stage.node.resize(stage.mesh.vertexSlots());
+			std::iota(stage.node.begin(), stage.node.end(), 0);
+		}
+	}
+	return outside(std::move(stage), end);
+}
+
+} // namespace vcg::tri::mcf
+
+#endif

@@ -1,0 +1,344 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief Local dynamic remeshing (Sec. 4.3): short edges are collapsed, wide angles split.
+
+#ifndef VCG_MCF_LOCAL_REMESHING_H
+#define VCG_MCF_LOCAL_REMESHING_H
+
+#include "stage.h"
+
+#include <skeleton/core/disjoint_sets.h>
+#include <skeleton/core/parameters.h>
+#include <skeleton/core/progress.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <queue>
+#include <utility>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+namespace detail {
+
+/// Merges what two vertices know; the survivor is already where it will stay.
+inline void mergeVertexState(Stage& stage, int removed, int survivor)
+{
+	// Of the two poles the one closest to the resulting vertex stays (Sec. 4.5).
+	const Point3d& p = stage.mesh.position[survivor];
+	const bool removedHas = stage.poleRadius[removed] >= 0,
+			   survivorHas = stage.poleRadius[survivor] >= 0;
+	// A vertex of a sheet keeps its pole, or its rim would wear away.
+	const bool takesPole = stage.sheet[removed] != stage.sheet[survivor] ? stage.sheet[removed]
+																		 : removedHas
+			&& (!survivorHas
+				|| SquaredDistance(p, stage.pole[removed])
+					< SquaredDistance(p, stage.pole[survivor]));
+	if (takesPole) {
+		stage.pole[survivor] = stage.pole[removed];
+		stage.poleRadius[survivor] = stage.poleRadius[removed];
+	}
+	stage.fixed[survivor] |= stage.fixed[removed];
+	stage.held[survivor] |= stage.held[removed];
+	stage.sheet[survivor] |= stage.sheet[removed];
+}
+
+/// Sorts edges, each as its squared length and a half-edge: into as many parts of equal widths as there
+/// are edges first, so that hardly any comparison is left. Complexity: O(n) for lengths spread evenly.
+inline void sortByLength(std::vector<std::pair<double, int>>& edges)
+{
+	double largest = std::numeric_limits<double>::min();
+	for (const auto& [squaredLength, h] : edges)
+		largest = std::max(largest, squaredLength);
+	const auto partOf = [&](double squaredLength) {
+		return size_t(squaredLength / largest * double(edges.size() - 1));
+	};
+	std::vector<int> start(edges.size() + 1, 0);
+	for (const auto& [squaredLength, h] : edges)
+		++start[partOf(squaredLength) + 1];
+	std::partial_sum(start.begin(), start.end(), start.begin());
+	std::vector<std::pair<double, int>> inParts(edges.size());
+	for (const auto& edge : edges)
+		inParts[start[partOf(edge.first)]++] = edge;
+	for (size_t part = 0, first = 0; part < edges.size(); first = start[part++])
+		std::sort(inParts.begin() + first, inParts.begin() + start[part]);
+	edges.swap(inParts);
+}
+
+/// Of the half-edges of a triangle those opposite to an angle whose cosine may be below `widest`, at most
+/// 0: one at most, but for triangles that are a line. An angle that has it nearly may be told as well.
+inline std::array<bool, 3> maybeWideAngles(const SurfaceMesh& mesh, int face, double widest)
+{
+	constexpr double rounding = 1e-9;
+	const auto [i, j, k] = mesh.triangle(face);
+	const Point3d &a = mesh.position[i], &b = mesh.position[j], &c = mesh.position[k];
+	const double ab = SquaredDistance(a, b), bc = SquaredDistance(b, c), ca = SquaredDistance(c, a);
+	const double sum = (ab + bc + ca) * (1 - rounding), least = 4 * widest * widest;
+	// The law of cosines: edge = one + other - 2 cosine sqrt(one other), squared lengths all of them.
+	const auto isWide = [&](double edge, double one, double other) -> bool {
+		const double excess = 2 * edge - sum;
+		return (excess > 0) & (excess * excess >= least * (one * other));
+	};
+	return {isWide(ab, bc, ca), isWide(bc, ca, ab), isWide(ca, ab, bc)};
+}
+
+/// The edges that splitWideAngles() starts with: those that there are, by the half-edge that stands for
+/// them, and among them those that are due to be looked at.
+class EdgesToSplit
+{
+public:
+	EdgesToSplit(const SurfaceMesh& mesh, double widest) : mesh(mesh), state(mesh.halfEdgeSlots())
+	{
+		for (int h = 0; h < mesh.halfEdgeSlots(); ++h)
+			state[h] = h < mesh.twin(h) ? edge : 0;
+		std::vector<int> wide(state.size() + 1); // room for one that does not count
+		size_t count = 0;
+		for (int f = 0; f < mesh.faceSlots(); ++f) {
+			if (!mesh.isFace(f))
+				continue;
+			const std::array<bool, 3> atFace = widest > 0 ? std::array<bool, 3> {true, true, true}
+														  : maybeWideAngles(mesh, f, widest);
+			for (int k = 0; k < 3; ++k) { // without a branch, which could not be foretold
+				wide[count] = 3 * f + k;
+				count += atFace[k];
+			}
+		}
+		std::vector<char> isWide(state.size(), 0);
+		for (size_t i = 0; i < count; ++i)
+			isWide[wide[i]] = due;
+		for (size_t i = 0; i < count; ++i)
+			state[wide[i]] |= isWide[mesh.twin(wide[i])];
+	}
+
+	size_t size() const { return state.size(); }
+	/// The first one from h on that is due: size() if there is none, h if it is no less than that.
+	size_t nextDue(size_t h) const
+	{
+		if (h >= size())
+			return h;
+		const void* const found = std::memchr(&state[h], edge | due, size() - h);
+		return found ? size_t(static_cast<const char*>(found) - state.data()) : size();
+	}
+	/// Looks at the edges of a changed triangle, if it is their turn yet, again.
+	void touch(int face)
+	{
+		for (int h = 3 * face; h < 3 * face + 3; ++h)
+			for (int side : {h, mesh.twin(h)})
+				if (size_t(side) < state.size())
+					state[side] |= due;
+	}
+
+private:
+	static constexpr char edge = 1, due = 2;
+	const SurfaceMesh& mesh;
+	std::vector<char> state;
+};
+
+} // namespace detail
+
+/**
+ * Collapses edges shorter than epsilon, shortest first, wherever the link condition allows, until
+ * none is left. The merged vertex goes to the middle, or to the fixed end if one end is fixed; an
+ * edge between two fixed vertices stays.
+ *
+ * @param forest gets every merge.
+ * @return the vertices that have a short edge which cannot be collapsed: candidates for
+ *         fixDegenerateVertices(), ordered by id.
+ * @throws Cancelled. Complexity: O(V + c log c) for c short edges.
+ */
+inline std::vector<int> collapseShortEdges(
+	Stage& stage, double epsilon, MergeForest& forest, const Progress& progress = Progress())
+{
+	SurfaceMesh& mesh = stage.mesh;
+	using Entry = std::pair<double, int>; // squared length, half-edge
+	const auto entry = [&](int h) {
+		return Entry(mesh.squaredLength(h), std::min(h, mesh.twin(h)));
+	};
+	std::vector<double> squaredLimit; // by component
+	for (double diagonal : stage.diagonal)
+		squaredLimit.push_back(epsilon * diagonal * (epsilon * diagonal));
+	const auto mayCollapse = [&](const Entry& e) {
+		const int a = mesh.origin(e.second), b = mesh.target(e.second);
+		return e.first < squaredLimit[stage.component[a]] && !(stage.fixed[a] && stage.fixed[b]);
+	};
+	// The edges of a round, sorted at once; what a collapse makes short is few, and waits beside them.
+	std::vector<Entry> sorted;
+	std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> fresh;
+	std::vector<int> blocked;
+	// A blocked edge stays so until the ring of one of its ends changes.
+	std::vector<char> changed(mesh.vertexSlots(), 0);
+	const auto collapseQueued = [&] {
+		detail::sortByLength(sorted);
+		size_t next = 0;
+		const auto pop = [&] {
+			if (next < sorted.size() && (fresh.empty() || sorted[next] < fresh.top()))
+				return sorted[next++];
+			const Entry top = fresh.top();
+			fresh.pop();
+			return top;
+		};
+		size_t count = 0;
+		while (next < sorted.size() || !fresh.empty()) {
+			if (++count % 65536 == 0)
+				progress.report(0, "Collapsing short edges");
+			const auto [squaredLength, h] = pop();
+			if (!mesh.isHalfEdge(h) || mesh.squaredLength(h) != squaredLength)
+				continue; // it has changed since, and was queued again if it still is short
+			const int a = mesh.origin(h), b = mesh.target(h);
+			if (stage.fixed[a] && stage.fixed[b])
+				continue;
+			const Point3d merged = stage.fixed[a] ? mesh.position[a]
+				: stage.fixed[b]                  ? mesh.position[b]
+								 : Point3d((mesh.position[a] + mesh.position[b]) / 2.0);
+			const double limit = squaredLimit[stage.component[b]];
+			const bool isFixed = stage.fixed[a] || stage.fixed[b];
+			const bool isCollapsed = mesh.collapseIfPossible(h, [&](int e) {
+				const int c = mesh.target(e);
+				changed[c] = 1;
+				const double newSquaredLength = SquaredDistance(merged, mesh.position[c]);
+				if (newSquaredLength < limit && !(isFixed && stage.fixed[c]))
+					fresh.emplace(newSquaredLength, std::min(e, mesh.twin(e)));
+			});
+			if (!isCollapsed) {
+				blocked.push_back(h);
+				continue;
+			}
+			mesh.position[b] = merged;
+			forest.merge(a, b);
+			detail::mergeVertexState(stage, a, b);
+			changed[b] = 1;
+		}
+		sorted.clear();
+	};
+	// Face by face each length is measured twice, but read in the order of the memory, and few are short.
+	for (int f = 0; f < mesh.faceSlots(); ++f) {
+		if (!mesh.isFace(f))
+			continue;
+		const auto [a, b, c] = mesh.triangle(f);
+		const Point3d &p = mesh.position[a], &q = mesh.position[b], &r = mesh.position[c];
+		const double limit = squaredLimit[stage.component[a]];
+		const double squaredLengths[3] = {
+			SquaredDistance(p, q), SquaredDistance(q, r), SquaredDistance(r, p)};
+		if (std::min({squaredLengths[0], squaredLengths[1], squaredLengths[2]}) >= limit)
+			continue;
+		for (int k = 0; k < 3; ++k)
+			if (squaredLengths[k] < limit && mesh.isEdge(3 * f + k))
+				if (const Entry e(squaredLengths[k], 3 * f + k); mayCollapse(e))
+					sorted.push_back(e);
+	}
+	collapseQueued();
+	// A collapse elsewhere may have freed a blocked edge.
+	for (;;) {
+		const auto stays = std::partition(blocked.begin(), blocked.end(), [&](int h) {
+			return !mesh.isHalfEdge(h) || !(changed[mesh.origin(h)] || changed[mesh.target(h)]);
+		});
+		for (auto h = stays; h != blocked.end(); ++h)
+			if (const Entry e = entry(*h); mayCollapse(e))
+				sorted.push_back(e);
+		blocked.erase(stays, blocked.end());
+		if (sorted.empty())
+			break;
+		std::fill(changed.begin(), changed.end(), 0);
+		collapseQueued();
+	}
+	std::vector<char> isCandidate(mesh.vertexSlots(), 0);
+	for (int h : blocked)
+		if (mesh.isHalfEdge(h))
+			isCandidate[mesh.origin(h)] = isCandidate[mesh.target(h)] = 1;
+	std::vector<int> candidates;
+	for (int v = 0; v < mesh.vertexSlots(); ++v)
+		if (isCandidate[v] && mesh.isVertex(v))
+			candidates.push_back(v);
+	return candidates;
+}
+
+/**
+ * Splits edges whose two opposite angles are both wider than `splitAngle`, until none is left whose
+ * halves are at least epsilon long. The new vertex is the projection of the apex with the wider
+ * angle onto the edge; it has no pole. Components without a free vertex rest: nothing is split there.
+ *
+ * The paper splits on one wide angle; taken literally this never ends, since the new edge may have
+ * a wide angle opposite in turn. With both angles wide, alpha + beta > 180 degrees, the edge is the
+ * one that a Delaunay triangulation would not have, and the process ends.
+ * @throws Cancelled. Complexity: O(V + s) for s splits.
+ */
+inline void splitWideAngles(Stage& stage, const Parameters& parameters, MergeForest& forest,
+	const Progress& progress = Progress())
+{
+	SurfaceMesh& mesh = stage.mesh;
+	const double widest = std::cos(parameters.splitAngle * M_PI / 180);
+	// Cosine of the angle at the apex of h if it is wide, else 2.
+	const auto wideCosine = [&](int h) {
+		const Point3d& c = mesh.position[mesh.apex(h)];
+		const Point3d u = mesh.position[mesh.origin(h)] - c, v = mesh.position[mesh.target(h)] - c;
+		const double dot = u * v;
+		if (dot >= 0 && widest <= 0)
+			return 2.0;
+		const double lengths = std::sqrt(u.SquaredNorm() * v.SquaredNorm());
+		return lengths > 0 && dot / lengths < widest ? dot / lengths : 2.0;
+	};
+	// The edges of the beginning have their turn in the order of their ids, those of new triangles then.
+	detail::EdgesToSplit initial(mesh, widest);
+	std::vector<int> queue;
+	std::vector<char> moves(stage.diagonal.size(), 0); // by component
+	for (int v = 0; v < mesh.vertexSlots(); ++v)
+		if (!stage.fixed[v] && mesh.isVertex(v))
+			moves[stage.component[v]] = 1;
+	// Each split shortens the longest edge of its triangles; the cap only guards against the worst.
+	const size_t mostVertices = 4 * size_t(mesh.vertexCount()) + 1000;
+	size_t looked = 0;
+	for (size_t next = initial.nextDue(0);
+		 next < initial.size() + queue.size() && size_t(mesh.vertexCount()) < mostVertices;
+		 next = initial.nextDue(next + 1)) {
+		if (++looked % 65536 == 0)
+			progress.report(0, "Splitting wide angles");
+		const int h = next < initial.size() ? int(next) : queue[next - initial.size()];
+		const double cosine = wideCosine(h);
+		if (cosine > 1)
+			continue;
+		const double twinCosine = wideCosine(mesh.twin(h));
+		if (twinCosine > 1)
+			continue;
+		const int a = mesh.origin(h), b = mesh.target(h);
+		if (!moves[stage.component[a]])
+			continue;
+		const double limit = parameters.epsilon * stage.diagonal[stage.component[a]];
+		const Point3d along = mesh.position[b] - mesh.position[a];
+		const double squaredLength = along.SquaredNorm();
+		const int apex = cosine < twinCosine ? mesh.apex(h) : mesh.apex(mesh.twin(h));
+		const double t = ((mesh.position[apex] - mesh.position[a]) * along) / squaredLength;
+		if (std::min(t, 1 - t) * std::sqrt(squaredLength) < limit)
+			continue; // a half shorter than epsilon: the next collapse would undo the split
+		// A triangle of held corners keeps its place.
+		const bool held = stage.held[a] && stage.held[b]
+			&& (stage.held[mesh.apex(h)] || stage.held[mesh.apex(mesh.twin(h))]);
+		const int m = mesh.split(h, mesh.position[a] + along * t);
+		forest.add();
+		// Within a sheet poles vary smoothly: the new vertex has one between those of its neighbours.
+		const bool sheet = stage.sheet[a] && stage.sheet[b];
+		stage.pole.push_back(
+			sheet ? stage.pole[a] * (1 - t) + stage.pole[b] * t : mesh.position[m]);
+		stage.poleRadius.push_back(
+			sheet ? stage.poleRadius[a] * (1 - t) + stage.poleRadius[b] * t : -1);
+		stage.sheet.push_back(sheet);
+		stage.fixed.push_back(held);
+		stage.held.push_back(held);
+		stage.component.push_back(stage.component[a]);
+		mesh.forEachOutgoing(m, [&](int e) {
+			queue.push_back(e);
+			queue.push_back(SurfaceMesh::next(e));
+			initial.touch(e / 3);
+		});
+	}
+}
+
+} // namespace vcg::tri::mcf
+
+#endif

@@ -1,0 +1,259 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief The state of the flow between two iterations: a meso-skeleton and all that it knows.
+
+#ifndef VCG_MCF_STAGE_H
+#define VCG_MCF_STAGE_H
+
+#include <skeleton/core/reported_arrays.h>
+#include <skeleton/mesh/measured_surface.h>
+#include <skeleton/core/parameters.h>
+#include <skeleton/poles/pole_set.h>
+#include <skeleton/mesh/principal_frame.h>
+#include <skeleton/core/progress.h>
+#include <skeleton/mesh/surface_mesh.h>
+#include <skeleton/core/ticker.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/**
+ * A stage of the contraction. Stage 0 is the surface itself; each step() makes the next.
+ *
+ * It holds everything that the flow needs to carry on: N single steps are the full run, bit for
+ * bit. The mesh is compact between steps.
+ */
+struct Stage
+{
+	/// The contracted mesh, mesh units.
+	SurfaceMesh mesh;
+	/// Medial pole of each vertex, and its distance from the surface; -1: none (made by a split).
+	std::vector<Point3d> pole;
+	std::vector<double> poleRadius;
+	/// 1 where the vertex no longer moves: its neighbourhood has collapsed (Sec. 4.4), or it is held.
+	std::vector<char> fixed;
+	/// 1 where the user holds the vertex, see holdVertices(); such a vertex is fixed, too.
+	std::vector<char> held;
+	/// 1 where the flow keeps a sheet of the medial axis, see markSheets().
+	std::vector<char> sheet;
+	/// Connected component of each vertex.
+	std::vector<int> component;
+
+	/// Diagonal of each component of the surface, see MeasuredSurface: its unit of length.
+	std::vector<double> diagonal;
+	/// Area of each component, of the surface and of this stage.
+	std::vector<double> initialArea, area;
+	/// Sum of the components' volumes, of the surface and of this stage.
+	double initialVolume = 0, volume = 0;
+
+	/// The surface's vertices, shared by all stages.
+	std::shared_ptr<const std::vector<Point3d>> surface;
+	/// Its triangles, shared likewise; null where they are not known, as for a file of an earlier release.
+	std::shared_ptr<const std::vector<Triangle>> surfaceTriangles;
+	/// The frames of the surface's components once they are known, shared likewise: see StageFrames.
+	std::shared_ptr<const std::vector<PrincipalFrame>> frames;
+	/// The correspondence: for each surface vertex the vertex of this stage it has merged into.
+	std::vector<int> node;
+
+	/// Iterations made so far.
+	int iteration = 0;
+	/// Where the count stops: far more than anybody waits for.
+	static constexpr int maxIteration = 1'000'000'000;
+	/// The length epsilon of the last of them, fraction of the diagonal.
+	double epsilon = Parameters().epsilon;
+	/// Whether the area has stopped changing: no volume is left.
+	bool converged = false;
+
+	/// Finds the frames. @param points the surface's. @param component of each of them.
+	/// @throws Cancelled. Complexity: O(#points).
+	void findFrames(const std::vector<Point3d>& points, const std::vector<int>& component,
+		const Progress& progress)
+	{
+		frames = std::make_shared<const std::vector<PrincipalFrame>>(
+			PrincipalFrame::ofPoints(points, component, diagonal.size(), progress));
+	}
+
+	double areaFraction() const { return sum(area) / sum(initialArea); }
+	/// In [0, 1]: what the flow has turned inside out encloses nothing.
+	double volumeFraction() const
+	{
+		return initialVolume > 0 ? std::clamp(volume / initialVolume, 0.0, 1.0) : 0;
+	}
+	double fixedFraction() const
+	{
+		return fixed.empty()
+			? 1
+			: double(std::count(fixed.begin(), fixed.end(), 1)) / double(fixed.size());
+	}
+	/// Whether the flow keeps a sheet anywhere.
+	bool hasSheets() const { return std::find(sheet.begin(), sheet.end(), 1) != sheet.end(); }
+	int heldCount() const { return int(std::count(held.begin(), held.end(), 1)); }
+
+private:
+	static double sum(const std::vector<double>& values)
+	{
+		double total = 0;
+		for (double value : values)
+			total += value;
+		return total;
+	}
+};
+
+/// What can be told of a stage wherever its vertices are, inside its frames or outside.
+struct StageFigures
+{
+	int iteration = 0;
+	bool converged = false;
+	int vertices = 0, faces = 0;
+	/// Of the surface's.
+	double areaFraction = 0, volumeFraction = 0;
+	/// Of the vertices.
+	double fixedFraction = 0;
+};
+
+inline StageFigures figuresOf(const Stage& stage)
+{
+	return {stage.iteration, stage.converged, stage.mesh.vertexCount(), stage.mesh.faceCount(),
+		stage.areaFraction(), stage.volumeFraction(), stage.fixedFraction()};
+}
+
+/// Area of each component of a mesh, and the sum of their volumes, see SurfaceMesh::volume().
+struct Extent
+{
+	std::vector<double> area;
+	double volume = 0;
+};
+
+/// @param unit of the coordinates of each component: what the result is in is 1.
+inline Extent measuredExtent(
+	const SurfaceMesh& mesh, const std::vector<int>& component, const std::vector<double>& unit)
+{
+	std::vector<double> doubleArea(unit.size(), 0), sixVolumes(unit.size(), 0);
+	const Point3d middle = mesh.bounds().Center();
+	for (int f = 0; f < mesh.faceSlots(); ++f) {
+		if (!mesh.isFace(f))
+			continue;
+		const int v = mesh.triangle(f)[0];
+		const Point3d areaVector = mesh.areaVector(f);
+		doubleArea[component[v]] += areaVector.Norm();
+		sixVolumes[component[v]] += (mesh.position[v] - middle) * areaVector;
+	}
+	Extent extent;
+	for (size_t c = 0; c < unit.size(); ++c) {
+		const double squared = unit[c] * unit[c];
+		extent.area.push_back(doubleArea[c] / 2 * squared);
+		extent.volume += sixVolumes[c] / 6 * squared * unit[c];
+	}
+	return extent;
+}
+
+/// The component of each vertex of the surface that a stage came from. @throws Cancelled
+inline std::vector<int> componentOfSurfaceVertices(
+	const Stage& stage, const Progress& progress = Progress())
+{
+	std::vector<int> component;
+	component.reserve(stage.node.size());
+	detail::reportedLoop(int(stage.node.size()), progress, "Measuring the surface",
+		[&](int s) { component.push_back(stage.component[stage.node[s]]); });
+	return component;
+}
+
+/// Stage 0 of a surface. @pre the surface is compact; poles has an entry for each vertex.
+/// @throws Cancelled
+inline Stage initialStage(
+	const MeasuredSurface& measured, const PoleSet& poles, const Progress& progress = Progress())
+{
+	const SurfaceMesh& surface = measured.mesh();
+	const auto copied = [&](const auto& array) {
+		return detail::copiedArray(array, progress, "Copying the surface");
+	};
+	Stage stage;
+	stage.mesh = surface.copied(progress);
+	stage.pole = copied(poles.centre);
+	stage.poleRadius = copied(poles.radius);
+	stage.fixed.assign(surface.vertexSlots(), 0);
+	stage.held.assign(surface.vertexSlots(), 0);
+	stage.sheet.assign(surface.vertexSlots(), 0);
+	stage.component = copied(measured.component());
+	stage.diagonal = measured.diagonals();
+	stage.initialArea = stage.area = measured.areas();
+	stage.initialVolume = stage.volume = surface.volume(progress.part(0, 0));
+	stage.surface = std::make_shared<const std::vector<Point3d>>(copied(surface.position));
+	stage.surfaceTriangles =
+		std::make_shared<const std::vector<Triangle>>(surface.triangles(progress.part(0, 0)));
+	stage.node =
+		detail::numberedArray(stage.pole.size(), progress.part(0, 0), "Copying the surface");
+	return stage;
+}
+
+/**
+ * Local thickness: for each vertex (or skeleton node) the mean distance to the surface vertices
+ * that have merged into it; -1 where there are none.
+ * @param position where the vertices are; node: for each surface vertex its vertex.
+ * @throws Cancelled
+ */
+inline std::vector<double> meanSurfaceDistance(const std::vector<Point3d>& position,
+	const std::vector<Point3d>& surface, const std::vector<int>& node,
+	const Progress& progress = Progress())
+{
+	const char* const what = "Measuring the thickness";
+	std::vector<double> sum = detail::filledArray(position.size(), 0.0, progress, what);
+	std::vector<int> count = detail::filledArray(position.size(), 0, progress, what);
+	detail::reportedLoop(int(node.size()), progress, what, [&](int s) {
+		if (node[s] < 0)
+			return;
+		sum[node[s]] += Distance(surface[s], position[node[s]]);
+		++count[node[s]];
+	});
+	for (size_t v = 0; v < sum.size(); ++v)
+		sum[v] = count[v] ? sum[v] / count[v] : -1;
+	return sum;
+}
+
+/// Local thickness at each vertex of a stage; a vertex made by a split takes its neighbours' mean.
+/// @throws Cancelled
+inline std::vector<double> stageRadius(const Stage& stage, const Progress& progress = Progress())
+{
+	const SurfaceMesh& mesh = stage.mesh;
+	std::vector<double> radius =
+		meanSurfaceDistance(mesh.position, *stage.surface, stage.node, progress);
+	std::vector<int> unknown;
+	for (int v = 0; v < mesh.vertexSlots(); ++v)
+		if (radius[v] < 0)
+			unknown.push_back(v);
+	while (!unknown.empty()) {
+		std::vector<int> left;
+		std::vector<std::pair<int, double>> found;
+		for (int v : unknown) {
+			double sum = 0;
+			int count = 0;
+			mesh.forEachOutgoing(v, [&](int h) {
+				const double r = radius[mesh.target(h)];
+				if (r >= 0) {
+					sum += r;
+					++count;
+				}
+			});
+			if (count)
+				found.emplace_back(v, sum / count);
+			else
+				left.push_back(v);
+		}
+		if (found.empty())
+			break;
+		for (const auto& [v, r] : found)
+			radius[v] = r;
+		unknown = std::move(left);
+	}
+	return radius;
+}
+
+} // namespace vcg::tri::mcf
+
+#endif

@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief A stage in coordinates that belong to the shape, so that results do not depend on the others.
+
+#ifndef VCG_MCF_STAGE_FRAMES_H
+#define VCG_MCF_STAGE_FRAMES_H
+
+#include "stage.h"
+
+#include <skeleton/mesh/principal_frame.h>
+
+#include <map>
+#include <memory>
+#include <tuple>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/**
+ * The frames of a stage's components, and a stage's way into them and back.
+ *
+ * The flow decides thousands of times which of two lengths is smaller, and solves its systems
+ * approximately: differences in the last bit grow until a branch is there or not. In these
+ * coordinates, rounded as in single precision, a copy of a shape that is turned, moved or
+ * scaled gives the same bits. Places that were rounded before find their grid point again, see
+ * PrincipalFrame::onGrid().
+ */
+class StageFrames
+{
+public:
+	/// Finds the frames if no stage before has found them, and leaves them with the stage.
+	/// @throws Cancelled. Complexity: O(V), V the vertices of the surface, the first time.
+	explicit StageFrames(Stage& stage, const Progress& progress = Progress())
+	{
+		if (!stage.frames)
+			stage.findFrames(*stage.surface,
+				componentOfSurfaceVertices(stage, progress.part(0, 0.2)), progress.part(0.2, 1));
+		frames = stage.frames;
+	}
+
+	/// Takes the positions, poles and lengths of a stage into the frames. Held vertices are not rounded.
+	void enter(Stage& stage)
+	{
+		diagonal = stage.diagonal;
+		for (size_t v = 0; v < stage.pole.size(); ++v) {
+			const int c = stage.component[v];
+			const PrincipalFrame& own = (*frames)[c];
+			Point3d& p = stage.mesh.position[v];
+			if (stage.held[v]) {
+				const Point3d inside = own.in(p);
+				heldPlace[{c, inside[0], inside[1], inside[2]}] = p;
+				p = inside;
+			}
+			else
+				p = own.onGrid(p);
+			stage.pole[v] = own.onGrid(stage.pole[v]);
+		}
+		for (size_t c = 0; c < frames->size(); ++c)
+			stage.diagonal[c] /= (*frames)[c].unitLength();
+	}
+
+	/// The area and volume outside of a stage that has entered.
+	Extent extent(const Stage& stage) const
+	{
+		std::vector<double> unit;
+		for (const PrincipalFrame& frame : *frames)
+			unit.push_back(frame.unitLength());
+		return measuredExtent(stage.mesh, stage.component, unit);
+	}
+
+	/// A point of a component outside of the frames; where a vertex is held, exactly its place.
+	Point3d out(int component, const Point3d& p) const
+	{
+		if (const auto found = heldPlace.find({component, p[0], p[1], p[2]});
+			found != heldPlace.end())
+			return found->second;
+		return (*frames)[component].out(p);
+	}
+
+	/// Takes the stage that has entered back to the coordinates outside. @pre it is compact.
+	void leave(Stage& stage) const
+	{
+		for (size_t v = 0; v < stage.pole.size(); ++v) {
+			const int c = stage.component[v];
+			stage.mesh.position[v] = out(c, stage.mesh.position[v]);
+			stage.pole[v] = (*frames)[c].out(stage.pole[v]);
+		}
+		stage.diagonal = diagonal;
+	}
+
+private:
+	std::shared_ptr<const std::vector<PrincipalFrame>> frames;
+	std::vector<double> diagonal;
+	/// Where held vertices are outside, by component and place in its frame.
+	std::map<std::tuple<int, double, double, double>, Point3d> heldPlace;
+};
+
+} // namespace vcg::tri::mcf
+
+#endif

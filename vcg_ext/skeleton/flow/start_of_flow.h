@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief Stage 0 of a surface: what the flow is to hold and to keep as sheets, and on which mesh it starts.
+
+#ifndef VCG_MCF_START_OF_FLOW_H
+#define VCG_MCF_START_OF_FLOW_H
+
+#include "first_stage.h"
+#include "held_vertices.h"
+#include "sheet_marks.h"
+#include "sheetness.h"
+#include "stage.h"
+
+#include <skeleton/core/notes.h>
+#include <skeleton/core/parameters.h>
+#include <skeleton/core/progress.h>
+#include <skeleton/mesh/surface_mesh.h>
+#include <skeleton/poles/pole_set.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/**
+ * Stage 0 of a surface.
+ *
+ * Without vertices to hold and without sheets the flow starts on firstStage(): short edges merged, edges
+ * that are too long halved. Otherwise every vertex of the surface is in the stage, and no other: held
+ * vertices and the rims of sheets stay where they are.
+ *
+ * @param surface  compact.
+ * @param poles    of all its vertices, see medialPoles().
+ * @param held     1 for the vertices to hold; empty if there are none.
+ * @param onNote   receives what is held and kept; may be empty.
+ * @throws InvalidParameter, InvalidInput, SolverError, Cancelled. Complexity: O(V), with sheets as sheetness().
+ */
+inline Stage startOfFlow(const SurfaceMesh& surface, const PoleSet& poles,
+	const std::vector<char>& held, const Parameters& parameters,
+	const Progress& progress = Progress(), const NoteCallback& onNote = {})
+{
+	if (held.empty() && !parameters.keepSheets)
+		return firstStage(surface, parameters, &poles, progress);
+	const Progress begin = progress.part(0, 0);
+	Stage stage = initialStage({surface, begin}, poles, begin);
+	if (parameters.keepSheets) {
+		markSheets(stage, sheetness(surface, poles, progress.part(0, 0.4)),
+			parameters.sheetThreshold, progress.part(0.4, 0.5));
+		if (onNote) {
+			const auto marked = std::count(stage.sheet.begin(), stage.sheet.end(), 1);
+			const std::string threshold = detail::number(parameters.sheetThreshold, 6);
+			onNote(stage.hasSheets() ? detail::sentence(3,
+					   "Keeping sheets: ", 100.0 * double(marked) / double(stage.sheet.size()),
+					   " % of the vertices are flatter than ", threshold, ".")
+									 : "No part of the shape is flatter than " + threshold
+						+ ": there are no sheets to keep.");
+		}
+	}
+	if (held.empty() && !stage.hasSheets())
+		return firstStage(surface, parameters, &poles, progress.part(0.5, 1));
+	if (!held.empty()) {
+		holdVertices(stage, held);
+		if (onNote)
+			onNote("Holding " + std::to_string(stage.heldCount()) + " vertices where they are.");
+	}
+	return stage;
+}
+
+} // namespace vcg::tri::mcf
+
+#endif

@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief What is worth knowing of each branch of a skeleton: length, thickness, ends.
+
+#ifndef VCG_MCF_BRANCH_TABLE_H
+#define VCG_MCF_BRANCH_TABLE_H
+
+#include "curve_skeleton.h"
+#include "skeleton_branches.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/// What a branch ends at.
+enum class BranchEnd {
+	Tip,      ///< a node of degree 1
+	Junction, ///< a node of degree 3 or more
+	Itself    ///< the branch is a free cycle
+};
+
+/// One branch, as skeletonBranches() numbers them. Lengths and radii in mesh units.
+struct BranchRecord
+{
+	double length = 0;
+	/// Over the length; radii change linearly along an edge.
+	double meanRadius = 0;
+	double leastRadius = 0, greatestRadius = 0;
+	BranchEnd first = BranchEnd::Tip, last = BranchEnd::Tip;
+};
+
+/// The records of `branches`, in their order. Complexity: O(V + E).
+inline std::vector<BranchRecord> branchTable(
+	const CurveSkeleton& skeleton, const std::vector<Branch>& branches)
+{
+	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
+	const auto endAt = [&](int v) {
+		return neighbours[v].size() == 1 ? BranchEnd::Tip
+			: neighbours[v].size() == 2  ? BranchEnd::Itself
+										 : BranchEnd::Junction;
+	};
+	std::vector<BranchRecord> table;
+	for (const Branch& branch : branches) {
+		BranchRecord record;
+		record.first = endAt(branch.first());
+		record.last = endAt(branch.last());
+		record.leastRadius = record.greatestRadius = skeleton.radius[branch.first()];
+		double weighted = 0, plain = 0;
+		for (size_t i = 1; i < branch.nodes.size(); ++i) {
+			const int a = branch.nodes[i - 1], b = branch.nodes[i];
+			const double length = Distance(skeleton.position[a], skeleton.position[b]);
+			const double radius = (skeleton.radius[a] + skeleton.radius[b]) / 2;
+			record.length += length;
+			weighted += length * radius;
+			plain += radius / double(branch.nodes.size() - 1);
+			record.leastRadius = std::min(record.leastRadius, skeleton.radius[b]);
+			record.greatestRadius = std::max(record.greatestRadius, skeleton.radius[b]);
+		}
+		record.meanRadius = record.length > 0 ? weighted / record.length : plain;
+		table.push_back(record);
+	}
+	return table;
+}
+
+} // namespace vcg::tri::mcf
+
+#endif

@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief The result: a graph of nodes and edges in space, and what can be counted on it.
+
+#ifndef VCG_MCF_CURVE_SKELETON_H
+#define VCG_MCF_CURVE_SKELETON_H
+
+#include <vcg/space/point3.h>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/// A curve skeleton: a simple graph (no loops, no double edges) embedded in space.
+struct CurveSkeleton
+{
+	/// Nodes, mesh units.
+	std::vector<Point3d> position;
+	/// Local thickness at each node, mesh units: mean distance to the surface vertices merged there.
+	std::vector<double> radius;
+	/// Pairs of nodes, lower id first, in ascending order.
+	std::vector<std::array<int, 2>> edges;
+	/// The correspondence: for each surface vertex the node it has merged into.
+	std::vector<int> node;
+
+	/// The neighbours of each node, ascending.
+	std::vector<std::vector<int>> neighbours() const
+	{
+		std::vector<std::vector<int>> result(position.size());
+		for (const auto& [a, b] : edges) {
+			result[a].push_back(b);
+			result[b].push_back(a);
+		}
+		for (std::vector<int>& list : result)
+			std::sort(list.begin(), list.end());
+		return result;
+	}
+};
+
+/// What a skeleton's graph amounts to.
+struct SkeletonStatistics
+{
+	int components = 0;
+	/// Independent cycles, E - V + components: the genus of the surface.
+	int cycles = 0;
+	/// Maximal chains of edges between nodes of degree other than 2, and free cycles.
+	int branches = 0;
+	/// Nodes of degree 1, and of degree 3 or more.
+	int terminals = 0, junctions = 0;
+	/// Sum of the edge lengths, mesh units.
+	double length = 0;
+};
+
+/// Counts a skeleton. Complexity: O(V + E).
+inline SkeletonStatistics statistics(const CurveSkeleton& skeleton)
+{
+	SkeletonStatistics s;
+	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
+	const int n = int(neighbours.size());
+	int chainEnds = 0, freeCycles = 0;
+	std::vector<char> seen(n, 0);
+	for (int seed = 0; seed < n; ++seed) {
+		if (seen[seed])
+			continue;
+		++s.components;
+		std::vector<int> stack(1, seed);
+		seen[seed] = 1;
+		bool onlyDegreeTwo = true;
+		while (!stack.empty()) {
+			const int v = stack.back();
+			stack.pop_back();
+			const int degree = int(neighbours[v].size());
+			s.terminals += degree == 1;
+			s.junctions += degree >= 3;
+			if (degree != 2) {
+				chainEnds += degree;
+				onlyDegreeTwo = false;
+			}
+			for (int w : neighbours[v])
+				if (!seen[w]) {
+					seen[w] = 1;
+					stack.push_back(w);
+				}
+		}
+		freeCycles += onlyDegreeTwo;
+	}
+	s.branches = chainEnds / 2 + freeCycles;
+	s.cycles = int(skeleton.edges.size()) - n + s.components;
+	for (const auto& [a, b] : skeleton.edges)
+		s.length += Distance(skeleton.position[a], skeleton.position[b]);
+	return s;
+}
+
+} // namespace vcg::tri::mcf
+
+#endif

@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief A skeleton as PLY with edges, radius and correspondence, to the last bit.
+
+#ifndef VCG_MCF_SKELETON_PLY_H
+#define VCG_MCF_SKELETON_PLY_H
+
+#include "ply_tables.h"
+#include "skeleton_file.h"
+
+#include <ostream>
+
+namespace vcg::tri::mcf {
+
+/**
+ * Writes a skeleton: elements vertex (position, radius, and quality for MeshLab), edge (vertex1,
+ * vertex2) and mcfskel_surface (for each surface vertex its node).
+ * @throws InvalidInput: see requireWritable().
+ */
+inline void writeSkeletonPly(std::ostream& out, const CurveSkeleton& skeleton)
+{
+	requireWritable(skeleton);
+	PlyElement vertex {"vertex", skeleton.position.size(), {}};
+	addPoints(vertex, "", skeleton.position);
+	if (!skeleton.radius.empty()) {
+		vertex.add("quality", PlyType::Float, skeleton.radius);
+		vertex.add("mcfskel_radius", PlyType::Double, skeleton.radius);
+	}
+	PlyElement edge {"edge", skeleton.edges.size(), {}};
+	for (size_t end = 0; end < 2; ++end) {
+		std::vector<int> ends;
+		for (const std::array<int, 2>& pair : skeleton.edges)
+			ends.push_back(pair[end]);
+		edge.add(end ? "vertex2" : "vertex1", PlyType::Int32, ends);
+	}
+	PlyElement surface {"mcfskel_surface", skeleton.node.size(), {}};
+	surface.add("node", PlyType::Int32, skeleton.node);
+	writeBinaryPly(out, {{"mcfskel skeleton 1"}, {vertex, edge, surface}});
+}
+
+/**
+ * Reads a skeleton that writeSkeletonPly() wrote, or any binary PLY of vertices and edges. What the
+ * file does not have (radius, correspondence) stays empty.
+ * @throws FormatError: see readBinaryPly(); also for a coordinate that is not finite or beyond
+ *         maxCoordinate, a radius that is or is below 0, an edge or a surface vertex whose node does not
+ *         exist, an edge from a vertex to itself.
+ */
+inline SkeletonFile readSkeletonPly(const PlyFile& ply)
+{
+	SkeletonFile file;
+	CurveSkeleton& skeleton = file.skeleton;
+	const PlyTable vertex(ply, "vertex"), edge(ply, "edge");
+	const int last = int(vertex.rows()) - 1;
+	skeleton.position = vertex.anyPoints("");
+	for (size_t v = 0; v < vertex.rows(); ++v)
+		if (!isUsablePlace(skeleton.position[v]))
+			throw vertex.error(v, "a coordinate is " + outsideOfCoordinates() + ".");
+	if (vertex.has("mcfskel_radius"))
+		skeleton.radius = vertex.anyReals("mcfskel_radius");
+	for (size_t v = 0; v < skeleton.radius.size(); ++v)
+		if (!isUsableRadius(skeleton.radius[v]))
+			throw vertex.error(v,
+				"'mcfskel_radius' is " + numberText(skeleton.radius[v]) + ", " + outsideOfRadii()
+					+ ".");
+	const std::vector<int> first = edge.integers("vertex1", 0, last);
+	const std::vector<int> second = edge.integers("vertex2", 0, last);
+	for (size_t e = 0; e < first.size(); ++e) {
+		if (first[e] == second[e])
+			throw edge.error(e, "an edge from a vertex to itself.");
+		skeleton.edges.push_back({first[e], second[e]});
+	}
+	if (const int repeated = tidyEdges(skeleton.edges))
+		file.warnings.push_back(std::to_string(repeated) + " edges are given more than once.");
+	if (ply.find("mcfskel_surface"))
+		skeleton.node = PlyTable(ply, "mcfskel_surface").integers("node", -1, last);
+	return file;
+}
+
+} // namespace vcg::tri::mcf
+
+#endif

@@ -1,0 +1,177 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief The medial axis as a surface to look at (Fig. 1b and 7): the poles, joined as their vertices are.
+
+#ifndef VCG_MCF_MEDIAL_AXIS_H
+#define VCG_MCF_MEDIAL_AXIS_H
+
+#include <skeleton/poles/by_component.h>
+#include <skeleton/core/errors.h>
+#include <skeleton/core/parallel.h>
+#include <skeleton/spatial/point_tree.h>
+#include <skeleton/poles/pole_set.h>
+#include <skeleton/core/progress.h>
+#include <skeleton/mesh/surface_mesh.h>
+#include <skeleton/mesh/unit_frame.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/// Which poles and triangles of poles count.
+struct MedialLayerParameters
+{
+	/// Least angle between two places where a pole's ball touches the surface, seen from the pole;
+	/// degrees, in [0, 180]. What noise and facets make is narrow.
+	double leastAngle = 60;
+	/// Least radius of a pole's ball, mesh units, >= 0.
+	double leastRadius = 0;
+	/// A triangle of poles no edge of which is longer than this many times the longest edge of the
+	/// triangle of their vertices; > 0. Longer ones join sheets that do not belong together.
+	double mostStretch = 4;
+
+	/// @throws InvalidParameter naming the first parameter that is out of its range.
+	void check() const
+	{
+		if (!(leastAngle >= 0 && leastAngle <= 180))
+			throw InvalidParameter("Parameter min_angle must be between 0 and 180 degrees.");
+		if (!(leastRadius >= 0) || !std::isfinite(leastRadius))
+			throw InvalidParameter("Parameter min_radius must be at least 0.");
+		if (!(mostStretch > 0))
+			throw InvalidParameter("Parameter max_stretch must be greater than 0.");
+	}
+};
+
+/// Poles, and triangles that join them.
+struct MedialLayer
+{
+	/// Mesh units.
+	std::vector<Point3d> position;
+	std::vector<double> radius;
+	/// Degrees, see MedialLayerParameters::leastAngle.
+	std::vector<double> angle;
+	/// The vertex of the surface that each is the pole of.
+	std::vector<int> source;
+	std::vector<Triangle> triangles;
+};
+
+namespace detail {
+
+/// The widest angle between a point and the others on a sphere, as the search of a tree.
+struct WidestAngle
+{
+	Point3d middle;
+	double radius;
+	Point3d spoke; ///< from the middle to the point
+	double widest = 0;
+
+	const Point3d& centre() const { return middle; }
+	double reach() const { return radius; }
+	void visit(int, const Point3d& p)
+	{
+		const Point3d other = p - middle;
+		if (other.SquaredNorm() <= radius * radius)
+			widest = std::max(widest, std::atan2((spoke ^ other).Norm(), spoke * other));
+	}
+};
+
+constexpr const char* measuringAngles = "Measuring the poles' angles";
+
+/// poleAngles() of a surface of one component.
+inline std::vector<double> poleAnglesOfComponent(
+	const SurfaceMesh& surface, const PoleSet& poles, const Progress& progress)
+{
+	constexpr double touching = 0.01; // of the radius: facets of a round surface differ that much
+	const UnitFrame frame(surface.position);
+	const PointTree tree(frame.in(surface.position));
+	std::vector<double> angle(poles.radius.size(), -1);
+	forEachBlock(int(angle.size()), progress, measuringAngles, [&](int begin, int end) {
+		for (int v = begin; v < end; ++v) {
+			if (!poles.has(v))
+				continue;
+			const Point3d centre = frame.in(poles.centre[v]);
+			WidestAngle search {centre, frame.lengthIn(poles.radius[v]) * (1 + touching),
+				frame.in(surface.position[v]) - centre};
+			tree.search(search);
+			angle[v] = search.widest * 180 / M_PI;
+		}
+	});
+	return angle;
+}
+
+} // namespace detail
+
+/**
+ * For each pole the widest angle, degrees, between its vertex and any other vertex that its ball
+ * touches, seen from the pole; -1 where there is no pole. Other components do not count.
+ * @pre surface is compact. @throws Cancelled. Complexity: O(V log V).
+ */
+inline std::vector<double> poleAngles(
+	const SurfaceMesh& surface, const PoleSet& poles, const Progress& progress = Progress())
+{
+	return detail::foundByComponent(
+		surface, poles, progress, detail::measuringAngles, detail::poleAnglesOfComponent);
+}
+
+/**
+ * Joins the poles of a surface as its triangles join their vertices, and leaves out what does not
+ * count. Where the medial axis is a sheet, it appears once from each of its two sides.
+ *
+ * @param surface  compact.
+ * @param joined   false: only the poles that count, without triangles; else only those that a
+ *                 triangle uses.
+ * @throws InvalidParameter, Cancelled. Complexity: O(V log V).
+ * Source: paper, Sec. 4.5 and Fig. 1b, 7; the filter by angle after Amenta, Choi and Kolluri, "The
+ *         power crust", 2001.
+ */
+inline MedialLayer medialLayer(const SurfaceMesh& surface, const PoleSet& poles, bool joined,
+	const MedialLayerParameters& parameters = MedialLayerParameters(),
+	const Progress& progress = Progress())
+{
+	parameters.check();
+	const std::vector<double> angle = poleAngles(surface, poles, progress);
+	const auto counts = [&](int v) {
+		return poles.has(v) && angle[v] >= parameters.leastAngle
+			&& poles.radius[v] >= parameters.leastRadius;
+	};
+	std::vector<Triangle> kept;
+	for (int f = 0; joined && f < surface.faceSlots(); ++f) {
+		const Triangle t = surface.triangle(f);
+		if (!counts(t[0]) || !counts(t[1]) || !counts(t[2]))
+			continue;
+		double longest = 0, stretched = 0;
+		for (int k = 0; k < 3; ++k) {
+			const int a = t[k], b = t[(k + 1) % 3];
+			longest = std::max(longest, Distance(surface.position[a], surface.position[b]));
+			stretched = std::max(stretched, Distance(poles.centre[a], poles.centre[b]));
+		}
+		if (stretched <= parameters.mostStretch * longest)
+			kept.push_back(t);
+	}
+	std::vector<char> used(poles.radius.size(), !joined);
+	for (const Triangle& t : kept)
+		for (int v : t)
+			used[v] = 1;
+
+	MedialLayer layer;
+	std::vector<int> number(used.size(), -1);
+	for (int v = 0; v < int(used.size()); ++v)
+		if (used[v] && counts(v)) {
+			number[v] = int(layer.position.size());
+			layer.position.push_back(poles.centre[v]);
+			layer.radius.push_back(poles.radius[v]);
+			layer.angle.push_back(angle[v]);
+			layer.source.push_back(v);
+		}
+	for (const Triangle& t : kept)
+		layer.triangles.push_back({number[t[0]], number[t[1]], number[t[2]]});
+	return layer;
+}
+
+} // namespace vcg::tri::mcf
+
+#endif

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief Connected components of a surface.
+
+#ifndef VCG_MCF_COMPONENTS_H
+#define VCG_MCF_COMPONENTS_H
+
+#include "surface_mesh.h"
+
+#include <skeleton/core/progress.h>
+#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/ticker.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/// For each vertex the number of its connected component, counted by lowest vertex; -1 for holes in
+/// the numbering. @throws Cancelled. Complexity: about O(V + F).
+inline std::vector<int> connectedComponents(
+	const SurfaceMesh& mesh, int* componentCount = nullptr, const Progress& progress = Progress())
+{
+	// Sets of vertices that grow face by face, each known by its lowest vertex: unlike a walk over
+	// the surface that reads the mesh in the order in which it lies in memory.
+	const char* const what = "Measuring the surface";
+	std::vector<int> lowest =
+		detail::numberedArray(size_t(mesh.vertexSlots()), progress.part(0, 0), what);
+	const auto find = [&](int v) {
+		while (lowest[v] != v)
+			v = lowest[v] = lowest[lowest[v]];
+		return v;
+	};
+	const auto unite = [&](int v, int w) {
+		v = find(v);
+		w = find(w);
+		lowest[std::max(v, w)] = std::min(v, w);
+	};
+	detail::reportedLoop(mesh.faceSlots(), progress.part(0, 0.8), what, [&](int f) {
+		if (!mesh.isFace(f))
+			return;
+		const Triangle t = mesh.triangle(f);
+		unite(t[0], t[1]);
+		unite(t[1], t[2]);
+	});
+	const Progress counting = progress.part(0.8, 1);
+	std::vector<int> component =
+		detail::filledArray(size_t(mesh.vertexSlots()), -1, counting, what);
+	int count = 0;
+	detail::reportedLoop(mesh.vertexSlots(), counting, what, [&](int v) {
+		if (!mesh.isVertex(v))
+			return;
+		const int first = find(v);
+		component[v] = first == v ? count++ : component[first];
+	});
+	if (componentCount)
+		*componentCount = count;
+	return component;
+}
+
+} // namespace vcg::tri::mcf
+
+#endif

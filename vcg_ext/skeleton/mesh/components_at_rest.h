@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief Components that are not worth a flow, or too thin for it: they become curves directly.
+
+#ifndef VCG_MCF_COMPONENTS_AT_REST_H
+#define VCG_MCF_COMPONENTS_AT_REST_H
+
+#include "measured_surface.h"
+#include "volume_and_area.h"
+
+#include <skeleton/core/progress.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/// Where there are more components than this, those whose diagonal is below this part of the largest one's
+/// are specks. With fewer each has its share of the vertices of defaultTargetLength().
+constexpr int mostWithoutSpecks = 15;
+constexpr double speckSize = 0.01;
+
+/**
+ * A component is thin where its volume over its area is below this part of its unit of length (see
+ * PrincipalFrame): half of a plate's thickness, half of a wire's radius. That is eight steps of the grid
+ * that the resampling and the flow round places to; less has no shape on it.
+ */
+constexpr double thinnest = 8.0 / (1 << 22);
+
+/**
+ * The components that rest: specks, and what is thin. They are neither resampled nor contracted, but
+ * collapsed to curves as they are, which costs no more than their own size and keeps their topology.
+ * @return 1 for each component that rests. @throws Cancelled. Complexity: O(V + F).
+ */
+inline std::vector<char> componentsAtRest(
+	const MeasuredSurface& surface, const Progress& progress = Progress())
+{
+	const std::vector<detail::VolumeAndArea> measured = detail::measuredAlongLength(
+		surface.mesh(), surface.component(), surface.components(), progress);
+	double largest = 0;
+	if (surface.components() > mostWithoutSpecks)
+		for (int c = 0; c < surface.components(); ++c)
+			largest = std::max(largest, surface.diagonal(c));
+	std::vector<char> rests;
+	for (int c = 0; c < surface.components(); ++c)
+		rests.push_back(surface.diagonal(c) < speckSize * largest
+			|| measured[c].volume < thinnest * surface.frame(c).unitLength() * measured[c].area);
+	return rests;
+}
+
+} // namespace vcg::tri::mcf
+
+#endif

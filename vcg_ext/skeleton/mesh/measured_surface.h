@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief A surface and what most stages ask about it before they begin.
+
+#ifndef VCG_MCF_MEASURED_SURFACE_H
+#define VCG_MCF_MEASURED_SURFACE_H
+
+#include "components.h"
+#include "principal_frame.h"
+#include "surface_mesh.h"
+
+#include <skeleton/core/progress.h>
+
+#include <utility>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/**
+ * A surface with its connected components and their principal axes, areas and sizes.
+ *
+ * On a dense surface to find these takes as long as the stages that ask for them: whoever calls
+ * several stages finds them once and hands them down.
+ */
+class MeasuredSurface
+{
+public:
+	/**
+	 * Implicit: a stage that is called alone takes the mesh itself.
+	 * @param mesh kept by reference.
+	 * @pre the positions are finite. @throws Cancelled. Complexity: about O(V + F).
+	 */
+	MeasuredSurface(const SurfaceMesh& mesh, const Progress& progress = Progress()) :
+			surface(mesh), ofVertex(connectedComponents(mesh, &count, progress.part(0, 0.2))),
+			frames(
+				PrincipalFrame::ofComponents(mesh, ofVertex, size_t(count), progress.part(0.2, 1)))
+	{
+	}
+
+	/// The same where the components are known already, numbered as by connectedComponents().
+	MeasuredSurface(const SurfaceMesh& mesh, std::vector<int> component, int components,
+		const Progress& progress = Progress()) :
+			surface(mesh),
+			count(components), ofVertex(std::move(component)),
+			frames(PrincipalFrame::ofComponents(mesh, ofVertex, size_t(count), progress))
+	{
+	}
+
+	const SurfaceMesh& mesh() const { return surface; }
+	/// Of each vertex slot its component, see connectedComponents().
+	const std::vector<int>& component() const { return ofVertex; }
+	int components() const { return count; }
+
+	/// The frame of a component.
+	const PrincipalFrame& frame(int c) const { return frames[c]; }
+	/// The area of a component, mesh units squared.
+	double area(int c) const { return frames[c].area(); }
+	/// The size of a component: the diagonal of its bounding box along its principal axes, mesh units.
+	double diagonal(int c) const { return frames[c].size(); }
+
+	/// Both for all components.
+	std::vector<double> areas() const
+	{
+		std::vector<double> all;
+		for (const PrincipalFrame& frame : frames)
+			all.push_back(frame.area());
+		return all;
+	}
+	std::vector<double> diagonals() const
+	{
+		std::vector<double> all;
+		for (const PrincipalFrame& frame : frames)
+			all.push_back(frame.size());
+		return all;
+	}
+
+private:
+	const SurfaceMesh& surface;
+	int count = 0;
+	std::vector<int> ofVertex;
+	std::vector<PrincipalFrame> frames;
+};
+
+} // namespace vcg::tri::mcf
+
+#endif

@@ -1,0 +1,144 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief Medial poles of a surface (Fig. 4, line 2; the map mu of Eq. 6), by either method.
+
+#ifndef VCG_MCF_POLES_H
+#define VCG_MCF_POLES_H
+
+#include "pole_set.h"
+#include "shrinking_balls.h"
+#include "voronoi_poles.h"
+
+#include <skeleton/core/parameters.h>
+#include <skeleton/core/progress.h>
+#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/ticker.h>
+#include <skeleton/mesh/component_meshes.h>
+#include <skeleton/mesh/components.h>
+#include <skeleton/mesh/principal_frame.h>
+#include <skeleton/mesh/surface_mesh.h>
+
+#include <numeric>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/**
+ * How deep a vertex may lie inside the ball of another one, of the diagonal of its component: a tenth of
+ * the default epsilon.
+ *
+ * The facets of a tube that was modelled coarsely and resampled finely are flat, and so would bound the
+ * balls of the vertices on them near the surface: those poles draw their vertices nowhere, and the curve
+ * drifts off the axis. What the facets of a tube of radius R with n sides lie within the tube is
+ * (1 - cos(pi / n)) R.
+ */
+constexpr double poleTolerance = 2e-4;
+
+namespace detail {
+
+/**
+ * The poles of some vertices of one component, found in its own coordinates: where several balls are as good,
+ * which one is found depends on the order of the searches, and that on the coordinates. They are rounded, as
+ * contract() does it.
+ */
+inline PoleSet polesOfComponent(const SurfaceMesh& mesh, const PrincipalFrame& frame,
+	const std::vector<int>& vertices, PoleMethod method, const Progress& progress)
+{
+	SurfaceMesh own = mesh.copied(progress.part(0, 0));
+	reportedLoop(own.vertexSlots(), progress.part(0, 0.01), "Measuring the surface",
+		[&](int v) { own.position[v] = frame.onGrid(own.position[v]); });
+	const Progress ofSearch = progress.part(0.01, 1);
+	PoleSet poles;
+	if (method == PoleMethod::Balls)
+		poles = shrinkingBallPoles(
+			own, vertices, poleTolerance * frame.lengthOnGrid(frame.size()), ofSearch);
+	else {
+		const PoleSet all = voronoiPoles(own, ofSearch);
+		for (int v : vertices) {
+			poles.centre.push_back(all.centre[v]);
+			poles.radius.push_back(all.radius[v]);
+		}
+	}
+	reportedLoop(int(vertices.size()), progress.part(1, 1), "Measuring the surface", [&](int i) {
+		Point3d& centre = poles.centre[i];
+		centre = frame.out(PrincipalFrame::rounded(centre));
+		if (poles.has(i))
+			poles.radius[i] = Distance(centre, mesh.position[vertices[i]]);
+	});
+	return poles;
+}
+
+} // namespace detail
+
+/**
+ * medialPoles() of some vertices: against all vertices of their component, in the order of `vertices`.
+ * Shrinking balls are searched for these vertices only; the Voronoi diagram is always that of all.
+ * @param component of each vertex of the mesh, see connectedComponents().
+ * @param frames    of the vertices of each component, see PrincipalFrame::ofPoints().
+ */
+inline PoleSet polesAt(const SurfaceMesh& mesh, const std::vector<int>& component,
+	const std::vector<PrincipalFrame>& frames, const std::vector<int>& vertices, PoleMethod method,
+	const Progress& progress = Progress())
+{
+	if (frames.size() == 1)
+		return detail::polesOfComponent(mesh, frames.front(), vertices, method, progress);
+	const Progress begin = progress.part(0, 0);
+	const char* const what = "Measuring the surface";
+	const int count = int(vertices.size());
+	std::vector<int> wanted = detail::filledArray(size_t(mesh.vertexSlots()), -1, begin, what);
+	detail::reportedLoop(count, begin, what, [&](int i) { wanted[vertices[i]] = i; });
+	PoleSet poles;
+	poles.centre = detail::filledArray(vertices.size(), Point3d(0, 0, 0), begin, what);
+	poles.radius = detail::filledArray(vertices.size(), -1.0, begin, what);
+	forEachComponent(mesh, component, int(frames.size()), progress,
+		[&](int c, const SurfaceMesh& own, const std::vector<int>& ids, const Progress& part) {
+			std::vector<int> ofThese;
+			detail::reportedLoop(int(ids.size()), part.part(0, 0), what, [&](int i) {
+				if (wanted[ids[i]] >= 0)
+					ofThese.push_back(i);
+			});
+			if (ofThese.empty())
+				return;
+			const PoleSet found = detail::polesOfComponent(own, frames[c], ofThese, method, part);
+			detail::reportedLoop(int(ofThese.size()), part.part(1, 1), what, [&](int k) {
+				const int i = wanted[ids[ofThese[k]]];
+				poles.centre[i] = found.centre[k];
+				poles.radius[i] = found.radius[k];
+			});
+		});
+	return poles;
+}
+
+/// The same where components and frames are not known yet.
+inline PoleSet polesAt(const SurfaceMesh& mesh, const std::vector<int>& vertices, PoleMethod method,
+	const Progress& progress = Progress())
+{
+	int components = 0;
+	const std::vector<int> component =
+		connectedComponents(mesh, &components, progress.part(0, 0.02));
+	const std::vector<PrincipalFrame> frames = PrincipalFrame::ofPoints(
+		mesh.position, component, size_t(components), progress.part(0.02, 0.04));
+	return polesAt(mesh, component, frames, vertices, method, progress.part(0.04, 1));
+}
+
+/**
+ * The inner medial pole of each vertex: the centre of a large ball inside the shape that touches
+ * the surface at the vertex. Every pole lies inside the shape; a vertex without one has radius -1.
+ * Each component is a solid of its own, as if the others were not there: they may lie within each other, or
+ * cross.
+ * @pre mesh is compact.
+ * @throws SolverError, Cancelled.
+ */
+inline PoleSet medialPoles(
+	const SurfaceMesh& mesh, PoleMethod method, const Progress& progress = Progress())
+{
+	std::vector<int> all(mesh.vertexSlots());
+	std::iota(all.begin(), all.end(), 0);
+	return polesAt(mesh, all, method, progress);
+}
+
+} // namespace vcg::tri::mcf
+
+#endif

@@ -1,0 +1,293 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief Medial poles by maximal balls that touch the surface from inside (Ma, Bae and Choi, "3D medial
+/// axis point approximation using nearest neighbors and the normal field", The Visual Computer 28, 2012).
+
+#ifndef VCG_MCF_SHRINKING_BALLS_H
+#define VCG_MCF_SHRINKING_BALLS_H
+
+#include "pole_set.h"
+
+#include <skeleton/core/parallel.h>
+#include <skeleton/core/progress.h>
+#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/ticker.h>
+#include <skeleton/mesh/surface_mesh.h>
+#include <skeleton/mesh/unit_frame.h>
+#include <skeleton/spatial/inner_segments.h>
+#include <skeleton/spatial/maximal_ball.h>
+#include <skeleton/spatial/point_tree.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+namespace detail {
+
+/**
+ * The last balls found by a search. A ball that nearly equals one of them needs no search.
+ *
+ * The distance to the nearest sample changes no faster than the place: d away from the centre of a ball
+ * that no sample comes nearer to than its reach, none comes nearer than that reach less d. Without
+ * this, samples of a sphere would all be visited for each of them, and those of a tube's ring again
+ * and again, since all of them touch the same ball.
+ */
+class KnownBalls
+{
+public:
+	/// How much deeper a sample may be in a ball that was not searched, as a part of its radius.
+	static constexpr double negligible = 0.003;
+
+	void add(const MaximalBall& ball)
+	{
+		balls[added % balls.size()] = {ball.centre(), ball.reach()};
+		++added;
+	}
+
+	bool hold(const MaximalBall& ball) const
+	{
+		for (size_t i = 0; i < std::min(added, balls.size()); ++i) {
+			const double room = negligible * ball.radius() - ball.reach() + balls[i].reach;
+			if (room >= 0 && SquaredDistance(ball.centre(), balls[i].centre) <= room * room)
+				return true;
+		}
+		return false;
+	}
+
+private:
+	struct Known
+	{
+		Point3d centre;
+		double reach;
+	};
+
+	std::array<Known, 16> balls;
+	size_t added = 0;
+};
+
+/// A point at which a maximal ball is wanted, in the unit frame that the tree's points are in.
+struct Touch
+{
+	Point3d point;
+	Point3d normal; ///< outward, unit length; zero: no ball
+	double delta;   ///< how deep a sample may lie inside the ball
+	int place;      ///< in the results
+	int slot;       ///< of the point itself in the tree, -1 if it is none of the samples
+};
+
+/// The tolerance of a ball that has none, in a unit frame: coincident samples, and the steps of rounding
+/// in flat regions, are no contacts.
+inline double leastTolerance(const UnitFrame& frame)
+{
+	constexpr double least = 1e-9; // of the diagonal
+	return least * frame.diagonal();
+}
+
+inline double ballTolerance(const UnitFrame& frame, double delta)
+{
+	return std::max(frame.lengthIn(delta), leastTolerance(frame));
+}
+
+/**
+ * Maximal balls at `touches`, the best in an order in which neighbours are near each other.
+ * @param count      of the results.
+ * @param isPole     (place, centre, radius and how deep a sample may lie inside, in mesh units): whether
+ *                   the ball counts. One that does not is searched again without tolerance.
+ * @return poles in mesh units, each at the place of its touch.
+ */
+template <class IsPole>
+PoleSet maximalBalls(const std::vector<Touch>& touches, size_t count, const UnitFrame& frame,
+	const PointTree& tree, const Progress& progress, const IsPole& isPole)
+{
+	constexpr int neighbours = 8;
+	PoleSet poles;
+	const char* const what = "Poles: shrinking balls";
+	fillReported(poles.centre, count, Point3d(0, 0, 0), progress, what);
+	fillReported(poles.radius, count, -1.0, progress, what);
+	const int size = int(touches.size());
+	forEachBlock(size, progress, what, [&](int begin, int end) {
+		// What held the balls of the last points will nearly hold the next one.
+		std::array<int, 4> recent = {-1, -1, -1, -1};
+		int oldest = 0;
+		KnownBalls known;
+		for (int i = begin; i < end; ++i) {
+			const Touch& touch = touches[i];
+			if (!(touch.normal.SquaredNorm() > 0))
+				continue;
+			const auto findPole = [&](double delta) {
+				MaximalBall ball(touch.point, touch.normal, delta, frame.diagonal());
+				for (int slot : recent)
+					if (slot >= 0)
+						ball.visit(slot, tree.point(slot));
+				if (touch.slot >= 0) // neighbours on the surface nearly hold the ball, too
+					for (int j = std::max(i - neighbours, 0);
+						 j <= std::min(i + neighbours, size - 1); ++j)
+						ball.visit(touches[j].slot, touches[j].point);
+				if (ball.contact() < 0 || !known.hold(ball)) {
+					tree.search(ball);
+					if (ball.contact() < 0)
+						return false;
+					known.add(ball);
+				}
+				recent[oldest] = ball.contact();
+				oldest = (oldest + 1) % int(recent.size());
+				// Between parallel walls a ball is too large by half of its tolerance.
+				const double unitRadius = ball.radius() - delta / 2;
+				poles.centre[touch.place] = frame.out(touch.point - touch.normal * unitRadius);
+				const double radius = frame.lengthOut(unitRadius);
+				const double depth = frame.lengthOut(delta) + KnownBalls::negligible * radius;
+				if (!isPole(touch.place, poles.centre[touch.place], radius, depth))
+					return false;
+				poles.radius[touch.place] = radius;
+				return true;
+			};
+			const double least = leastTolerance(frame);
+			if (!findPole(touch.delta) && touch.delta > least)
+				findPole(least);
+		}
+	});
+	return poles;
+}
+
+/// See osculatingNormals().
+struct OsculatingNormals
+{
+	std::vector<Point3d> normal; ///< unit length, or zero
+	/// 1 where the opposite of the normal leaves the vertex behind all of its triangles, by far.
+	std::vector<char> leadsInside;
+};
+
+/**
+ * The unit normals of the vertices that are exact where their neighbours lie on a sphere with them: cross
+ * products over the squared lengths of both edges (Max, "Weights for computing vertex normals from
+ * facet normals", Journal of Graphics Tools 4(2), 1999); zero where it is not defined.
+ * A tilt by t makes the ball against a neighbour at distance h on a surface of curvature k smaller
+ * by a factor of 1 + 2 t / (h k): on a fine mesh the tilt of area-weighted normals costs a fifth.
+ * Triangle by triangle, since a walk round each vertex waits for every step.
+ * @pre mesh is compact. @throws Cancelled
+ */
+inline OsculatingNormals osculatingNormals(const SurfaceMesh& mesh, const Progress& progress)
+{
+	constexpr double byFar = 1e-3; // cosine; rounding and the ball's own error are far below
+	const char* const what = "Measuring the surface";
+	OsculatingNormals found;
+	const size_t vertices = size_t(mesh.vertexSlots());
+	fillReported(found.normal, vertices, Point3d(0, 0, 0), progress, what);
+	fillReported(found.leadsInside, vertices, char(1), progress, what);
+	reportedLoop(mesh.faceSlots(), progress.part(0, 0.4), what, [&](int f) {
+		const Triangle t = mesh.triangle(f);
+		const Point3d areaVector = mesh.areaVector(f);
+		std::array<double, 3> squared; // length of the edge that starts at a corner
+		for (int k = 0; k < 3; ++k)
+			squared[k] = SquaredDistance(mesh.position[t[k]], mesh.position[t[(k + 1) % 3]]);
+		for (int k = 0; k < 3; ++k) {
+			const double one = squared[k], other = squared[(k + 2) % 3];
+			if (one > 0 && other > 0)
+				found.normal[t[k]] += areaVector / one / other;
+		}
+	});
+	reportedLoop(mesh.vertexSlots(), progress.part(0.4, 0.5), what, [&](int v) {
+		const double length = found.normal[v].Norm();
+		const bool isDefined = length > 0 && std::isfinite(length);
+		found.normal[v] = isDefined ? Point3d(found.normal[v] / length) : Point3d(0, 0, 0);
+	});
+	reportedLoop(mesh.faceSlots(), progress.part(0.5, 1), what, [&](int f) {
+		const Point3d areaVector = mesh.areaVector(f);
+		const double least = byFar * byFar * areaVector.SquaredNorm();
+		for (int v : mesh.triangle(f)) {
+			const double along = areaVector * found.normal[v];
+			found.leadsInside[v] &= (along > 0) & (along * along > least);
+		}
+	});
+	return found;
+}
+
+} // namespace detail
+
+/**
+ * Maximal inner balls of oriented points against samples of the same surface.
+ *
+ * Without faces a ball that reaches out between two samples cannot be told from one that does not:
+ * see shrinkingBallPoles() for poles that are inside for certain.
+ * @param points   where the balls touch, #P, mesh units.
+ * @param normals  outward unit normals of the points, #P.
+ * @param against  the samples that bound the balls, #Q; `points` need not be among them.
+ * @param delta    how deep a sample may lie inside a ball, mesh units, >= 0: the tolerance to noise.
+ * @return poles, #P; radius -1 for a zero normal and for a ball that nothing bounds.
+ * @throws Cancelled
+ * Complexity: O((P + Q) log Q) for samples of a surface. Same bits on any number of threads.
+ */
+inline PoleSet shrinkingBalls(const std::vector<Point3d>& points,
+	const std::vector<Point3d>& normals, const std::vector<Point3d>& against, double delta = 0,
+	const Progress& progress = Progress())
+{
+	const UnitFrame frame(against);
+	std::vector<detail::Touch> touches;
+	touches.reserve(points.size());
+	const PointTree order(points); // near each other in it: near each other in space
+	const double tolerance = detail::ballTolerance(frame, delta);
+	for (int i : order.order())
+		touches.push_back({frame.in(points[i]), normals[i], tolerance, i, -1});
+	return detail::maximalBalls(touches, points.size(), frame, PointTree(frame.in(against)),
+		progress, [](int, const Point3d&, double, double) { return true; });
+}
+
+/**
+ * The inner medial poles of some vertices of a mesh by shrinking balls against all its vertices.
+ *
+ * A ball whose centre cannot be seen from its vertex through the inside reached out through a coarse
+ * triangle, or through a wall thinner than its tolerance: then it is searched again without tolerance,
+ * and if that reaches out as well, there is no pole.
+ * @param vertices  ids, #P, each at most once.
+ * @param delta     as in shrinkingBalls().
+ * @pre mesh is compact.
+ * @return poles, #P, in the order of `vertices`; radius -1 where there is none.
+ * @throws Cancelled
+ * Complexity: O((P + V) log V). Same bits on any number of threads.
+ */
+inline PoleSet shrinkingBallPoles(const SurfaceMesh& mesh, const std::vector<int>& vertices,
+	double delta = 0, const Progress& progress = Progress())
+{
+	const Progress begin = progress.part(0, 0);
+	const UnitFrame frame(mesh.position, begin);
+	const PointTree tree(frame.in(mesh.position, begin), progress.part(0, 0.2));
+	std::vector<int> place(mesh.vertexSlots(), -1);
+	for (size_t i = 0; i < vertices.size(); ++i)
+		place[vertices[i]] = int(i);
+	const double tolerance = detail::ballTolerance(frame, delta);
+	std::vector<detail::Touch> touches;
+	touches.reserve(vertices.size());
+	const detail::OsculatingNormals normals =
+		detail::osculatingNormals(mesh, progress.part(0.2, 0.25));
+	detail::reportedLoop(
+		tree.size(), progress.part(0.25, 0.25), "Sorting the surface", [&](int slot) {
+			const int v = tree.order()[slot];
+			if (place[v] < 0)
+				return;
+			touches.push_back({tree.point(slot), normals.normal[v], tolerance, place[v], slot});
+		});
+	const InnerSegments segments(mesh, tree, progress.part(0.25, 0.4));
+	return detail::maximalBalls(touches, vertices.size(), frame, tree, progress.part(0.4, 1),
+		[&](int i, const Point3d& centre, double, double depth) {
+			const int v = vertices[i];
+			return segments.staysInside(v, centre, depth, normals.leadsInside[v]);
+		});
+}
+
+/// The poles of all vertices: shrinkingBallPoles() of each, without tolerance to noise.
+inline PoleSet shrinkingBallPoles(const SurfaceMesh& mesh, const Progress& progress = Progress())
+{
+	std::vector<int> all(mesh.vertexSlots());
+	std::iota(all.begin(), all.end(), 0);
+	return shrinkingBallPoles(mesh, all, 0, progress);
+}
+
+} // namespace vcg::tri::mcf
+
+#endif

@@ -1,0 +1,480 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief Refine: what is done to the curve after the paper's pipeline, to make it a better skeleton.
+
+#ifndef VCG_MCF_REFINE_H
+#define VCG_MCF_REFINE_H
+
+#include "refine_centre.h"
+#include "refine_check.h"
+#include "refine_features.h"
+#include "refine_graph.h"
+#include "refine_tips.h"
+
+#include <skeleton/core/errors.h>
+#include <skeleton/core/progress.h>
+#include <skeleton/core/ticker.h>
+#include <skeleton/flow/stage.h>
+#include <skeleton/graph/curve_skeleton.h>
+#include <skeleton/graph/skeleton_branches.h>
+#include <skeleton/graph/skeleton_radius.h>
+#include <skeleton/mesh/component_meshes.h>
+#include <skeleton/mesh/components.h>
+#include <skeleton/mesh/principal_frame.h>
+#include <skeleton/mesh/surface_mesh.h>
+#include <skeleton/spatial/closest_surface.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/**
+ * The knobs of refine(). Lengths are fractions of the diagonal of a connected component of the
+ * surface: that of its bounding box along its principal axes, see PrincipalFrame.
+ */
+struct RefineParameters
+{
+	/// Distance of neighbouring nodes; fraction of the diagonal, in (0, 0.1].
+	double spacing = 0.005;
+	/// A terminal branch whose end ball sticks out of the ball at its junction by less than this
+	/// part of the latter's radius is a spur and is removed, and so are one that ends where a shorter
+	/// one does and a stub in a plate, see withoutStubsInPlates(); in [0, 1], 0: all stay.
+	double spurProminence = 0.1;
+	/// Two junctions are one where the smaller ball sticks out of the larger one by less than this
+	/// part of its own radius; in [0, 1].
+	double junctionProminence = 0.5;
+	/// kappa, weight of the smoothness along the branch against that of the centring, for a spacing
+	/// of 0.5 % where the shape's radius is 3.3 %; >= 0. Larger: smoother, less centred.
+	double smoothing = 20;
+	/// Rounds of centring with ten times that smoothness, which free curves that are caught on a
+	/// wrong sheet of the medial axis, then rounds with it before and after the tips are
+	/// extended; >= 0.
+	int stiffRounds = 6, rounds = 3, lastRounds = 4;
+	/// A terminal branch must be this distinct somewhere, see distinctness(); in [0, 1]. The corners
+	/// of a box have 0.42, pointed ends with an opening angle of 60 degrees 0.5.
+	double tipDistinctness = 0.45;
+	/// A tip is extended while the balls reach further by at least this part of the way, and taken back
+	/// where they do not; in (0, 1].
+	double tipGain = 0.2;
+	/// A tip's ball is no smaller than this when it has been extended; fraction of the diagonal, > 0.
+	double tipRadius = 0.003;
+	/// Where the balls leave a part of the surface out that is higher than this part of the radius of
+	/// the ball next to it, and limb-like, it gets a branch: see growFeatures(); >= 0.
+	double featureHeight = 0.27;
+	/// On the way into such a feature the balls reach further by at least this part of the way; in
+	/// (0, 1]. The corners of boxes have 0.42 to 0.56, limbs of even thickness 1.
+	double featureGain = 0.56;
+
+	/// @throws InvalidParameter naming the first parameter that is out of its range.
+	void check() const
+	{
+		require(spacing > 0 && spacing <= 0.1, "spacing", "between 0 and 10 % of the diagonal");
+		require(spurProminence >= 0 && spurProminence <= 1, "spur_prominence", "between 0 and 1");
+		require(junctionProminence >= 0 && junctionProminence <= 1, "junction_prominence",
+			"between 0 and 1");
+		require(smoothing >= 0 && std::isfinite(smoothing), "smoothing", "at least 0");
+		require(stiffRounds >= 0 && rounds >= 0 && lastRounds >= 0, "rounds", "at least 0");
+		require(
+			tipDistinctness >= 0 && tipDistinctness <= 1, "tip_distinctness", "between 0 and 1");
+		require(tipGain > 0 && tipGain <= 1, "tip_gain", "in (0, 1]");
+		require(featureHeight >= 0 && std::isfinite(featureHeight), "feature_height", "at least 0");
+		require(featureGain > 0 && featureGain <= 1, "feature_gain", "in (0, 1]");
+		require(tipRadius > 0 && std::isfinite(tipRadius), "tip_radius", "greater than 0");
+	}
+
+private:
+	static void require(bool holds, const char* name, const char* range)
+	{
+		if (!holds)
+			throw InvalidParameter(std::string("Parameter ") + name + " must be " + range + ".");
+	}
+};
+
+namespace refining {
+
+/**
+ * Refines the skeleton of one component, in coordinates where the component's diagonal is 1. Stops early
+ * where the curve grows out of CurveBounds: that it cannot be the result is for the caller to find.
+ */
+inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurface& surface,
+	const SurfaceComponent& component, const RefineParameters& parameters, const Progress& progress)
+{
+	const char* what = "Refining the skeleton";
+	constexpr double stiffer = 10, referenceSpacing = 0.005;
+	// Between two searches of the whole surface the contacts are followed from round to round.
+	constexpr int roundsOfSearch = 3;
+	const double kappa = parameters.smoothing * std::pow(referenceSpacing / parameters.spacing, 4);
+	constexpr double leastWay = 0.75, leastProtrusion = 0.56;
+	constexpr double leastProminence = 0.05, leastRise = 0.005, leastLobe = 0.05;
+	constexpr double leastCorner = 0.04;
+	const FeatureRule features = {parameters.featureGain, leastWay, leastProtrusion,
+		parameters.featureHeight, leastProminence, leastRise, leastLobe, leastCorner,
+		parameters.spacing};
+	const TipRule tips = {parameters.spacing, parameters.tipGain, parameters.tipRadius};
+	const int total = parameters.stiffRounds + parameters.rounds + parameters.lastRounds + 2;
+	int done = 0;
+	const auto centreRounds = [&](int rounds, double weight, bool ascend) {
+		std::vector<Contact> contacts;
+		for (int i = 0; i < rounds; ++i) {
+			if (i % roundsOfSearch == 0)
+				contacts = findContacts(skeleton, surface, ascend,
+					progress.part(double(done) / total, double(done) / total));
+			else
+				followContacts(contacts, skeleton, surface);
+			centre(skeleton, contacts, surface, weight);
+			progress.report(double(++done) / total, what);
+		}
+	};
+	const CurveBounds bounds(skeleton, parameters.spacing);
+	KnownClearances clearances(surface);
+	const auto tidy = [&](double spurProminence, double tipDistinctness) {
+		measureBranchEnds(skeleton, clearances);
+		skeleton = withoutSpurs(std::move(skeleton), spurProminence);
+		if (spurProminence > 0)
+			skeleton = withoutTwinTips(std::move(skeleton));
+		if (tipDistinctness > 0) {
+			skeleton = withoutCornerBranches(std::move(skeleton), clearances, tipDistinctness);
+			skeleton = withoutCornerEnds(skeleton, clearances, tipDistinctness);
+		}
+		skeleton = withWholeJunctions(std::move(skeleton), parameters.junctionProminence);
+		skeleton = evenlySampled(skeleton, surface, parameters.spacing);
+		moveInside(skeleton, surface); // long edges of a coarse shape's curve may have left it
+		progress.report(double(done) / total, what);
+	};
+	const auto extend = [&] {
+		measureBranchEnds(skeleton, clearances);
+		extendTips(skeleton, surface, tips);
+		progress.report(double(done) / total, what);
+	};
+	const auto grow = [&] {
+		if (parameters.spurProminence > 0) {
+			measureBranchEnds(skeleton, clearances);
+			skeleton = withoutStubsInPlates(std::move(skeleton), surface);
+		}
+		growFeatures(skeleton, component, surface, clearances, features,
+			progress.part(double(done) / total, double(done + 1) / total));
+		++done;
+		extend();
+	};
+	progress.report(0, what);
+	for (size_t v = 0; v < skeleton.position.size(); ++v)
+		skeleton.radius[v] = std::max(surface.clearance(skeleton.position[v]), 0.0);
+	moveInside(skeleton, surface);
+	// A stub may be the start of a feature: all but the hopeless are extended before they are judged.
+	constexpr double hopeless = 0;
+	const std::function<void()> steps[] = {
+		[&] { tidy(hopeless, 0); },
+		[&] { centreRounds(parameters.stiffRounds, stiffer * kappa, false); },
+		extend,
+		grow,
+		[&] { tidy(parameters.spurProminence, parameters.tipDistinctness); },
+		[&] { centreRounds(parameters.rounds, kappa, true); },
+		extend,
+		[&] { tidy(parameters.spurProminence, parameters.tipDistinctness); },
+		[&] { centreRounds(parameters.lastRounds, kappa, true); },
+		[&] { tidy(parameters.spurProminence, parameters.tipDistinctness); },
+	};
+	for (const std::function<void()>& step : steps) {
+		if (!bounds.hold(skeleton))
+			return skeleton;
+		step();
+	}
+	return withoutBluntEnds(skeleton, clearances, parameters.tipGain);
+}
+
+/**
+ * The component of the surface that each node belongs to; -1 for parts of the graph into which
+ * nothing has merged.
+ */
+inline std::vector<int> componentOfNodes(
+	const CurveSkeleton& curve, const std::vector<int>& component)
+{
+	const std::vector<std::vector<int>> neighbours = curve.neighbours();
+	std::vector<int> ofNode(curve.position.size(), -1);
+	std::vector<int> stack;
+	for (size_t s = 0; s < curve.node.size(); ++s) {
+		const int seed = curve.node[s];
+		if (seed < 0 || ofNode[seed] >= 0)
+			continue;
+		ofNode[seed] = component[s];
+		stack.push_back(seed);
+		while (!stack.empty()) {
+			const int v = stack.back();
+			stack.pop_back();
+			for (int w : neighbours[v])
+				if (ofNode[w] < 0) {
+					ofNode[w] = component[s];
+					stack.push_back(w);
+				}
+		}
+	}
+	return ofNode;
+}
+
+/// From a node downhill along the graph, to one that is nearer to the point than its neighbours.
+inline int nearestAlong(const CurveSkeleton& skeleton,
+	const std::vector<std::vector<int>>& neighbours, int node, const Point3d& point)
+{
+	double least = SquaredDistance(skeleton.position[node], point);
+	for (int from = -1;;) {
+		int nearest = node;
+		for (int w : neighbours[node]) {
+			if (w == from)
+				continue; // it was farther
+			const double squared = SquaredDistance(skeleton.position[w], point);
+			if (squared < least) {
+				least = squared;
+				nearest = w;
+			}
+		}
+		if (nearest == node)
+			return node;
+		from = node;
+		node = nearest;
+	}
+}
+
+} // namespace refining
+
+/// What became of each component of a skeleton in its refinement.
+struct RefineReport
+{
+	/// Components of the surface that have a curve, and those of them that have a refined one.
+	int components = 0, refined = 0;
+	/// Those that keep the curve that they had, by what was wrong with the refined one: it left the
+	/// surface, grew too long, lost or won cycles or parts, or could not be computed.
+	int outside = 0, tooLong = 0, otherTopology = 0, notFinite = 0;
+	/// Nodes of curves that were kept which are outside the surface, and how many curves have such nodes.
+	int nodesOutside = 0, curvesOutside = 0;
+
+	/// Fraction of the components that are refined; 1 for a skeleton without components.
+	double fraction() const { return components > 0 ? double(refined) / components : 1; }
+
+	/// One plain line on what was not refined, and why; empty if everything was.
+	std::string text() const
+	{
+		if (refined == components)
+			return "";
+		std::string why;
+		const auto count = [&](int number, const char* reason) {
+			if (number > 0)
+				why += (why.empty() ? "" : ", ") + std::to_string(number) + " " + reason;
+		};
+		count(outside, "would have left the surface");
+		count(tooLong, "would have become too long");
+		count(otherTopology, "would have changed in components or cycles");
+		count(notFinite, "could not be computed");
+		std::string line = std::to_string(components - refined) + " of "
+			+ std::to_string(components)
+			+ " components are not refined and keep their curves: " + why + ".";
+		if (nodesOutside > 0)
+			line += " Of the curves that are kept, " + std::to_string(curvesOutside)
+				+ " are partly outside the surface, with " + std::to_string(nodesOutside)
+				+ " nodes: parts of the shape may be too thin for the edges of its triangles.";
+		return line;
+	}
+};
+
+/// What refineChecked() returns.
+struct Refinement
+{
+	CurveSkeleton skeleton;
+	RefineReport report;
+};
+
+namespace refining {
+
+inline void addTo(RefineReport& report, Defect defect)
+{
+	++report.components;
+	switch (defect) {
+	case Defect::None: ++report.refined; break;
+	case Defect::NotFinite: ++report.notFinite; break;
+	case Defect::TooLong: ++report.tooLong; break;
+	case Defect::Topology: ++report.otherTopology; break;
+	case Defect::Outside: ++report.outside; break;
+	}
+}
+
+/**
+ * Refines the skeleton of one component and checks the result. What fails is tried again with closest
+ * points of which none is missed: where the shape is thinner than the samples of its surface are apart,
+ * the fast ones take the wrong wall.
+ * @param refined  the unrefined curve; the refined one if there is no defect, else unchanged.
+ */
+inline Defect refineChecked(CurveSkeleton& refined, ClosestSurface& surface,
+	const SurfaceComponent& component, const RefineParameters& parameters, const Progress& progress)
+{
+	const CurveSkeleton unrefined = refined;
+	const InsideCheck inside(surface, component);
+	const auto attempt = [&](double from, double to) {
+		try {
+			CurveSkeleton curve =
+				refineComponent(unrefined, surface, component, parameters, progress.part(from, to));
+			const Defect defect =
+				defectOf(curve, unrefined, parameters.spacing, inside, progress.part(to, to));
+			if (defect == Defect::None)
+				refined = std::move(curve);
+			return defect;
+		}
+		catch (const SolverError&) {
+			return Defect::NotFinite;
+		}
+	};
+	constexpr double usual = 0.9; // of the time: few shapes need the second attempt
+	if (attempt(0, usual) == Defect::None)
+		return Defect::None;
+	surface.makeExact();
+	return attempt(usual, 1);
+}
+
+} // namespace refining
+
+/**
+ * Refines a curve skeleton within the surface that it was extracted from: removes spurs, merges
+ * shattered junctions, samples the branches evenly, centres the nodes in the maximal balls of the
+ * surface while it smooths the branches, extends the tips to the ends of their features, and grows
+ * branches into limbs that the curve lacks.
+ *
+ * Nodes that were outside are moved in where possible. What is promised is checked on each component's
+ * result: all nodes and edges are inside, components and cycles are as they were, and it is no longer than
+ * CurveBounds allow. A component for which that cannot be had keeps its curve as it is, positions, radii and
+ * correspondence, whether or not that is inside; the report counts them. The result depends on the shape of each component only, not
+ * on its size and place. Each surface vertex goes to the nearest node along the part of the graph
+ * where the node it had went; the radius is measured anew, as the mean distance to these vertices.
+ *
+ * @param curve       its `node` has an entry for each vertex of `surface`.
+ * @param surface     closed triangle mesh of any number of components, compact.
+ * @param parameters  see RefineParameters.
+ * @param progress    window for reports; cancelling leaves nothing behind.
+ * @return the refined skeleton, mesh units, nodes of the first component first, and the report.
+ * @throws InvalidParameter, InvalidInput if the correspondence does not fit the surface or the
+ *         curve or the curve has nodes that are not finite, Cancelled.
+ * Complexity: O(V log V + N log V) for V vertices and N nodes.
+ * Source: ours; see Tagliasacchi et al., "Mean Curvature Skeletons", SGP 2012, for the curve.
+ */
+inline Refinement refineChecked(const CurveSkeleton& curve, const SurfaceMesh& surface,
+	const RefineParameters& parameters = RefineParameters(), const Progress& progress = Progress())
+{
+	parameters.check();
+	if (int(curve.node.size()) != surface.vertexSlots())
+		throw InvalidInput("The skeleton's correspondence is for a surface of "
+			+ std::to_string(curve.node.size()) + " vertices, this one has "
+			+ std::to_string(surface.vertexSlots())
+			+ ": choose the surface that it was made from.");
+	const char* const what = "Refining the skeleton";
+	const Progress begin = progress.part(0, 0);
+	detail::reportedLoop(int(curve.node.size()), begin, what, [&](int s) {
+		if (curve.node[s] >= int(curve.position.size()))
+			throw InvalidInput("The skeleton's correspondence names nodes that it does not have.");
+	});
+	if (!refining::isFinite(curve))
+		throw InvalidInput("The skeleton has nodes whose coordinates are not finite.");
+	int components = 0;
+	const std::vector<int> component =
+		connectedComponents(surface, &components, progress.part(0, 0.01));
+	const std::vector<int> componentOfNode = refining::componentOfNodes(curve, component);
+	const ComponentVertices vertices(component, components, progress.part(0.01, 0.01));
+	std::vector<std::vector<int>> nodes(components), edges(components);
+	for (size_t v = 0; v < componentOfNode.size(); ++v)
+		if (componentOfNode[v] >= 0)
+			nodes[componentOfNode[v]].push_back(int(v));
+	for (size_t e = 0; e < curve.edges.size(); ++e)
+		if (const int c = componentOfNode[curve.edges[e][0]]; c >= 0)
+			edges[c].push_back(int(e));
+	// Each component in coordinates of its own, where its diagonal is 1: however it is turned.
+	const std::vector<PrincipalFrame> frame = PrincipalFrame::ofPoints(
+		surface.position, component, size_t(components), progress.part(0.01, 0.02));
+	const auto toUnit = [&](const Point3d& p, int c) {
+		return frame[c].onGrid(p) / frame[c].sizeInside();
+	};
+	const auto fromUnit = [&](const Point3d& p, int c) {
+		return frame[c].out(p * frame[c].sizeInside());
+	};
+	SurfaceMesh unit = surface.copied(progress.part(0.02, 0.02));
+	detail::reportedLoop(surface.vertexSlots(), progress.part(0.02, 0.03), what,
+		[&](int v) { unit.position[v] = toUnit(surface.position[v], component[v]); });
+
+	Refinement result;
+	CurveSkeleton& refined = result.skeleton;
+	RefineReport& report = result.report;
+	detail::fillReported(refined.node, curve.node.size(), -1, progress.part(0.03, 0.03), what);
+	std::vector<int> number(curve.position.size(), -1);
+	std::vector<std::pair<int, int>>
+		kept; // nodes of the result that are as they were, and what they were
+	constexpr double sampleSpacing = 0.01;
+	for (int c = 0; c < components; ++c) {
+		if (nodes[c].empty())
+			continue;
+		CurveSkeleton part;
+		for (int v : nodes[c]) {
+			number[v] = int(part.node.size());
+			part.node.push_back(number[v]);
+			part.position.push_back(toUnit(curve.position[v], c));
+		}
+		part.radius.assign(part.position.size(), 0);
+		for (int e : edges[c])
+			part.edges.push_back({number[curve.edges[e][0]], number[curve.edges[e][1]]});
+		const Progress ofComponent =
+			progress.part(0.03 + 0.97 * c / components, 0.03 + 0.97 * (c + 1) / components);
+		ClosestSurface closest(unit, vertices.ids[c], sampleSpacing, ofComponent.part(0, 0.1));
+		const refining::SurfaceComponent own = {unit, vertices.ids[c], vertices.place};
+		const refining::Defect defect =
+			refining::refineChecked(part, closest, own, parameters, ofComponent.part(0.1, 0.95));
+		refining::addTo(report, defect);
+		const bool isRefined = defect == refining::Defect::None;
+		if (!isRefined) {
+			const int outside = refining::InsideCheck(closest, own)
+									.countOutside(part, ofComponent.part(0.95, 0.95));
+			report.nodesOutside += outside;
+			report.curvesOutside += outside > 0;
+		}
+
+		const std::vector<std::vector<int>> neighbours = part.neighbours();
+		const int first = int(refined.position.size());
+		detail::reportedLoop(
+			int(vertices.ids[c].size()), ofComponent.part(0.95, 1), what, [&](int i) {
+				const int s = vertices.ids[c][i];
+				if (curve.node[s] < 0)
+					return;
+				const int node = part.node[number[curve.node[s]]];
+				refined.node[s] = first
+					+ (isRefined ? refining::nearestAlong(part, neighbours, node, unit.position[s])
+								 : node);
+			});
+		for (int v = 0; v < int(part.position.size()); ++v) {
+			if (!isRefined)
+				kept.emplace_back(first + v, nodes[c][v]);
+			refined.position.push_back(
+				isRefined ? fromUnit(part.position[v], c) : curve.position[nodes[c][v]]);
+		}
+		for (const auto& [a, b] : part.edges)
+			refined.edges.push_back({first + a, first + b});
+	}
+	refined.radius =
+		meanSurfaceDistance(refined.position, surface.position, refined.node, progress.part(1, 1));
+	fillUnknownRadii(refined.radius, refined.neighbours());
+	for (const auto& [node, before] : kept)
+		if (before < int(curve.radius.size()))
+			refined.radius[node] = curve.radius[before];
+	progress.report(1, what);
+	return result;
+}
+
+/// The skeleton of refineChecked() alone.
+inline CurveSkeleton refine(const CurveSkeleton& curve, const SurfaceMesh& surface,
+	const RefineParameters& parameters = RefineParameters(), const Progress& progress = Progress())
+{
+	return refineChecked(curve, surface, parameters, progress).skeleton;
+}
+
+} // namespace vcg::tri::mcf
+
+#endif

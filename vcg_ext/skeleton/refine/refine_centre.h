@@ -1,0 +1,370 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief Refinement, the geometry: nodes into the centres of their maximal balls, smooth along the branch.
+
+#ifndef VCG_MCF_REFINE_CENTRE_H
+#define VCG_MCF_REFINE_CENTRE_H
+
+#include "refine_graph.h"
+
+#include <skeleton/core/errors.h>
+#include <skeleton/core/parallel.h>
+#include <skeleton/core/progress.h>
+#include <skeleton/graph/curve_skeleton.h>
+#include <skeleton/graph/skeleton_branches.h>
+#include <skeleton/spatial/closest_surface.h>
+
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <vector>
+
+namespace vcg::tri::mcf::refining {
+
+/// Where a node touches the surface, the maximal ball through there, and where the node should be.
+struct Contact
+{
+	ClosestSurface::Hit hit;
+	ClosestSurface::Ball ball;
+	Point3d target;
+};
+
+/// Points of the surface that lie this deep in a ball, in distances of its node, do not hold it.
+constexpr double contactTolerance = 0.02;
+
+/// A maximal ball whose contacts are near each other is held by the surface's curvature or its noise,
+/// not by the other side: it says nothing about the middle of the shape. Balls count from the first
+/// angle between their contacts on, and fully from the second.
+constexpr double leastSpokeAngle = 20 * M_PI / 180, fullSpokeAngle = 50 * M_PI / 180;
+
+inline bool isMedial(const ClosestSurface::Ball& ball)
+{
+	return ball.spokeAngle >= leastSpokeAngle;
+}
+
+/// Searches the whole surface. @pre node is inside, and hit its closest point.
+inline ClosestSurface::Ball medialBall(const ClosestSurface& surface, const Point3d& node,
+	const ClosestSurface::Hit& hit, int near = -1)
+{
+	return surface.maximalBall(node, hit, contactTolerance * hit.distance, near);
+}
+
+/// Direction of the branch at a node, in steps to its neighbours; a junction has none.
+inline Point3d tangentAt(const CurveSkeleton& skeleton, const std::vector<int>& neighbours, int v)
+{
+	if (neighbours.size() > 2)
+		return Point3d(0, 0, 0);
+	const Point3d& back = skeleton.position[neighbours.front()];
+	const Point3d& front =
+		neighbours.size() == 1 ? skeleton.position[v] : skeleton.position[neighbours.back()];
+	Point3d t = front - back;
+	const double length = t.Norm();
+	return length > 0 ? t / length : Point3d(0, 0, 0);
+}
+
+/// The slope of the distance from the surface within the medial axis: half the sum of the directions
+/// from both contacts of a ball to its centre.
+inline Point3d medialSlope(const Point3d& contact, const ClosestSurface::Ball& ball)
+{
+	return (ball.centre * 2 - contact - ball.contact) / (2 * ball.radius);
+}
+
+/// The point moved across a direction towards the centre of a ball, by `most` at most.
+inline Point3d movedAside(
+	const Point3d& point, const ClosestSurface::Ball& ball, const Point3d& direction, double most)
+{
+	Point3d aside = ball.centre - point;
+	aside -= direction * (direction * aside);
+	const double length = aside.Norm();
+	return point + (length > most ? aside * (most / length) : aside);
+}
+
+/**
+ * Moves a ball's centre within the medial axis and across the branch towards where the ball grows,
+ * the middle of a cross-section that is not round. Stays where the ball would not grow.
+ */
+inline void ascendAside(Contact& contact, const Point3d& tangent, const ClosestSurface& surface)
+{
+	constexpr int mostSteps = 3;
+	constexpr double pace = 0.3, flattest = 150 * M_PI / 180;
+	Contact here = contact;
+	for (int i = 0; i < mostSteps; ++i) {
+		const ClosestSurface::Ball& ball = here.ball;
+		if (!isMedial(ball) || ball.spokeAngle > flattest)
+			return;
+		Point3d slope = medialSlope(here.hit.point, ball);
+		slope -= tangent * (tangent * slope);
+		const Point3d aside = ball.centre + slope * (pace * ball.radius);
+		const ClosestSurface::Hit first = surface.closestFrom(aside, here.hit.face);
+		if (first.distance <= ball.radius) // and what is closest is closer still
+			return;
+		here.hit = surface.closest(aside, first);
+		if (here.hit.distance <= ball.radius || !surface.isInside(aside, here.hit))
+			return;
+		contact.target = aside;
+		here.ball = medialBall(surface, aside, here.hit, ball.face);
+	}
+}
+
+/**
+ * Finds each node's contact and measures its distance from the surface; 0 outside.
+ * A node that is outside has no ball.
+ * @param ascend  whether the centres go to the middle of the cross-section: see ascendAside().
+ * @throws Cancelled
+ */
+inline std::vector<Contact> findContacts(CurveSkeleton& skeleton, const ClosestSurface& surface,
+	bool ascend, const Progress& progress = Progress())
+{
+	std::vector<Contact> contacts(skeleton.position.size());
+	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
+	forEachBlock(int(contacts.size()), progress, "Refining the skeleton", [&](int begin, int end) {
+		// Neighbours in number are mostly neighbours on a branch, and touch nearly the same places.
+		int near = -1, nearOpposite = -1;
+		for (int v = begin; v < end; ++v) {
+			const Point3d& x = skeleton.position[v];
+			Contact& contact = contacts[v];
+			contact.hit = near < 0 ? surface.closest(x) : surface.closest(x, near);
+			contact.ball = {x, 0, -1, 0, x};
+			contact.target = x;
+			near = contact.hit.face;
+			const bool inside = contact.hit.distance > 0 && surface.isInside(x, contact.hit);
+			skeleton.radius[v] = inside ? contact.hit.distance : 0;
+			if (!inside)
+				continue;
+			contact.ball = medialBall(surface, x, contact.hit, nearOpposite);
+			contact.target = contact.ball.centre;
+			nearOpposite = contact.ball.face;
+			if (ascend && !neighbours[v].empty())
+				ascendAside(contact, tangentAt(skeleton, neighbours[v], v), surface);
+		}
+	});
+	return contacts;
+}
+
+/// Follows the contacts of nodes that have moved a little; radius stays as it is.
+inline void followContacts(
+	std::vector<Contact>& contacts, const CurveSkeleton& skeleton, const ClosestSurface& surface)
+{
+	for (size_t v = 0; v < contacts.size(); ++v) {
+		Contact& contact = contacts[v];
+		if (contact.ball.face < 0)
+			continue;
+		const Point3d& x = skeleton.position[v];
+		const ClosestSurface::Hit hit = surface.closestFrom(x, contact.hit.face);
+		if (hit.distance <= 0)
+			continue;
+		contact.hit = hit;
+		contact.ball = surface.maximalBallFrom(x, hit, contact.ball);
+		contact.target = contact.ball.centre;
+	}
+}
+
+/**
+ * How much the centring of each node counts. Where a limb leaves a body, its branch crosses the ball of
+ * the junction, and what is the middle there is the body's affair: nodes whose balls stick out of that
+ * ball by little, in parts of its radius, count little; from `whole` on they count fully.
+ * @param distance  of each node from the surface.
+ */
+inline std::vector<double> sharesOfCentring(const CurveSkeleton& skeleton,
+	const std::vector<std::vector<int>>& neighbours, const std::vector<double>& distance)
+{
+	constexpr double least = 0.1, whole = 0.35;
+	std::vector<double> share(skeleton.position.size(), 1);
+	for (const Branch& branch : skeletonBranches(skeleton))
+		for (int end : {branch.nodes.front(), branch.nodes.back()}) {
+			if (neighbours[end].size() < 3 || distance[end] <= 0)
+				continue;
+			for (int v : branch.nodes) {
+				if (v == end)
+					continue;
+				const double out = Distance(skeleton.position[v], skeleton.position[end])
+					+ distance[v] - distance[end];
+				share[v] =
+					std::min(share[v], std::clamp(out / (whole * distance[end]), least, 1.0));
+			}
+		}
+	return share;
+}
+
+/**
+ * Takes nodes back to where they were, until no edge has left the surface that was inside: both nodes of
+ * one that has. Edges are tested in their order, round after round, but only those that may have changed.
+ * Complexity: O(E log E), and a test for each edge and for each of those of a node that goes back.
+ */
+inline void keepEdgesInside(
+	CurveSkeleton& skeleton, const CurveSkeleton& before, const ClosestSurface& surface)
+{
+	std::vector<std::vector<int>> edgesOf(skeleton.position.size());
+	std::set<int> round, nextRound;
+	for (int e = 0; e < int(skeleton.edges.size()); ++e) {
+		round.insert(round.end(), e);
+		for (int v : skeleton.edges[e])
+			edgesOf[v].push_back(e);
+	}
+	std::vector<char> back(skeleton.position.size(), 0);
+	for (; !round.empty(); round.swap(nextRound))
+		while (!round.empty()) {
+			const int edge = *round.begin();
+			round.erase(round.begin());
+			const auto [a, b] = skeleton.edges[edge];
+			if ((back[a] && back[b]) || isEdgeInside(skeleton, surface, a, b))
+				continue;
+			for (int v : {a, b})
+				if (!back[v]) {
+					back[v] = 1;
+					skeleton.position[v] = before.position[v];
+					skeleton.radius[v] = before.radius[v];
+					for (int e : edgesOf[v])
+						(e > edge ? round : nextRound).insert(e);
+				}
+		}
+}
+
+/**
+ * One round: solves
+ *     min  sum_i w_i |x_i - c_i|^2 + kappa sum_k (r_k / R)^2 |x_{k-1} - 2 x_k + x_{k+1}|^2
+ * over the inner nodes k of the branches, so that curves may meet at any angle in a junction. c_i is
+ * the centre of the maximal ball at node i, moved back along the branch to where the node is: the
+ * nodes keep their distances. w_i falls where the ball has near contacts and where the node is in the
+ * ball of a junction, see sharesOfCentring(). Tips weigh more: the curve is not to shrink.
+ *
+ * No node moves by more than half its distance from the surface, and no edge leaves the surface:
+ * the nodes of one that would stay where they are.
+ * @param kappa for nodes at the skeleton's own spacing whose distance r_k from the surface is R.
+ * @pre radius holds distances from the surface, or lower bounds. @post lower bounds.
+ */
+inline void centre(CurveSkeleton& skeleton, const std::vector<Contact>& contacts,
+	const ClosestSurface& surface, double kappa)
+{
+	constexpr double tipWeight = 1e3, weightWithoutBall = 1e-6;
+	constexpr double referenceRadius = 0.033, thinnest = 0.03, thickest = 3;
+	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
+	const int n = int(skeleton.position.size());
+	std::vector<Eigen::Triplet<double>> entries;
+	Eigen::MatrixX3d right(n, 3);
+	std::vector<double> distance(n);
+	for (int v = 0; v < n; ++v)
+		distance[v] = contacts[v].hit.distance;
+	const std::vector<double> share = sharesOfCentring(skeleton, neighbours, distance);
+	for (int v = 0; v < n; ++v) {
+		const Point3d& x = skeleton.position[v];
+		const size_t degree = neighbours[v].size();
+		Point3d target = x;
+		double weight = weightWithoutBall;
+		if (skeleton.radius[v] > 0 && isMedial(contacts[v].ball)) {
+			weight = std::clamp((contacts[v].ball.spokeAngle - leastSpokeAngle)
+					/ (fullSpokeAngle - leastSpokeAngle),
+				weightWithoutBall, 1.0);
+			target = contacts[v].target;
+			if (degree == 1 || degree == 2) {
+				const Point3d tangent = tangentAt(skeleton, neighbours[v], v);
+				target -= tangent * (tangent * (target - x));
+			}
+		}
+		weight = degree == 1 ? tipWeight : weight * share[v];
+		entries.emplace_back(v, v, weight);
+		for (int k = 0; k < 3; ++k)
+			right(v, k) = weight * target[k];
+		if (degree != 2)
+			continue;
+		// A bend is judged by the thickness where it is: within a large ball, small ones mean nothing.
+		// Unless the branch only crosses that ball, the bend may be the end's in a corner.
+		const double relative = std::clamp(distance[v] / referenceRadius, thinnest,
+			share[v] < 1 ? std::numeric_limits<double>::infinity() : thickest);
+		const double stiffness = kappa * relative * relative;
+		const int stencil[3] = {neighbours[v][0], v, neighbours[v][1]};
+		const double second[3] = {1, -2, 1};
+		for (int i = 0; i < 3; ++i)
+			for (int j = 0; j < 3; ++j)
+				entries.emplace_back(stencil[i], stencil[j], stiffness * second[i] * second[j]);
+	}
+	Eigen::SparseMatrix<double> matrix(n, n);
+	matrix.setFromTriplets(entries.begin(), entries.end());
+	const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(matrix);
+	if (factor.info() != Eigen::Success)
+		throw SolverError("Refining the skeleton: the linear system could not be factorised.");
+	const Eigen::MatrixX3d solution = factor.solve(right);
+
+	if (!solution.allFinite())
+		throw SolverError("Refining the skeleton: the linear system has no finite solution.");
+
+	const CurveSkeleton before = skeleton;
+	for (int v = 0; v < n; ++v) {
+		const Point3d x(solution(v, 0), solution(v, 1), solution(v, 2));
+		const Point3d move = x - before.position[v];
+		const double length = move.Norm(), most = before.radius[v] / 2;
+		skeleton.position[v] = length > most ? before.position[v] + move * (most / length) : x;
+		// The distance from the surface cannot fall faster than the node moves.
+		skeleton.radius[v] = before.radius[v] - std::min(length, most);
+	}
+	keepEdgesInside(skeleton, before, surface);
+}
+
+/// A point inside and its distance from the surface; negative: there is none.
+struct InnerPlace
+{
+	Point3d position;
+	double clearance = -1;
+};
+
+/**
+ * The centre of the maximal ball that touches the surface from inside where it is closest to a point
+ * outside. It is taken only if it is inside, its ball is empty and the way there from the contact does not
+ * leave the surface: the ball may have been found behind a wall thinner than its tolerance. Then the
+ * tolerance falls until it follows the local thickness.
+ */
+inline InnerPlace placeInside(
+	const ClosestSurface& surface, const Point3d& outside, const ClosestSurface::Hit& hit)
+{
+	// The ball is sought from just below the surface, and must be larger than its roughness.
+	constexpr double below = 1e-4, roughness = 1e-3;
+	constexpr double finer = 0.25, finest = 1e-4;
+	const Point3d inward = (hit.point - outside) / hit.distance;
+	for (double scale = 1; scale > finest; scale *= finer) {
+		const Point3d start = hit.point + inward * (below * scale);
+		const ClosestSurface::Hit contact = surface.closest(start);
+		if (contact.distance <= 0 || !surface.isInside(start, contact))
+			continue;
+		const double tolerance = roughness * scale;
+		const ClosestSurface::Ball ball = surface.maximalBall(start, contact, tolerance, -1);
+		const double clearance = surface.clearance(ball.centre);
+		if (ball.face >= 0 && clearance > 0 && clearance >= ball.radius - tolerance
+			&& isSegmentInside(surface, start, contact.distance, ball.centre, clearance))
+			return {ball.centre, clearance};
+	}
+	return {outside, -1};
+}
+
+/**
+ * Moves nodes that are outside into the maximal ball that touches the closest surface point from
+ * inside; where there is none they stay, without a ball.
+ */
+inline void moveInside(CurveSkeleton& skeleton, const ClosestSurface& surface)
+{
+	for (size_t v = 0; v < skeleton.position.size(); ++v) {
+		if (skeleton.radius[v] > 0)
+			continue;
+		const ClosestSurface::Hit hit = surface.closest(skeleton.position[v]);
+		if (hit.distance <= 0)
+			continue;
+		if (surface.isInside(skeleton.position[v], hit)) { // only its bound was too low
+			skeleton.radius[v] = hit.distance;
+			continue;
+		}
+		const InnerPlace inside = placeInside(surface, skeleton.position[v], hit);
+		if (inside.clearance > 0) {
+			skeleton.position[v] = inside.position;
+			skeleton.radius[v] = inside.clearance;
+		}
+	}
+}
+
+} // namespace vcg::tri::mcf::refining
+
+#endif

@@ -1,0 +1,371 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief Refinement, the features: small limbs on a large body that the flow lost get their branches.
+
+#ifndef VCG_MCF_REFINE_FEATURES_H
+#define VCG_MCF_REFINE_FEATURES_H
+
+#include "refine_centre.h"
+#include "refine_graph.h"
+#include "refine_peaks.h"
+
+#include <skeleton/core/progress.h>
+#include <skeleton/core/ticker.h>
+#include <skeleton/graph/curve_skeleton.h>
+#include <skeleton/spatial/closest_surface.h>
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <queue>
+#include <utility>
+#include <vector>
+
+namespace vcg::tri::mcf::refining {
+
+/// The middle of the surface around a peak down to a height: a point within the tip of its feature.
+/// @throws Cancelled
+inline Point3d middleOfTip(const SurfaceComponent& surface, const Heights& heights, int peak,
+	double lowest, const Progress& progress)
+{
+	std::vector<int> tip(1, peak);
+	std::vector<char> seen(surface.size(), 0);
+	seen[peak] = 1;
+	Box3d box;
+	detail::Ticker ticker(progress, "Refining the skeleton", surface.size());
+	for (size_t i = 0; i < tip.size(); ++i) {
+		ticker.tick();
+		box.Add(surface.position(tip[i]));
+		surface.forEachNeighbour(tip[i], [&](int w) {
+			if (!seen[w] && heights.height[w] >= lowest) {
+				seen[w] = 1;
+				tip.push_back(w);
+			}
+		});
+	}
+	return box.Center();
+}
+
+/// The node of the ball that the way over the surface from a peak meets first.
+/// @throws Cancelled. Complexity: O(V + n log n) for V vertices and the n that are nearer.
+inline int nodeBelow(const CurveSkeleton& skeleton, const SurfaceComponent& surface,
+	const Heights& heights, int peak, const Progress& progress)
+{
+	constexpr double covered = 0.1;       // in radii
+	using Entry = std::pair<double, int>; // way, vertex
+	std::vector<char> reached(surface.size(), 0);
+	std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
+	front.emplace(0, peak);
+	detail::Ticker ticker(progress, "Refining the skeleton", surface.size());
+	while (!front.empty()) {
+		ticker.tick();
+		const auto [way, v] = front.top();
+		front.pop();
+		if (reached[v])
+			continue;
+		reached[v] = 1;
+		if (heights.height[v] <= covered * skeleton.radius[heights.node[v]])
+			return heights.node[v];
+		const Point3d& p = surface.position(v);
+		surface.forEachNeighbour(v, [&, way = way](int w) {
+			if (!reached[w])
+				front.emplace(way + Distance(p, surface.position(w)), w);
+		});
+	}
+	return heights.node[peak];
+}
+
+/**
+ * To how many sides of a branch the shape is wide at a point of it, 0 to 2: one and a half of the ball's
+ * radii aside the surface is still half a radius away. In a limb none, in a plate both, along its rim one.
+ * @param contact    the second contact of the ball, see medialBall().
+ * @param direction  of the branch.
+ */
+inline int wideSides(const ClosestSurface& surface, const Point3d& x,
+	const ClosestSurface::Hit& hit, const Point3d& contact, const Point3d& direction)
+{
+	constexpr double aside = 1.5, away = 0.5;
+	const Point3d side = (hit.point - contact) ^ direction;
+	const double norm = side.Norm();
+	if (!(norm > 0))
+		return 0;
+	const Point3d offset = side * (aside * hit.distance / norm);
+	return int(surface.clearance(x + offset) > away * hit.distance)
+		+ int(surface.clearance(x - offset) > away * hit.distance);
+}
+
+/// Lobes of plates are at least so many radii high.
+constexpr double lobeHeight = 5;
+
+/**
+ * Removes terminal branches that stay within a plate and are shorter than two of its lobes are high, or
+ * than one if there is no other tip; the shortest first. Where the flow left such a stub is chance, and next
+ * to it growFeatures() would take the rim for several lobes. A plate that stands on a thicker body, as an
+ * ear does, is a limb and keeps its branch.
+ * @pre the radius of junctions and tips is their distance from the surface.
+ */
+inline CurveSkeleton withoutStubsInPlates(CurveSkeleton skeleton, const ClosestSurface& surface)
+{
+	constexpr double mostlyFlat = 0.65, asThin = 0.5;
+	return withoutTerminalBranches(
+		std::move(skeleton), 0, [&](const CurveSkeleton& s, const Branch& fromJunction) {
+			const double radius = s.radius[fromJunction.first()];
+			const double lobes = statistics(s).terminals > 1 ? 2 : 1;
+			const double excess = branchLength(s, fromJunction) - lobes * lobeHeight * radius;
+			if (excess >= 0 || s.radius[fromJunction.last()] < asThin * radius)
+				return 0.0;
+			int flat = 0;
+			for (size_t i = 1; i < fromJunction.nodes.size(); ++i) {
+				const Point3d& x = s.position[fromJunction.nodes[i]];
+				const ClosestSurface::Hit hit = surface.closest(x);
+				if (hit.distance <= 0)
+					continue;
+				const ClosestSurface::Ball ball = medialBall(surface, x, hit);
+				const Point3d direction = x - s.position[fromJunction.nodes[i - 1]];
+				flat += isMedial(ball) && wideSides(surface, x, hit, ball.contact, direction) == 2;
+			}
+			return flat >= mostlyFlat * double(fromJunction.nodes.size() - 1) ? excess : 0.0;
+		});
+}
+
+/// A branch that is to be: points from the tip of a feature into one of the skeleton's balls.
+struct FeatureBranch
+{
+	std::vector<Point3d> points;
+	std::vector<double> radii;
+	/// The node of that ball; -1 where the way leaves the surface or ends in none.
+	int joint = -1;
+	/// The parts of the points about which the shape is wide to both sides, and to one, see wideSides().
+	double flat = 0, rim = 0;
+
+	double way() const
+	{
+		double sum = 0;
+		for (size_t i = 1; i < points.size(); ++i)
+			sum += Distance(points[i - 1], points[i]);
+		return sum;
+	}
+};
+
+/**
+ * From within a feature's tip to the skeleton: up the slope of the distance from the surface, which in
+ * a limb leads to its body, and where that is flat towards a node, kept in the middle.
+ * @param towards  a node next to the feature.
+ */
+inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const ClosestSurface& surface,
+	const Point3d& start, int towards, double spacing)
+{
+	constexpr int mostSteps = 400;
+	// Of the next direction; the slope is 1 where the way leads straight away from the surface.
+	constexpr double pull = 0.3, keeping = 0.5;
+	FeatureBranch branch;
+	int flat = 0, rim = 0;
+	Point3d x = start, direction(0, 0, 0);
+	for (int i = 0; i < mostSteps; ++i) {
+		ClosestSurface::Hit hit = surface.closest(x);
+		if (hit.distance <= 0 || !surface.isInside(x, hit))
+			return branch;
+		const ClosestSurface::Ball ball = medialBall(surface, x, hit);
+		Point3d slope(0, 0, 0);
+		if (isMedial(ball)) {
+			slope = medialSlope(hit.point, ball);
+			const bool isFirst = i == 0;
+			x = movedAside(x, ball, direction,
+				isFirst ? std::numeric_limits<double>::infinity() : spacing / 2);
+			hit = surface.closest(x, hit.face);
+			if (hit.distance <= 0 || !surface.isInside(x, hit))
+				return branch;
+			const int wide = wideSides(surface, x, hit, ball.contact, direction);
+			flat += wide == 2;
+			rim += wide == 1;
+		}
+		if (i > 0
+			&& !isSegmentInside(
+				surface, branch.points.back(), branch.radii.back(), x, hit.distance))
+			return branch;
+		branch.points.push_back(x);
+		branch.radii.push_back(hit.distance);
+		branch.joint = holdingNode(skeleton, x);
+		if (branch.joint >= 0) {
+			branch.flat = double(flat) / double(branch.points.size());
+			branch.rim = double(rim) / double(branch.points.size());
+			return branch;
+		}
+		const Point3d there = skeleton.position[towards] - x;
+		direction = slope + there * (pull / std::max(there.Norm(), 1e-12)) + direction * keeping;
+		direction /= std::max(direction.Norm(), 1e-12);
+		x += direction * std::min(spacing, hit.distance / 2);
+	}
+	return branch;
+}
+
+/**
+ * Whether a branch leads into a limb: not into the corner of a box, on the way to which the balls
+ * shrink nearly as fast as they advance, not along the rim of a plate, that is into its corner, and not
+ * through a plate, in which it could lead anywhere, unless that comes to a point and is longer than the
+ * plate is thick, as an ear is, or is itself a lobe, high above the balls and a large part of the shape.
+ */
+inline bool leadsIntoLimb(const FeatureBranch& branch, const Peak& peak, const FeatureRule& rule)
+{
+	constexpr double mostFlatIfSpiky = 1.7, evenGain = 0.8, mostFlatIfEven = 0.1, mostRim = 0.5;
+	constexpr double lobeSpikiness = 0.25, mostlyFlat = 0.5, leastWayIfFlat = 2;
+	const double way = branch.way();
+	if (branch.joint < 0
+		|| way < branch.radii.back()
+				* std::max(rule.leastWay, rule.leastProtrusion / peak.relativeHeight))
+		return false;
+	const double gain = 1 + (branch.radii.front() - branch.radii.back()) / way;
+	if (gain < rule.leastGain)
+		return false;
+	const bool isLobe = peak.height >= std::max(lobeHeight * branch.radii.back(), rule.leastLobe)
+		&& peak.spikiness >= lobeSpikiness;
+	return isLobe
+		|| (branch.rim <= mostRim
+			&& (branch.flat <= mostlyFlat || way >= leastWayIfFlat * branch.radii.back())
+			&& branch.flat
+				<= (gain > evenGain ? mostFlatIfEven : mostFlatIfSpiky * peak.spikiness));
+}
+
+/// A feature, whether it gets its branch or not.
+struct Feature
+{
+	Peak peak;
+	FeatureBranch branch;
+	bool grown;
+};
+
+/**
+ * Whether a branch that leads into no limb leads into a blunt corner that is a feature of the shape, as a
+ * knee is: high, neither in a plate nor on its rim, and alone. The corners in which solids end are no
+ * blunter, but around one ball there are several of them.
+ * @param features  all there are.
+ */
+inline bool leadsIntoLoneCorner(const CurveSkeleton& skeleton, const SurfaceComponent& surface,
+	const Feature& corner, const std::vector<Feature>& features, const FeatureRule& rule)
+{
+	constexpr double leastGain = 0.4, mostFlat = 0.35, leastSpikiness = 0.3, likeHeight = 0.5;
+	constexpr double leastWay = 0.7;
+	const FeatureBranch& branch = corner.branch;
+	if (branch.joint < 0 || corner.peak.height < rule.leastCorner
+		|| corner.peak.spikiness < leastSpikiness)
+		return false;
+	const double radius = branch.radii.back(), way = branch.way();
+	// From the surface itself, where the balls have no radius: the same wherever the branch starts.
+	const double whole =
+		way + Distance(surface.position(corner.peak.vertex), branch.points.front());
+	if (way < leastWay * radius || whole * (1 - leastGain) < radius
+		|| std::max(branch.flat, branch.rim) * way > mostFlat * whole)
+		return false;
+	return std::none_of(features.begin(), features.end(), [&](const Feature& other) {
+		return other.peak.vertex != corner.peak.vertex && other.branch.joint >= 0
+			&& other.peak.height >= likeHeight * corner.peak.height
+			&& Distance(skeleton.position[other.branch.joint], skeleton.position[branch.joint])
+			< std::max(radius, other.branch.radii.back());
+	});
+}
+
+/// The nearest node in view from a point that is nearer than `farthest`; -1 if there is none.
+/// Complexity: O(N), and O(log V) for each node that comes nearer than those before it.
+inline int nearestInView(const CurveSkeleton& skeleton, const ClosestSurface& surface,
+	const Point3d& point, double radius, double farthest)
+{
+	int nearest = -1;
+	for (size_t v = 0; v < skeleton.position.size(); ++v)
+		if (const double distance = Distance(skeleton.position[v], point); distance < farthest
+			&& isSegmentInside(surface, point, radius, skeleton.position[v], skeleton.radius[v])) {
+			farthest = distance;
+			nearest = int(v);
+		}
+	return nearest;
+}
+
+/**
+ * The branch from a peak's feature to the curve: towards the ball that is nearest or, where that lies
+ * across a gap, towards the one below the peak; and if the curve is in view nearer than that way is
+ * long, straight there. Its joint is -1 if it would run beside the curve even so, or if there is no way.
+ * @throws Cancelled
+ */
+inline FeatureBranch branchInto(const Peak& peak, const CurveSkeleton& skeleton,
+	const SurfaceComponent& component, const Heights& heights, const ClosestSurface& surface,
+	const FeatureRule& rule, const Progress& progress)
+{
+	// Down from the peak until what is above encloses a point with a way to the curve.
+	const auto branchTowards = [&](int node) {
+		FeatureBranch branch;
+		for (double down = rule.leastRise; branch.joint < 0 && down < peak.height; down *= 2)
+			branch = traceBranch(skeleton, surface,
+				middleOfTip(component, heights, peak.vertex, peak.height - down, progress), node,
+				rule.spacing);
+		return branch;
+	};
+	const auto shortcut = [&](const FeatureBranch& branch) {
+		return nearestInView(
+			skeleton, surface, branch.points.front(), branch.radii.front(), branch.way());
+	};
+	const int nearest = heights.node[peak.vertex];
+	FeatureBranch branch = branchTowards(nearest);
+	if (branch.joint < 0)
+		if (const int below = nodeBelow(skeleton, component, heights, peak.vertex, progress);
+			below != nearest)
+			branch = branchTowards(below);
+	if (branch.joint < 0)
+		return branch;
+	if (const int seen = shortcut(branch); seen >= 0) {
+		branch = branchTowards(seen);
+		if (branch.joint >= 0 && shortcut(branch) >= 0)
+			branch.joint = -1;
+	}
+	return branch;
+}
+
+/**
+ * Gives each feature without a branch one: where the surface is left far uncovered and comes to a
+ * point, and where the way there leads through a limb or into the lobe of a plate. Rims and the corners
+ * of solids, which curve skeletons leave out, are none.
+ * @pre radius holds the distances from the surface, or lower bounds. @post the same.
+ * @throws Cancelled. Complexity: O(V * N + V log V), and O(V log V) for each peak.
+ */
+inline void growFeatures(CurveSkeleton& skeleton, const SurfaceComponent& component,
+	const ClosestSurface& surface, KnownClearances& clearances, const FeatureRule& rule,
+	const Progress& progress = Progress())
+{
+	if (skeleton.edges.empty())
+		return;
+	const std::vector<int> covering = coveringNodes(skeleton);
+	for (int v : covering)
+		skeleton.radius[v] = std::max(clearances.at(skeleton.position[v]), 0.0);
+	const Heights heights = heightsAbove(skeleton, covering, component,
+		surface.vertexOrder(progress.part(0, 0)), progress.part(0, 0.4));
+	const auto add = [&](const FeatureBranch& branch) {
+		int last = branch.joint;
+		for (size_t i = branch.points.size(); i-- > 0;) {
+			const int next = int(skeleton.position.size());
+			skeleton.position.push_back(branch.points[i]);
+			skeleton.radius.push_back(branch.radii[i]);
+			skeleton.edges.push_back({last, next});
+			last = next;
+		}
+	};
+	const int nodes = int(skeleton.position.size());
+	std::vector<Feature> features;
+	for (const Peak& peak : peaks(skeleton, component, heights, rule, progress.part(0.4, 0.8))) {
+		FeatureBranch branch =
+			branchInto(peak, skeleton, component, heights, surface, rule, progress.part(0.8, 0.8));
+		const bool grown = leadsIntoLimb(branch, peak, rule);
+		if (grown)
+			add(branch);
+		features.push_back({peak, std::move(branch), grown});
+	}
+	// A corner whose way ends in a branch that has just grown is one beside a limb.
+	for (const Feature& feature : features)
+		if (!feature.grown && feature.branch.joint < nodes
+			&& leadsIntoLoneCorner(skeleton, component, feature, features, rule))
+			add(feature.branch);
+	std::sort(skeleton.edges.begin(), skeleton.edges.end());
+}
+
+} // namespace vcg::tri::mcf::refining
+
+#endif

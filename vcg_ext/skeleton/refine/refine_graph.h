@@ -1,0 +1,432 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief Refinement, the graph: spurs out, shattered junctions mended, branches evenly sampled.
+
+#ifndef VCG_MCF_REFINE_GRAPH_H
+#define VCG_MCF_REFINE_GRAPH_H
+
+#include <skeleton/spatial/closest_surface.h>
+#include <skeleton/graph/prune.h>
+#include <skeleton/graph/skeleton_branches.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace vcg::tri::mcf::refining {
+
+/// The distances of nodes from the surface, each measured once, wherever the node is numbered.
+class KnownClearances
+{
+public:
+	explicit KnownClearances(const ClosestSurface& surface) : surface(surface) {}
+
+	double at(const Point3d& node)
+	{
+		const auto [place, isNew] = known.emplace(node, 0);
+		if (isNew)
+			place->second = surface.clearance(node);
+		return place->second;
+	}
+
+private:
+	const ClosestSurface& surface;
+	std::map<Point3d, double> known;
+};
+
+/// Sets the radius of each junction and tip to its distance from the surface; 0 outside.
+inline void measureBranchEnds(CurveSkeleton& skeleton, KnownClearances& clearances)
+{
+	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
+	for (size_t v = 0; v < neighbours.size(); ++v)
+		if (neighbours[v].size() != 2)
+			skeleton.radius[v] = std::max(clearances.at(skeleton.position[v]), 0.0);
+}
+
+/**
+ * Whether the segment from a to b is inside the surface, given its ends' distances from it or lower
+ * bounds of them: two balls that touch each other cover the segment between their centres; else it
+ * is halved.
+ */
+inline bool isSegmentInside(const ClosestSurface& surface, const Point3d& a, double radiusA,
+	const Point3d& b, double radiusB, int depth = 0)
+{
+	constexpr int deepest = 6;
+	if (radiusA <= 0 || radiusB <= 0)
+		return false;
+	if (Distance(a, b) <= radiusA + radiusB)
+		return true;
+	if (depth == deepest)
+		return false;
+	const Point3d middle = (a + b) / 2;
+	const double radius = surface.clearance(middle);
+	return isSegmentInside(surface, a, radiusA, middle, radius, depth + 1)
+		&& isSegmentInside(surface, middle, radius, b, radiusB, depth + 1);
+}
+
+/// The same for an edge of a skeleton whose radii may be lower bounds: measures them if it must.
+inline bool isEdgeInside(CurveSkeleton& skeleton, const ClosestSurface& surface, int a, int b)
+{
+	const auto inside = [&] {
+		return isSegmentInside(surface, skeleton.position[a], skeleton.radius[a],
+			skeleton.position[b], skeleton.radius[b]);
+	};
+	if (inside())
+		return true;
+	for (int v : {a, b})
+		skeleton.radius[v] = std::max(surface.clearance(skeleton.position[v]), 0.0);
+	return inside();
+}
+
+/**
+ * Removes the spurs: terminal branches whose prominence() is below `least`, the worst first, since a
+ * branch that loses its junction becomes part of a longer one. What had merged there goes to the
+ * junction. A component that is a single chain keeps it.
+ * @pre the radius of junctions and tips is their distance from the surface.
+ */
+inline CurveSkeleton withoutSpurs(CurveSkeleton skeleton, double least)
+{
+	return withoutTerminalBranches(std::move(skeleton), least, terminalProminence);
+}
+
+/**
+ * Leaves one of two terminal branches that end in the same place, with tips closer to each other than twice
+ * their smaller ball's radius: the shorter branch. What had merged into the other goes to its junction. The
+ * tips of different limbs, or of a limb that forks, are farther apart than that.
+ * @pre the radius of tips is their distance from the surface.
+ */
+inline CurveSkeleton withoutTwinTips(CurveSkeleton skeleton)
+{
+	return withoutTerminalBranches(
+		std::move(skeleton), 0, [](const CurveSkeleton& s, const Branch& fromJunction) {
+			const int tip = fromJunction.last();
+			std::vector<int> degree(s.position.size(), 0);
+			for (const auto& [a, b] : s.edges) {
+				++degree[a];
+				++degree[b];
+			}
+			for (int other = 0; other < int(degree.size()); ++other)
+				if (other != tip && degree[other] == 1
+					&& Distance(s.position[tip], s.position[other])
+						< 2 * std::min(s.radius[tip], s.radius[other]))
+					return -branchLength(s, fromJunction);
+			return 0.0;
+		});
+}
+
+/// A terminal branch as the balls on it see it: for each node the way from the first one, and the
+/// distance from the surface.
+struct BranchProfile
+{
+	std::vector<double> along, radius;
+
+	BranchProfile(const CurveSkeleton& skeleton, KnownClearances& clearances, const Branch& branch)
+	{
+		for (size_t i = 0; i < branch.nodes.size(); ++i) {
+			const Point3d& p = skeleton.position[branch.nodes[i]];
+			along.push_back(
+				i == 0 ? 0 : along.back() + Distance(p, skeleton.position[branch.nodes[i - 1]]));
+			radius.push_back(std::max(clearances.at(p), 0.0));
+		}
+	}
+
+	size_t last() const { return along.size() - 1; }
+
+	/// How much further the balls reach for the way between two nodes: 1 + (r_to - r_from) / length.
+	double gain(size_t from, size_t to) const
+	{
+		const double length = along[to] - along[from];
+		return length > 0 ? 1 + (radius[to] - radius[from]) / length : 0;
+	}
+
+	/// The first node at least one radius of `from` further on, or past the last node.
+	size_t oneRadiusOn(size_t from) const
+	{
+		return size_t(
+			std::lower_bound(along.begin() + from, along.end(), along[from] + radius[from])
+			- along.begin());
+	}
+
+	/// Where the last stretch as long as the radius at its start begins that gains at least `least`; the
+	/// last node if there is none.
+	size_t lastStretch(double least) const
+	{
+		size_t start = last();
+		for (size_t from = 0; from < last(); ++from)
+			if (const size_t to = oneRadiusOn(from); to <= last() && gain(from, to) >= least)
+				start = from;
+		return start;
+	}
+
+	/// The last node from `from` on up to which going on gains at least `least` all the time.
+	size_t endOfGain(size_t from, double least) const
+	{
+		size_t end = from;
+		for (size_t i = from; i <= last(); ++i)
+			if (along[i] > along[end] && gain(end, i) >= least)
+				end = i;
+		return end;
+	}
+};
+
+/**
+ * How clearly a terminal branch leaves what it hangs from: the greatest gain of reach per way over any
+ * stretch as long as the radius at its start. It is 1 along a limb, however short, and 1 - sin(a) on
+ * the way into a corner or a pointed end with a half angle of a, whatever its size; a branch without
+ * such a stretch is taken as a whole.
+ * @param branch from its junction to its tip.
+ */
+inline double distinctness(
+	const CurveSkeleton& skeleton, KnownClearances& clearances, const Branch& branch)
+{
+	const BranchProfile profile(skeleton, clearances, branch);
+	double most = -1;
+	for (size_t from = 0; from < profile.last(); ++from)
+		if (const size_t to = profile.oneRadiusOn(from); to <= profile.last())
+			most = std::max(most, profile.gain(from, to));
+	return most < 0 ? profile.gain(0, profile.last()) : most;
+}
+
+/**
+ * Removes the terminal branches whose distinctness() is below `least`, as withoutSpurs(): they lead
+ * into corners and edges of the surface, of which a shape has many and a skeleton none.
+ */
+inline CurveSkeleton withoutCornerBranches(
+	CurveSkeleton skeleton, KnownClearances& clearances, double least)
+{
+	return withoutTerminalBranches(
+		std::move(skeleton), least, [&](const CurveSkeleton& s, const Branch& branch) {
+			return distinctness(s, clearances, branch);
+		});
+}
+
+/**
+ * Cuts terminal branches off behind a node of theirs; what had merged behind it goes to the new tip.
+ * @param end  (profile from the far end to the tip): the place of that node.
+ */
+template <class End>
+CurveSkeleton withEndsCut(
+	const CurveSkeleton& skeleton, KnownClearances& clearances, const End& end)
+{
+	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
+	std::vector<int> target(skeleton.position.size());
+	std::iota(target.begin(), target.end(), 0);
+	for (Branch branch : skeletonBranches(skeleton)) {
+		for (int side = 0; side < 2; ++side) {
+			std::reverse(branch.nodes.begin(), branch.nodes.end());
+			if (neighbours[branch.last()].size() != 1)
+				continue;
+			const BranchProfile profile(skeleton, clearances, branch);
+			const size_t last = end(profile);
+			for (size_t i = last + 1; i <= profile.last(); ++i)
+				target[branch.nodes[i]] = branch.nodes[last];
+		}
+	}
+	return mergeNodes(skeleton, target);
+}
+
+/**
+ * Cuts the ends off that lead from a limb into a corner: behind the last stretch of the branch that
+ * gains `least`, see distinctness(), the branch ends where going on gains less, unless what is left is
+ * shorter than half a radius.
+ */
+inline CurveSkeleton withoutCornerEnds(
+	const CurveSkeleton& skeleton, KnownClearances& clearances, double least)
+{
+	constexpr double shortest = 0.5;
+	return withEndsCut(skeleton, clearances, [&](const BranchProfile& profile) {
+		const size_t end = profile.endOfGain(profile.lastStretch(least), least);
+		const double rest = profile.along.back() - profile.along[end];
+		return rest < shortest * profile.radius[end] ? profile.last() : end;
+	});
+}
+
+/**
+ * Takes tips back to where the balls last reached further by `least` of the way: a curve that went past
+ * the centre of a round or flat end, where the balls shrink as fast as it advances, ends in that centre.
+ */
+inline CurveSkeleton withoutBluntEnds(
+	const CurveSkeleton& skeleton, KnownClearances& clearances, double least)
+{
+	return withEndsCut(skeleton, clearances, [&](const BranchProfile& profile) {
+		return profile.endOfGain(profile.lastStretch(least), least);
+	});
+}
+
+/**
+ * Merges junctions that are one: those whose smaller ball, by less than `least` of its own radius, sticks
+ * out of the larger one, the least first. So a limb that forks right where it leaves a body keeps its
+ * fork. What the connecting branch is longer than straight counts as sticking out. The junction with the
+ * larger ball stays in its place. Branches that close a cycle of the shape are kept.
+ * @pre the radius of junctions and tips is their distance from the surface.
+ */
+inline CurveSkeleton withWholeJunctions(CurveSkeleton skeleton, double least)
+{
+	return withMergedJunctions(std::move(skeleton), least,
+		[](const CurveSkeleton& s, int larger, int smaller, double detour) {
+			return (protrusion(s, smaller, larger) + detour) / std::max(s.radius[smaller], 1e-300);
+		});
+}
+
+/// The node whose ball a point is deepest in, in radii; -1 outside of all. O(V).
+inline int holdingNode(const CurveSkeleton& skeleton, const Point3d& point)
+{
+	int holding = -1;
+	double least = 1;
+	for (size_t v = 0; v < skeleton.position.size(); ++v)
+		if (const double r = skeleton.radius[v]; r > 0)
+			if (const double depth = Distance(skeleton.position[v], point) / r; depth < least) {
+				least = depth;
+				holding = int(v);
+			}
+	return holding;
+}
+
+/// Length of a polyline up to each of its points.
+inline std::vector<double> lengthsAlong(const std::vector<Point3d>& line)
+{
+	std::vector<double> along(line.size(), 0);
+	for (size_t i = 1; i < line.size(); ++i)
+		along[i] = along[i - 1] + Distance(line[i - 1], line[i]);
+	return along;
+}
+
+/// Points with their distances from the surface, or lower bounds of them.
+struct BallChain
+{
+	std::vector<Point3d> points;
+	std::vector<double> radii;
+};
+
+/// Points of a polyline at equal steps of its length, both ends included.
+inline BallChain evenPoints(const BallChain& line, int segments)
+{
+	const std::vector<double> along = lengthsAlong(line.points);
+	BallChain even = {{line.points.front()}, {line.radii.front()}};
+	size_t i = 1;
+	for (int k = 1; k < segments; ++k) {
+		const double s = along.back() * k / segments;
+		while (i + 1 < along.size() && along[i] < s)
+			++i;
+		const double length = along[i] - along[i - 1];
+		const double t = length > 0 ? (s - along[i - 1]) / length : 0;
+		even.points.push_back(line.points[i - 1] + (line.points[i] - line.points[i - 1]) * t);
+		// The distance from the surface cannot change faster than the place.
+		even.radii.push_back(
+			std::max(line.radii[i - 1] - t * length, line.radii[i] - (1 - t) * length));
+	}
+	even.points.push_back(line.points.back());
+	even.radii.push_back(line.radii.back());
+	return even;
+}
+
+/// A polyline with its nodes kept and its edges cut to pieces of about `spacing`.
+inline BallChain withShortEdges(const BallChain& line, double spacing)
+{
+	BallChain finer = {{line.points.front()}, {line.radii.front()}};
+	for (size_t i = 1; i < line.points.size(); ++i) {
+		const BallChain edge = {
+			{line.points[i - 1], line.points[i]}, {line.radii[i - 1], line.radii[i]}};
+		const double length = Distance(line.points[i - 1], line.points[i]);
+		const BallChain pieces = evenPoints(edge, std::max(1, int(std::lround(length / spacing))));
+		finer.points.insert(finer.points.end(), pieces.points.begin() + 1, pieces.points.end());
+		finer.radii.insert(finer.radii.end(), pieces.radii.begin() + 1, pieces.radii.end());
+	}
+	return finer;
+}
+
+/// Whether a chain is inside; measures the radii where the bounds are not enough to tell.
+inline bool isInside(BallChain& chain, const ClosestSurface& surface)
+{
+	const auto segmentInside = [&](size_t i) {
+		return isSegmentInside(
+			surface, chain.points[i - 1], chain.radii[i - 1], chain.points[i], chain.radii[i]);
+	};
+	for (size_t i = 1; i < chain.points.size(); ++i) {
+		if (segmentInside(i))
+			continue;
+		for (size_t k : {i - 1, i})
+			chain.radii[k] = std::max(surface.clearance(chain.points[k]), 0.0);
+		if (!segmentInside(i))
+			return false;
+	}
+	return true;
+}
+
+/**
+ * Samples each branch evenly, about `spacing` apart. Junctions and tips keep their places, what had
+ * merged into a node goes to the one nearest along the branch. Where a chord would leave the
+ * surface, the branch keeps its nodes and only its long edges are cut.
+ * @pre radius holds the distances from the surface, or lower bounds. @post lower bounds.
+ */
+inline CurveSkeleton evenlySampled(
+	const CurveSkeleton& skeleton, const ClosestSurface& surface, double spacing)
+{
+	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
+	const std::vector<Branch> branches = skeletonBranches(skeleton);
+	CurveSkeleton even;
+	std::vector<int> place(skeleton.position.size(), -1);
+	const auto keep = [&](int v) {
+		if (place[v] < 0) {
+			place[v] = int(even.position.size());
+			even.position.push_back(skeleton.position[v]);
+			even.radius.push_back(skeleton.radius[v]);
+		}
+	};
+	for (size_t v = 0; v < place.size(); ++v)
+		if (neighbours[v].size() != 2)
+			keep(int(v));
+	std::map<std::pair<int, int>, int> parallel;
+	for (const Branch& branch : branches)
+		++parallel[std::minmax(branch.first(), branch.last())];
+	for (const Branch& branch : branches) {
+		keep(branch.first()); // of a free cycle
+		const int least = branch.isClosed()                            ? 3
+			: parallel[std::minmax(branch.first(), branch.last())] > 1 ? 2
+																	   : 1;
+		BallChain line;
+		for (int v : branch.nodes) {
+			line.points.push_back(skeleton.position[v]);
+			line.radii.push_back(skeleton.radius[v]);
+		}
+		const double length = branchLength(skeleton, branch);
+		BallChain chain = evenPoints(line, std::max(least, int(std::lround(length / spacing))));
+		if (!isInside(chain, surface)) {
+			const BallChain kept = withShortEdges(line, spacing);
+			if (int(kept.points.size()) > least)
+				chain = kept;
+		}
+		const int segments = int(chain.points.size()) - 1;
+		std::vector<int> ids(1, place[branch.first()]);
+		for (int k = 1; k < segments; ++k) {
+			ids.push_back(int(even.position.size()));
+			even.position.push_back(chain.points[k]);
+			even.radius.push_back(std::max(chain.radii[k], 0.0));
+		}
+		ids.push_back(place[branch.last()]);
+		for (int k = 0; k < segments; ++k)
+			even.edges.push_back({std::min(ids[k], ids[k + 1]), std::max(ids[k], ids[k + 1])});
+		const std::vector<double> from = lengthsAlong(line.points), to = lengthsAlong(chain.points);
+		int k = 0;
+		for (size_t i = 1; i + 1 < branch.nodes.size(); ++i) {
+			const double s = from[i] / from.back() * to.back();
+			while (k < segments && to[k + 1] - s < s - to[k])
+				++k;
+			place[branch.nodes[i]] = ids[k];
+		}
+	}
+	std::sort(even.edges.begin(), even.edges.end());
+	even.node.reserve(skeleton.node.size());
+	for (int v : skeleton.node)
+		even.node.push_back(v < 0 ? -1 : place[v]);
+	return even;
+}
+
+} // namespace vcg::tri::mcf::refining
+
+#endif

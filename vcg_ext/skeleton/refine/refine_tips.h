@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief Refinement, the tips: branches are extended to the ends of the features they describe.
+
+#ifndef VCG_MCF_REFINE_TIPS_H
+#define VCG_MCF_REFINE_TIPS_H
+
+#include "refine_centre.h"
+#include "refine_graph.h"
+
+#include <skeleton/graph/curve_skeleton.h>
+#include <skeleton/spatial/closest_surface.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace vcg::tri::mcf::refining {
+
+/// Where a tip may go.
+struct TipRule
+{
+	/// Longest step, in diagonals.
+	double spacing;
+	/// Each step must add at least this part of its length to the reach of the balls, ...
+	double leastGain;
+	/// ... and end in a ball no smaller than this, in diagonals.
+	double leastRadius;
+};
+
+/// The direction in which a branch ends: from the node about one radius before the tip.
+inline Point3d tipDirection(
+	const CurveSkeleton& skeleton, const std::vector<std::vector<int>>& neighbours, int tip)
+{
+	double along = 0;
+	int from = tip, to = neighbours[tip].front();
+	for (;;) {
+		along += Distance(skeleton.position[from], skeleton.position[to]);
+		if (along >= skeleton.radius[tip] || neighbours[to].size() != 2)
+			break;
+		const int next = neighbours[to][0] == from ? neighbours[to][1] : neighbours[to][0];
+		from = to;
+		to = next;
+	}
+	const Point3d direction = skeleton.position[tip] - skeleton.position[to];
+	const double length = direction.Norm();
+	return length > 0 ? direction / length : Point3d(0, 0, 0);
+}
+
+/**
+ * Extends each tip along its direction, in steps of at most a quarter of its ball, each recentred
+ * sideways, as long as the balls reach further by it: (step + r' - r) / step >= leastGain.
+ * In a round end the ball shrinks as fast as the tip advances, and it stays; in a tapered or
+ * pointed one it goes on to the least radius. It never goes farther than three radii, nor where balls
+ * are already, nor turns back: a sheet would lead it round its rim.
+ * A tip outside stays where it is.
+ * @pre radius holds the distances from the surface. @post the same.
+ */
+inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, const TipRule& rule)
+{
+	constexpr double farthest = 3, farthestTurn = 30 * M_PI / 180;
+	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
+	const int count = int(neighbours.size());
+	for (int v = 0; v < count; ++v) {
+		if (neighbours[v].size() != 1 || skeleton.radius[v] <= 0)
+			continue;
+		Point3d direction = tipDirection(skeleton, neighbours, v);
+		if (direction.SquaredNorm() == 0)
+			continue;
+		const Point3d start = direction;
+		double left = farthest * skeleton.radius[v];
+		int tip = v;
+		while (left > 0) {
+			const Point3d x = skeleton.position[tip];
+			const double r = skeleton.radius[tip];
+			const double step = std::min(rule.spacing, r / 4);
+			Point3d y = x + direction * step;
+			const ClosestSurface::Hit hit = surface.closest(y);
+			if (hit.distance <= 0 || !surface.isInside(y, hit))
+				break;
+			const ClosestSurface::Ball ball = medialBall(surface, y, hit);
+			if (isMedial(ball))
+				y = movedAside(y, ball, direction, step / 2);
+			const double s = Distance(x, y);
+			const double reached = std::max(surface.clearance(y), 0.0);
+			const Point3d front = y + (y - x) * (reached / s);
+			if (reached < rule.leastRadius || s + reached - r < rule.leastGain * s
+				|| holdingNode(skeleton, front) >= 0 || !isSegmentInside(surface, x, r, y, reached))
+				break;
+			left -= s;
+			const int next = int(skeleton.position.size());
+			skeleton.position.push_back(y);
+			skeleton.radius.push_back(reached);
+			skeleton.edges.push_back({tip, next});
+			// The branch may bend, but turns slowly: a quarter of the way in each step.
+			direction = direction * 0.75 + (y - x) * (0.25 / s);
+			direction /= direction.Norm();
+			if (direction * start < std::cos(farthestTurn))
+				break;
+			tip = next;
+		}
+	}
+	std::sort(skeleton.edges.begin(), skeleton.edges.end());
+}
+
+} // namespace vcg::tri::mcf::refining
+
+#endif

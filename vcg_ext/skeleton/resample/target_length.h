@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief How finely a surface is resampled when the user does not say.
+
+#ifndef VCG_MCF_TARGET_LENGTH_H
+#define VCG_MCF_TARGET_LENGTH_H
+
+#include <skeleton/mesh/measured_surface.h>
+#include <skeleton/core/parameters.h>
+#include <skeleton/core/progress.h>
+#include <skeleton/mesh/surface_mesh.h>
+#include <skeleton/core/ticker.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/**
+ * How often the edges of each component have to be cut until none is longer than L, about: the vertices
+ * that resample() may make for a while where triangles are narrower than L, so that the area does not
+ * tell. @param length L of each component, mesh units, > 0. Complexity: O(F).
+ */
+inline std::vector<double> cutsOfLongEdges(
+	const MeasuredSurface& surface, const std::vector<double>& length)
+{
+	const SurfaceMesh& mesh = surface.mesh();
+	std::vector<double> cuts(length.size(), 0);
+	for (int h = 0; h < mesh.halfEdgeSlots(); ++h) {
+		if (!mesh.isEdge(h))
+			continue;
+		const size_t c = size_t(surface.component()[mesh.origin(h)]);
+		if (const double squared = mesh.squaredLength(h); squared > length[c] * length[c])
+			cuts[c] += std::sqrt(squared) / length[c];
+	}
+	return cuts;
+}
+
+/**
+ * The edge length to resample each component with, mesh units.
+ *
+ * An even mesh of V vertices has 2 V nearly equilateral triangles, so that a surface of area A gets
+ * V = A / (L^2 sqrt(3) / 2) vertices.
+ * The default L gives a single component 45000 vertices, the size of the models of the paper (Table 1);
+ * c components share them, but none gets fewer than 3000, or its share of 200000 where there are many. It is at most 8 epsilon, beyond which the flow
+ * leaves the shape, and at least a twentieth of epsilon: of a wire that is much thinner than epsilon the
+ * flow sees no more. Where its edges would still be cut two million times (see cutsOfLongEdges()), it is
+ * longer.
+ *
+ * @param surface    closed triangle mesh of any number of components.
+ * @param parameters targetLength > 0 is taken instead, as a fraction of each component's own
+ *                   bounding box diagonal.
+ * @return one length for each component, in the order of connectedComponents().
+ * Complexity: O(V + F).
+ */
+inline std::vector<double> defaultTargetLength(
+	const MeasuredSurface& surface, const Parameters& parameters = Parameters())
+{
+	constexpr double totalVertices = 45000, fewestVertices = 3000, mostVertices = 200000;
+	constexpr double mostCuts = 2e6;
+	constexpr double shortestOfEpsilon = 0.05;
+	const double areaOfVertex = std::sqrt(3.0) / 2; // for edges of length 1
+	const int count = surface.components();
+	std::vector<double> length(count);
+	if (parameters.targetLength > 0) {
+		std::vector<Box3d> box(count);
+		for (int v = 0; v < surface.mesh().vertexSlots(); ++v)
+			if (surface.mesh().isVertex(v))
+				box[surface.component()[v]].Add(surface.mesh().position[v]);
+		for (int c = 0; c < count; ++c)
+			length[c] = parameters.targetLength * box[c].Diag();
+		return length;
+	}
+	const double parts = std::max(count, 1);
+	const double vertices =
+		std::max(std::min(fewestVertices, mostVertices / parts), totalVertices / parts);
+	for (int c = 0; c < count; ++c) {
+		const double epsilon = parameters.epsilon * surface.diagonal(c);
+		length[c] = std::clamp(std::sqrt(surface.area(c) / (areaOfVertex * vertices)),
+			shortestOfEpsilon * epsilon, 8 * epsilon);
+	}
+	const std::vector<double> cuts = cutsOfLongEdges(surface, length);
+	for (int c = 0; c < count; ++c)
+		length[c] *= std::max(1.0, cuts[c] / mostCuts);
+	return length;
+}
+
+} // namespace vcg::tri::mcf
+
+#endif

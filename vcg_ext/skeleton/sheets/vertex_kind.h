@@ -1,0 +1,507 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief What a meso-skeleton is at each vertex: curve, sheet, or still volume (Sec. 4.5, Fig. 7).
+
+#ifndef VCG_MCF_VERTEX_KIND_H
+#define VCG_MCF_VERTEX_KIND_H
+
+#include <skeleton/spatial/cell_grid.h>
+#include <skeleton/core/parallel.h>
+#include <skeleton/flow/stage.h>
+#include <skeleton/mesh/closest_point_walk.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/// The numbers are those of the attribute mcfskel_kind.
+enum class VertexKind : char {
+	Curve = 0, ///< the surface around has closed onto a line
+	Sheet = 1, ///< two walls lie on each other, and extend in two directions
+	Volume = 2 ///< not contracted yet
+};
+
+namespace detail {
+
+// What tells the kinds, in epsilon, see vertexKinds().
+constexpr double mostThickness = 2;
+constexpr double sheetReach = 8;
+constexpr double longestPiece = 4;
+constexpr double toldTogether = 3; // in the middle of a sheet, a ball of 4.2 has enough
+// No point of a piece is farther from the mean of its corners than 2/3 of its longest edge.
+constexpr double wallReach = mostThickness + longestPiece * 2 / 3;
+constexpr double kindCell = std::max(wallReach, (sheetReach + toldTogether) / 2);
+
+constexpr const char* tellingKinds = "Telling curves from sheets";
+
+inline double epsilonAt(const Stage& stage, int v)
+{
+	return stage.epsilon * stage.diagonal[stage.component[v]];
+}
+
+/// A piece of a triangle of a stage, in single precision: 32 bytes, since there are many.
+struct Piece
+{
+	Point3f middle; ///< the mean of its corners, from the origin of its PiecesByCell
+	float area;
+	Point3f normal; ///< unit length, or zero
+	int face;
+};
+
+/// The triangles of a stage in pieces, in the order of the cells of a grid.
+class PiecesByCell
+{
+public:
+	struct Cell
+	{
+		std::int64_t number;
+		int first, last; ///< its pieces: from first to last - 1
+		/// Bounds of the middles and of the normals.
+		Point3f lowest, highest, leastNormal, greatestNormal;
+		double area;
+	};
+
+	Point3d origin;
+	std::vector<Piece> pieces;
+	std::vector<Cell> cells;
+
+	/**
+	 * Each triangle is halved at its longest edge until none is longer than longestPiece, or 16 times;
+	 * less often where that would give millions of pieces, as with an epsilon far below the edges.
+	 * @param box  of the grid; pieces whose middles are outside are left out.
+	 * @throws Cancelled
+	 */
+	PiecesByCell(
+		const Stage& stage, const Box3d& box, const CellGrid& grid, const Progress& progress) :
+			origin(box.Center())
+	{
+		const SurfaceMesh& mesh = stage.mesh;
+		const int halvings = mostHalvings(stage, progress.part(0, 0.05));
+		std::vector<Piece> unsorted;
+		unsorted.reserve(size_t(mesh.faceSlots()));
+		reportedLoop(mesh.faceSlots(), progress.part(0.05, 0.3), tellingKinds, [&](int f) {
+			const Triangle t = mesh.triangle(f);
+			const std::array<Point3d, 3> corners = {
+				mesh.position[t[0]], mesh.position[t[1]], mesh.position[t[2]]};
+			const Point3d areaVector = mesh.areaVector(f);
+			const double length = areaVector.Norm();
+			Piece whole {{0, 0, 0}, float(length / 2), {0, 0, 0}, f};
+			if (length > 0)
+				whole.normal = Point3f::Construct(areaVector / length);
+			addPieces(
+				unsorted, whole, corners, longestPiece * epsilonAt(stage, t[0]), box, halvings);
+		});
+		const PointsByCell sorted(
+			int(unsorted.size()),
+			[&](int i) { return Point3d::Construct(unsorted[size_t(i)].middle) + origin; }, grid,
+			progress.part(0.3, 0.8), tellingKinds);
+		pieces.reserve(unsorted.size());
+		reportedLoop(int(unsorted.size()), progress.part(0.8, 1), tellingKinds, [&](int i) {
+			const Piece& piece = unsorted[size_t(sorted.id[size_t(i)])];
+			if (cells.empty() || cells.back().number != sorted.cell[size_t(i)])
+				cells.push_back({sorted.cell[size_t(i)], i, i, piece.middle, piece.middle,
+					piece.normal, piece.normal, 0});
+			Cell& cell = cells.back();
+			++cell.last;
+			for (int axis = 0; axis < 3; ++axis) {
+				cell.lowest[axis] = std::min(cell.lowest[axis], piece.middle[axis]);
+				cell.highest[axis] = std::max(cell.highest[axis], piece.middle[axis]);
+				cell.leastNormal[axis] = std::min(cell.leastNormal[axis], piece.normal[axis]);
+				cell.greatestNormal[axis] = std::max(cell.greatestNormal[axis], piece.normal[axis]);
+			}
+			cell.area += piece.area;
+			pieces.push_back(piece);
+		});
+	}
+
+private:
+	/// How often a triangle may be halved: two halvings halve its longest edge.
+	static int mostHalvings(const Stage& stage, const Progress& progress)
+	{
+		constexpr int most = 16;
+		const double maxPieces = std::max(double(1 << 22), 64.0 * stage.mesh.faceSlots());
+		std::array<double, most + 1> triangles = {}; // by the halvings that they need
+		const SurfaceMesh& mesh = stage.mesh;
+		reportedLoop(mesh.faceSlots(), progress, tellingKinds, [&](int f) {
+			const double longest = std::sqrt(std::max({mesh.squaredLength(3 * f),
+				mesh.squaredLength(3 * f + 1), mesh.squaredLength(3 * f + 2)}));
+			const double ratio = longest / (longestPiece * epsilonAt(stage, mesh.origin(3 * f)));
+			++triangles[size_t(std::clamp(std::ceil(2 * std::log2(ratio)), 0.0, double(most)))];
+		});
+		const auto pieces = [&](int halvings) {
+			double count = 0;
+			for (int k = 0; k <= most; ++k)
+				count += triangles[size_t(k)] * std::exp2(std::min(k, halvings));
+			return count;
+		};
+		int halvings = most;
+		while (halvings > 0 && pieces(halvings) > maxPieces)
+			--halvings;
+		return halvings;
+	}
+
+	void addPieces(std::vector<Piece>& found, const Piece& whole,
+		const std::array<Point3d, 3>& corners, double longest, const Box3d& box, int halvings) const
+	{
+		const auto& [a, b, c] = corners;
+		const double ab = SquaredDistance(a, b), bc = SquaredDistance(b, c),
+					 ca = SquaredDistance(c, a);
+		if (bc > ab && bc >= ca)
+			return addPieces(found, whole, {b, c, a}, longest, box, halvings);
+		if (ca > ab)
+			return addPieces(found, whole, {c, a, b}, longest, box, halvings);
+		if (ab > longest * longest && halvings > 0) {
+			Piece half = whole;
+			half.area /= 2;
+			const Point3d middle = (a + b) / 2.0;
+			addPieces(found, half, {b, c, middle}, longest, box, halvings - 1);
+			addPieces(found, half, {c, a, middle}, longest, box, halvings - 1);
+			return;
+		}
+		const Point3d middle = (a + b + c) / 3.0;
+		if (!box.IsIn(middle))
+			return;
+		found.push_back(whole);
+		found.back().middle = Point3f::Construct(middle - origin);
+	}
+};
+
+/// The cells around one that moves forward through a grid.
+class CellsAround
+{
+public:
+	CellsAround(const std::vector<PiecesByCell::Cell>& cells, std::int64_t start) : cells(cells)
+	{
+		for (size_t i = 0; i < rows.size(); ++i) {
+			const std::int64_t from = start + rowOf(i) - 2;
+			next[i] = std::lower_bound(cells.begin(), cells.end(), from,
+						  [](const PiecesByCell::Cell& c, std::int64_t n) { return c.number < n; })
+				- cells.begin();
+		}
+	}
+
+	/// Those within `distance` cells, 1 or 2, of `middle`, which only grows from call to call.
+	void find(std::int64_t middle, int distance, std::vector<int>& found)
+	{
+		found.clear();
+		const size_t count = distance == 1 ? 9 : rows.size();
+		for (size_t i = 0; i < count; ++i) {
+			const std::int64_t centre = middle + rowOf(i);
+			std::ptrdiff_t& at = next[i];
+			const std::ptrdiff_t end = std::ptrdiff_t(cells.size());
+			while (at < end && cells[size_t(at)].number < centre - 2)
+				++at;
+			for (std::ptrdiff_t c = at; c < end && cells[size_t(c)].number <= centre + distance;
+				 ++c)
+				if (cells[size_t(c)].number >= centre - distance)
+					found.push_back(int(c));
+		}
+	}
+
+private:
+	/// Rows of cells along x by their steps in y and z, the nearest first.
+	static constexpr std::array<std::array<int, 2>, 25> rows = {
+		{{0, 0}, {0, -1}, {0, 1}, {-1, 0}, {1, 0}, {-1, -1}, {-1, 1}, {1, -1}, {1, 1}, {-2, 0},
+			{2, 0}, {0, -2}, {0, 2}, {-2, -1}, {-2, 1}, {2, -1}, {2, 1}, {-1, -2}, {1, -2}, {-1, 2},
+			{1, 2}, {-2, -2}, {-2, 2}, {2, -2}, {2, 2}}};
+
+	const std::vector<PiecesByCell::Cell>& cells;
+	std::array<std::ptrdiff_t, 25> next;
+
+	static std::int64_t rowOf(size_t i)
+	{
+		return rows[i][0] * CellGrid::nextRow + rows[i][1] * CellGrid::nextLayer;
+	}
+};
+
+/// Looks for a wall that faces a vertex and is no farther from it than mostThickness.
+class OppositeWall
+{
+public:
+	OppositeWall(
+		const Stage& stage, const PiecesByCell& surface, int v, const Point3d& vertexNormal) :
+			mesh(stage.mesh),
+			surface(surface), place(mesh.position[v]), limit(mostThickness * epsilonAt(stage, v)),
+			middle(Point3f::Construct(place - surface.origin)),
+			normal(Point3f::Construct(vertexNormal)), height(float(limit * roomForRounding))
+	{
+		const double reach = wallReach * epsilonAt(stage, v) * roomForRounding;
+		squaredReach = float(reach * reach);
+	}
+
+	/// Whether a piece belongs to such a wall.
+	bool isIn(int i) const
+	{
+		const Piece& piece = surface.pieces[size_t(i)];
+		const Point3f d = piece.middle - middle;
+		// Most are turned alike, too far, or in a plane that is: one branch, since none could be foretold.
+		if ((piece.normal * normal > opposite) | (std::abs(d * piece.normal) > height)
+			| (d.SquaredNorm() > squaredReach))
+			return false;
+		const Triangle t = mesh.triangle(piece.face);
+		const std::vector<Point3d>& corner = mesh.position;
+		return closestOnTriangle(corner[t[0]], corner[t[1]], corner[t[2]], place).squaredDistance
+			<= limit * limit;
+	}
+
+	/// A piece of these cells that is such a wall; -1 if there is none.
+	int findIn(const std::vector<int>& cells) const
+	{
+		for (int c : cells) {
+			const PiecesByCell::Cell& cell = surface.cells[size_t(c)];
+			float least = 0;
+			for (int axis = 0; axis < 3; ++axis)
+				least += std::min(normal[axis] * cell.leastNormal[axis],
+					normal[axis] * cell.greatestNormal[axis]);
+			if (least > opposite)
+				continue;
+			for (int i = cell.first; i < cell.last; ++i)
+				if (isIn(i))
+					return i;
+		}
+		return -1;
+	}
+
+private:
+	static constexpr float opposite = -0.2f; // cosine: no neighbour round an edge of a box
+	static constexpr double roomForRounding = 1.01;
+
+	const SurfaceMesh& mesh;
+	const PiecesByCell& surface;
+	Point3d place;
+	double limit;
+	Point3f middle, normal;
+	float height, squaredReach;
+};
+
+/// Whether the pieces of some cells whose middles are in a ball have an area together.
+inline bool hasAreaWithin(const PiecesByCell& surface, const std::vector<int>& cells,
+	const Point3d& centre, double radius, double enough)
+{
+	const Point3f middle = Point3f::Construct(centre - surface.origin);
+	const float squaredRadius = float(radius * radius);
+	double area = 0;
+	for (int c : cells) {
+		const PiecesByCell::Cell& cell = surface.cells[size_t(c)];
+		float nearest = 0, farthest = 0; // squared distances of the box
+		for (int axis = 0; axis < 3; ++axis) {
+			const float below = cell.lowest[axis] - middle[axis],
+						above = middle[axis] - cell.highest[axis];
+			const float gap = std::max({below, above, 0.f}), far = std::min(below, above);
+			nearest += gap * gap;
+			farthest += far * far;
+		}
+		if (nearest >= squaredRadius)
+			continue;
+		if (farthest < squaredRadius)
+			area += cell.area;
+		else
+			for (int i = cell.first; i < cell.last; ++i) {
+				const Piece& piece = surface.pieces[size_t(i)];
+				area += SquaredDistance(piece.middle, middle) < squaredRadius ? piece.area : 0;
+			}
+		if (area >= enough)
+			return true;
+	}
+	return false;
+}
+
+/// Whether there is such a wall, in one of the cells or known already.
+/// @param recent  pieces of walls of vertices nearby, one of which often is this one's, too.
+inline bool hasOppositeWall(
+	const OppositeWall& wall, const std::vector<int>& cells, std::array<int, 4>& recent)
+{
+	const auto isWall = [&](int i) { return wall.isIn(i); };
+	if (std::any_of(recent.begin(), recent.end(), isWall))
+		return true;
+	const int found = wall.findIn(cells);
+	if (found < 0)
+		return false;
+	std::rotate(recent.begin(), recent.end() - 1, recent.end());
+	recent[0] = found;
+	return true;
+}
+
+/**
+ * Tells sheets from curves for the last of some closed vertices of a cell and for those near it that must be
+ * of the same kind, and takes these off the list.
+ * @param cells  the cells within two of theirs.
+ */
+inline void tellSomeKinds(const Stage& stage, const PiecesByCell& surface,
+	const std::vector<int>& cells, std::vector<int>& closed, std::vector<VertexKind>& kind)
+{
+	constexpr double leastSheet = 0.27; // of 2 pi R^2
+	const int v = closed.back();
+	const Point3d& centre = stage.mesh.position[v];
+	const double epsilon = epsilonAt(stage, v), R = sheetReach * epsilon;
+	const auto isSheet = [&](double radius) {
+		return hasAreaWithin(surface, cells, centre, radius, leastSheet * 2 * M_PI * R * R);
+	};
+	double d = 0;
+	const auto isApart = [&](int w) {
+		const double distance = Distance(stage.mesh.position[w], centre);
+		if (distance > toldTogether * epsilon || stage.component[w] != stage.component[v])
+			return true;
+		d = std::max(d, distance);
+		return false;
+	};
+	auto some = std::partition(closed.begin(), closed.end(), isApart);
+	VertexKind told = VertexKind::Sheet;
+	if (!isSheet(R - d)) {
+		told = VertexKind::Curve;
+		if (d > 0 && isSheet(R + d)) { // they may differ
+			some = std::partition(some, closed.end(), [&](int w) { return w != v; });
+			told = isSheet(R) ? VertexKind::Sheet : VertexKind::Curve;
+		}
+	}
+	for (auto w = some; w != closed.end(); ++w)
+		kind[*w] = told;
+	closed.erase(some, closed.end());
+}
+
+/// Vertices of components that can share a grid.
+struct LikeSizes
+{
+	double epsilon; ///< the largest of theirs, less than twice the smallest
+	std::vector<int> vertices;
+};
+
+inline std::vector<LikeSizes> verticesOfLikeSizes(const Stage& stage, const Progress& progress)
+{
+	const std::vector<double>& diagonal = stage.diagonal;
+	std::vector<int> order(diagonal.size());
+	std::iota(order.begin(), order.end(), 0);
+	std::stable_sort(order.begin(), order.end(),
+		[&](int a, int b) { return diagonal[size_t(a)] < diagonal[size_t(b)]; });
+	std::vector<LikeSizes> groups;
+	std::vector<int> groupOf(diagonal.size());
+	double smallest = 0;
+	for (int c : order) {
+		if (groups.empty() || diagonal[size_t(c)] >= 2 * smallest) {
+			groups.emplace_back();
+			smallest = diagonal[size_t(c)];
+		}
+		groups.back().epsilon = stage.epsilon * diagonal[size_t(c)];
+		groupOf[size_t(c)] = int(groups.size()) - 1;
+	}
+	reportedLoop(stage.mesh.vertexSlots(), progress, tellingKinds,
+		[&](int v) { groups[size_t(groupOf[size_t(stage.component[v])])].vertices.push_back(v); });
+	return groups;
+}
+
+/// The kind that most of a vertex and its neighbours have; its own if there is no such kind.
+inline std::vector<VertexKind> majority(
+	const SurfaceMesh& mesh, const std::vector<VertexKind>& kind, const Progress& progress)
+{
+	// A vertex whose triangles are each of one kind keeps it.
+	std::vector<char> mixed(kind.size(), 0);
+	reportedLoop(mesh.faceSlots(), progress.part(0, 0.7), tellingKinds, [&](int f) {
+		const Triangle t = mesh.triangle(f);
+		if (kind[t[0]] != kind[t[1]] || kind[t[1]] != kind[t[2]])
+			mixed[t[0]] = mixed[t[1]] = mixed[t[2]] = 1;
+	});
+	std::vector<VertexKind> result = kind;
+	reportedLoop(mesh.vertexSlots(), progress.part(0.7, 1), tellingKinds, [&](int v) {
+		if (!mixed[v])
+			return;
+		std::array<int, 3> votes = {0, 0, 0};
+		int all = 1;
+		++votes[size_t(kind[v])];
+		mesh.forEachOutgoing(v, [&](int h) {
+			++votes[size_t(kind[mesh.target(h)])];
+			++all;
+		});
+		for (size_t k = 0; k < votes.size(); ++k)
+			if (2 * votes[k] > all)
+				result[v] = VertexKind(k);
+	});
+	return result;
+}
+
+} // namespace detail
+
+/**
+ * The kind of each vertex of a stage.
+ *
+ * Volume: a vertex that is not fixed by the flow and has no wall opposite, turned the other way, within
+ * 2 epsilon; on which side does not matter, since walls may have passed each other. Of the others, on
+ * which the surface has closed, sheets are told from curves by the area of the stage within a ball of
+ * R = 8 epsilon, both walls counted: 2 pi R^2 in the middle of a sheet, half of that at its rim, and
+ * for a curve, a tube no wider than epsilon, at most 2 R epsilon pi. A sheet has at least 0.27 of the
+ * full area; a strip narrower than about 3.4 epsilon is a curve.
+ * Three rounds of majority among neighbours take single vertices out.
+ *
+ * The area is that of pieces of triangles with no edge longer than 4 epsilon. Pieces and vertices are sorted
+ * into cells, wide enough that what a vertex asks for is in its own cell or next to it. The balls of
+ * vertices within d of one of them all hold its ball of R - d and lie in that of R + d: if the first has
+ * enough, all are sheets, if the second has not, all are curves.
+ *
+ * @return the kind of each vertex, #V. @pre stage.mesh is compact. @throws Cancelled
+ * Complexity: O(V) where no edge is much shorter than epsilon. Source: ours; the paper shows kinds, but does
+ * not say how to tell them.
+ */
+inline std::vector<VertexKind> vertexKinds(
+	const Stage& stage, const Progress& progress = Progress())
+{
+	constexpr int rounds = 3;
+	const SurfaceMesh& mesh = stage.mesh;
+	const std::vector<Point3d> normal = mesh.vertexNormals(progress.part(0, 0.1));
+	std::vector<VertexKind> kind(size_t(mesh.vertexSlots()), VertexKind::Volume);
+	int done = 0;
+	for (const detail::LikeSizes& some :
+		detail::verticesOfLikeSizes(stage, progress.part(0.1, 0.1))) {
+		const int count = int(some.vertices.size());
+		const auto bar = [&](int told) {
+			return 0.1 + 0.8 * told / std::max(mesh.vertexSlots(), 1);
+		};
+		const Progress part = progress.part(bar(done), bar(done + count));
+		done += count;
+		Box3d box;
+		detail::reportedLoop(count, part.part(0, 0), detail::tellingKinds,
+			[&](int i) { box.Add(mesh.position[some.vertices[size_t(i)]]); });
+		const double cellSize = detail::kindCell * some.epsilon;
+		box.Offset(2 * cellSize);
+		const detail::CellGrid grid(box, cellSize);
+		const detail::PointsByCell sorted(
+			count, [&](int i) { return mesh.position[some.vertices[size_t(i)]]; }, grid,
+			part.part(0, 0.1), detail::tellingKinds);
+		const detail::PiecesByCell surface(stage, box, grid, part.part(0.1, 0.4));
+		const auto cells = [&](int begin, int end) {
+			detail::CellsAround around(surface.cells, sorted.cell[begin]);
+			std::vector<int> near, closed;
+			std::array<int, 4> recent = {0, 0, 0, 0}; // pieces of walls of vertices nearby
+			while (begin < end) {
+				const std::int64_t cell = sorted.cell[begin];
+				around.find(cell, 1, near);
+				closed.clear();
+				for (; begin < end && sorted.cell[begin] == cell; ++begin) {
+					const int v = some.vertices[size_t(sorted.id[begin])];
+					if ((stage.fixed[v] && !stage.held[v])
+						|| detail::hasOppositeWall(
+							detail::OppositeWall(stage, surface, v, normal[v]), near, recent))
+						closed.push_back(v);
+				}
+				if (!closed.empty())
+					around.find(cell, 2, near);
+				while (!closed.empty())
+					detail::tellSomeKinds(stage, surface, near, closed, kind);
+			}
+		};
+		forEachBlock(count, part.part(0.4, 1), detail::tellingKinds, cells);
+	}
+	for (int i = 0; i < rounds; ++i)
+		kind = detail::majority(mesh, kind, progress.part(0.9, 1));
+	return kind;
+}
+
+} // namespace vcg::tri::mcf
+
+#endif

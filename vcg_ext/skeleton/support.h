@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief Public: what a host needs to run the library: errors, parameters, progress, loops that report and that run on several threads.
+
+#ifndef VCG_MCF_SUPPORT_H
+#define VCG_MCF_SUPPORT_H
+
+#include <skeleton/core/errors.h>
+#include <skeleton/core/notes.h>
+#include <skeleton/core/parallel.h>
+#include <skeleton/core/parameters.h>
+#include <skeleton/core/progress.h>
+#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/ticker.h>
+
+#endif
