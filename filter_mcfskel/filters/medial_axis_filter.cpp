@@ -73,7 +73,7 @@ FilterSpec medialAxisFilter()
 			ParameterSpec {ParameterKind::Real, "max_stretch", defaults.mostStretch,
 				"Greatest stretch",
 				"Triangles with an edge more than this many times as long as on the surface are left "
-				"out, above 0: they join different sheets. Sane are 2 to 10."}
+				"out, above 0: they join different sheets. Recommended: 2 to 10."}
 				.asAdvanced()},
 		run};
 }

@@ -23,7 +23,7 @@ ParameterSpec sheetThresholdParameter()
 		"Sheet threshold",
 		"With 'keep_sheets': how flat a part must be to become a sheet, from 0 to 1. Flatness is 0 "
 		"where the cross-section is round and near 1 between parallel walls. Lower ones leave more "
-		"sheets, as the medial axis does, higher ones more curves; 1 leaves curves only. Sane are 0.6 "
+		"sheets, as the medial axis does, higher ones more curves; 1 leaves curves only. Recommended: 0.6 "
 		"to 0.9."};
 }
 

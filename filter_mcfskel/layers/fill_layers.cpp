@@ -48,8 +48,8 @@ void fillCurve(MeshModel& layer, const std::vector<vcg::Point3d>& nodes,
 	host::updateBoxAndNormals(layer);
 }
 
-void writeKinds(MeshModel& layer, const std::vector<mcf::VertexKind>& kinds,
-	const mcf::Progress& progress)
+void writeKinds(
+	MeshModel& layer, const std::vector<mcf::VertexKind>& kinds, const mcf::Progress& progress)
 {
 	const auto colourOf = [](mcf::VertexKind kind) {
 		switch (kind) {

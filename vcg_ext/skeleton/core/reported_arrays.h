@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Large arrays, made in pieces between which the user can cancel.
+/// @brief Chunked allocation and copying of large arrays, with progress and cancellation.
 ///
-/// Memory that nobody has touched before can come slowly, a few GB in ten seconds on a virtual machine:
-/// to make an array of a hundred MB in one go would be a silence of half a second.
+/// First-touch page faults can be slow, a few GB in ten seconds on a virtual machine: a single allocation
+/// of 100 MB would block cancellation for half a second.
 
 #ifndef VCG_MCF_REPORTED_ARRAYS_H
 #define VCG_MCF_REPORTED_ARRAYS_H

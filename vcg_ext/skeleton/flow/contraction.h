@@ -44,11 +44,11 @@ inline double solverTolerance(const Parameters& parameters)
  * blow the surface up again. Vertices of sheets (Stage::sheet) have a weight of their own and keep it.
  *
  * Weights are squared (Eq. 5 does, Eq. 6 does not; the published values belong to the square).
- * Components are solved by themselves, several at once where there are threads: each moves as it would alone,
- * to the last bit.
+ * Connected components are independent linear systems, solved in parallel. The result for a component is
+ * bitwise identical to solving it alone.
  * @pre stage.mesh is compact.
- * @throws SolverError if the system breaks down or a position stops being finite; Cancelled. Some components
- *         may have moved by then: the stage is good for nothing.
+ * @throws SolverError if the system breaks down or a position stops being finite; Cancelled. Basic guarantee
+ *         only: the stage is unspecified then and must be discarded.
  * Complexity: that of one sparse factorisation, about O(V log V) on a surface mesh.
  */
 inline void contract(

@@ -31,8 +31,8 @@ namespace vcg::tri::mcf {
 
 namespace detail {
 
-/// After every so many steps a stage is numbered anew, so that neighbours are near each other in memory and
-/// in the elimination order. Stage 0 is numbered so by surfaceForFlow().
+/// After this many steps a stage is renumbered breadth first, so that neighbours are near each other in memory
+/// and in the elimination order. Stage 0 is numbered so by surfaceForFlow().
 constexpr int renumberEvery = 4;
 
 /// step() of a stage that has entered its frames.
@@ -145,9 +145,8 @@ inline Stage contractToSkeleton(Stage stage, const Parameters& parameters,
 	parameters.check();
 	const Progress begin = progress.part(0, 0), end = progress.part(1, 1);
 	StageFrames frames(stage, begin); // found by the surface's own correspondence
-	// The surface, and the first stages, have many more vertices than the others. Only what becomes of
-	// the vertices of one of them is followed, until half of these are gone; the surface's are told when
-	// somebody looks, and at the end.
+	// The map from surface to stage is composed lazily: the vertices of a checkpoint stage are tracked, a
+	// new checkpoint is taken when half of them have merged, and the maps are composed on request.
 	const std::vector<int> ofSurface = std::move(stage.node);
 	std::vector<int> ofFirst(stage.mesh.vertexSlots());
 	std::iota(ofFirst.begin(), ofFirst.end(), 0);

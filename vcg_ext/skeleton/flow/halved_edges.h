@@ -39,13 +39,10 @@ inline double epsilonOfEdges(double epsilon)
 } // namespace detail
 
 /**
- * Which components are too coarse for the flow, so that its curve would leave the shape or shrink to
- * a point: where triangles with an edge that is longer than 20 epsilon, and than the shape is thick
- * there, make up a quarter of the area. A few long edges among others do no harm, and a round body
- * needs no more vertices than show its form.
- *
- * Thick is the mean radius of the inner medial balls at a triangle's corners; where none is known,
- * the triangle counts by its edges.
+ * Detects components sampled too coarsely for the flow, whose curve would leave the shape or shrink to a
+ * point: at least 25 % of the area is in triangles with an edge longer than 20 epsilon and than the local
+ * thickness, the mean radius of the inscribed medial balls at the corners. A few long edges do no harm, and
+ * a round body needs no more vertices than show its form. Where no radius is known, the edges alone count.
  *
  * @param radius    of the inner medial ball at each vertex, -1 where it has none; empty: by the edges
  *                  alone, which finds all that are coarse, and perhaps more.

@@ -105,7 +105,7 @@ public:
 				continue;
 			const std::array<bool, 3> atFace = widest > 0 ? std::array<bool, 3> {true, true, true}
 														  : maybeWideAngles(mesh, f, widest);
-			for (int k = 0; k < 3; ++k) { // without a branch, which could not be foretold
+			for (int k = 0; k < 3; ++k) { // branchless: the condition is unpredictable
 				wide[count] = 3 * f + k;
 				count += atFace[k];
 			}

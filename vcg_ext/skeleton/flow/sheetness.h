@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Where a shape is better abstracted by a sheet than by a curve, told from its medial balls.
+/// @brief Local classification of sheet against curve from medial balls.
 
 #ifndef VCG_MCF_SHEETNESS_H
 #define VCG_MCF_SHEETNESS_H

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief How noisy a surface is, told from the surface alone, and a calmer copy of it.
+/// @brief Noise estimation, and denoising by Taubin smoothing.
 
 #ifndef VCG_MCF_DENOISE_H
 #define VCG_MCF_DENOISE_H

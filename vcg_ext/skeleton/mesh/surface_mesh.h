@@ -510,9 +510,9 @@ public:
 
 	/**
 	 * Closes the holes in the numbering, order kept, and makes each vertex's outgoing half-edge its
-	 * lowest one, so that the mesh is the same as one built anew from its triangles.
+	 * lowest one, so that the mesh equals one built from its triangles.
 	 * @return for each old vertex id the new one, -1 where it was removed.
-	 * @throws Cancelled, which leaves a mesh that is good for nothing.
+	 * @throws Cancelled; the mesh is unspecified then and must be discarded.
 	 */
 	std::vector<int> compact(const Progress& progress = Progress())
 	{
@@ -552,7 +552,7 @@ public:
 		return newVertex;
 	}
 
-	/// A copy, piece by piece: to copy a large mesh in one go would be a long silence.
+	/// A cancellable copy that reports its progress.
 	/// @throws Cancelled
 	SurfaceMesh copied(const Progress& progress) const
 	{

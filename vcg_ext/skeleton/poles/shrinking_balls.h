@@ -31,12 +31,11 @@ namespace vcg::tri::mcf {
 namespace detail {
 
 /**
- * The last balls found by a search. A ball that nearly equals one of them needs no search.
+ * Cache of empty balls that a search has certified. A ball that nearly equals one of them needs no search.
  *
- * The distance to the nearest sample changes no faster than the place: d away from the centre of a ball
- * that no sample comes nearer to than its reach, none comes nearer than that reach less d. Without
- * this, samples of a sphere would all be visited for each of them, and those of a tube's ring again
- * and again, since all of them touch the same ball.
+ * The distance to the nearest sample is 1-Lipschitz: at a distance d from the centre of a certified ball no
+ * sample is nearer than the ball's reach less d. Without the cache all samples of a sphere would be visited
+ * for each of them, and those of a tube's ring again and again, since all of them touch the same ball.
  */
 class KnownBalls
 {

@@ -166,9 +166,9 @@ inline void followContacts(
 }
 
 /**
- * How much the centring of each node counts. Where a limb leaves a body, its branch crosses the ball of
- * the junction, and what is the middle there is the body's affair: nodes whose balls stick out of that
- * ball by little, in parts of its radius, count little; from `whole` on they count fully.
+ * Weight of the centring term per node. Inside the junction's maximal ball the medial axis of the body
+ * dominates, so weights ramp from `least` to 1 as a node's ball leaves it, relative to its radius; from
+ * `whole` on they are 1.
  * @param distance  of each node from the surface.
  */
 inline std::vector<double> sharesOfCentring(const CurveSkeleton& skeleton,

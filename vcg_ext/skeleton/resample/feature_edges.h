@@ -198,7 +198,7 @@ private:
 		return normals;
 	}
 
-	/// A face without area has a zero normal and no opinion.
+	/// Degenerate faces have a zero normal and are ignored.
 	static bool isSharp(const Point3d& n, const Point3d& m)
 	{
 		return n * m < sharpCosine && n.SquaredNorm() > 0.5 && m.SquaredNorm() > 0.5;

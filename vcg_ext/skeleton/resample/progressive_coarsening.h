@@ -52,7 +52,7 @@ void coarseningPass(SurfaceMesh& mesh, double fraction, Shortest&& lengthAt, All
 }
 
 /**
- * All stages: a stage merges edges up to a length a quarter of an octave above that of the stage
+ * All stages: a stage merges edges up to a length a third of an octave above that of the stage
  * before, so that the mesh stays even on the way; in one pass it would not.
  */
 template <class LengthAt, class Allowed, class Collapse>

@@ -242,7 +242,7 @@ public:
 	{
 		const Piece& piece = surface.pieces[size_t(i)];
 		const Point3f d = piece.middle - middle;
-		// Most are turned alike, too far, or in a plane that is: one branch, since none could be foretold.
+		// Most are turned alike, too far, or in a plane that is: one branch, since each is unpredictable.
 		if ((piece.normal * normal > opposite) | (std::abs(d * piece.normal) > height)
 			| (d.SquaredNorm() > squaredReach))
 			return false;

@@ -25,11 +25,10 @@ namespace vcg::tri::mcf {
  *
  * Each column takes the updates of those columns before it that have an entry in its row (left-looking;
  * Jones and Plassmann, ACM TOMS 21(1), 1995). An entry l_rk that contributes less than
- * `dropTolerance` of its row's diagonal, l_rk^2 d_k < dropTolerance^2 s_rr, is dropped as it appears, and
- * nearly all of it is added to the diagonals of its row and its column instead: so vectors that vary
- * slowly, for which L D L^T would otherwise be too stiff, see nearly the same matrix (modified incomplete
- * factorisation; Gustafsson, BIT 18, 1978). On the flow's matrices that leaves a seventh of the full
- * factor, and only what is left is ever visited.
+ * `dropTolerance` of its row's diagonal, l_rk^2 d_k < dropTolerance^2 s_rr, is dropped as it appears. This
+ * is a relaxed modified incomplete factorisation (MILU; Gustafsson, BIT 18, 1978): most of the dropped fill
+ * is lumped onto the diagonals of its row and column, so that row sums, and hence smooth modes, are nearly
+ * preserved. On the flow's matrices a seventh of the full factor remains, and nothing else is visited.
  * S is a diagonally dominant M-matrix, so that pivots stay positive, but for rounding where the shift is
  * tiny: they are kept above 1e-7 of the diagonal.
  *
@@ -84,7 +83,7 @@ public:
 			const auto add = [&](int r, float value) {
 				Sum& sum = sums[r];
 				sum.value += value;
-				pattern[count] = r; // without a branch, which could not be foretold
+				pattern[count] = r; // branchless: the condition is unpredictable
 				count += sum.stamp != k;
 				sum.stamp = k;
 			};
@@ -194,8 +193,8 @@ private:
 		float diagonal;
 	};
 
-	/// A column's entries are filled up to groups of so many, with zeros in its own row: loops of few
-	/// different lengths are foretold more often.
+	/// Columns are zero-padded, with entries in their own row, to a multiple of this: trip counts of few
+	/// different values are more predictable.
 	static constexpr int Group = 4;
 
 	/// How much of a dropped entry goes to the diagonal.

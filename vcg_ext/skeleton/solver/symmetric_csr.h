@@ -48,8 +48,8 @@ struct SymmetricRows
 	std::vector<int> start;
 	std::vector<SparseEntry> entries;
 
-	/// Rows are filled up to groups of so many entries, with zeros in column 0: loops of few different
-	/// lengths are foretold more often.
+	/// Rows are zero-padded, with entries in column 0, to a multiple of this: trip counts of few different
+	/// values are more predictable.
 	static constexpr int Group = 3;
 
 	/// Fills up the row that the last entries belong to.

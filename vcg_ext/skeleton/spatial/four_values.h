@@ -16,8 +16,8 @@
 namespace vcg::tri::mcf {
 
 /**
- * Writes first + k for those k from 3 down to 0 whose value is no more than `limit`, in this order; without
- * a branch, which could not be foretold.
+ * Writes first + k for those k from 3 down to 0 whose value is no more than `limit`, in this order.
+ * Branchless: the comparisons are unpredictable.
  * @param to has room for four numbers; those after the ones that count are undefined.
  * @return how many count.
  */

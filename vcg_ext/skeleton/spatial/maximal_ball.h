@@ -45,7 +45,7 @@ public:
 		const Point3d e = p - q;
 		const double depth = e * n - delta;
 		const double span = e.SquaredNorm() - delta * delta;
-		// One branch: the sign of the depth could not be foretold.
+		// One branch for both conditions: the sign of the depth is unpredictable.
 		if (!((depth > 0) & (span <= 2 * r * depth * (1 + rounding))))
 			return;
 		const double rq = span / (2 * depth);

@@ -29,14 +29,13 @@
 namespace vcg::tri::mcf {
 
 /**
- * A balanced kd-tree with four children a node, split at medians of the longest side, each with a tight
- * box and, since the points are mostly those of a surface, a thin slab.
+ * A 4-ary bounding volume hierarchy of points, split at medians of the longest side: each node has an
+ * axis-aligned box and, since the points are mostly those of a surface, a best-fit slab.
  *
- * A library's nearest-neighbour query has a fixed centre; a shrinking ball moves its centre with
- * every contact it finds. search() lets the ball change during one descent, which saves the
- * repeated queries of the classical algorithm. Boxes, slabs and points are tested in single precision,
- * four side by side as vector instructions like it, with room for the rounding; what passes is
- * decided in double precision by the ball itself.
+ * A nearest-neighbour query has a fixed centre; a shrinking ball moves its centre with every contact it
+ * finds. search() lets the ball change during one descent, which saves the repeated queries of the
+ * classical algorithm. Culling is conservative, in single precision, four children per SIMD test; the ball
+ * itself confirms candidates in double precision.
  */
 class PointTree
 {
