@@ -56,7 +56,7 @@ inline double cotangentWeight(double cotAlpha, double cotBeta)
 	return std::max((cotAlpha + cotBeta) / 2, leastWeight);
 }
 
-/// cotangentWeight() of each half-edge's edge; #half-edges. Complexity: O(F).
+/// cotangentWeight() of each half-edge's edge. Complexity: O(F).
 inline std::vector<double> cotangentWeights(const SurfaceMesh& mesh)
 {
 	std::vector<double> cotangent(mesh.halfEdgeSlots(), 0), weight(mesh.halfEdgeSlots(), 0);

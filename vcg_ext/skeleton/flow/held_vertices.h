@@ -29,7 +29,7 @@ namespace vcg::tri::mcf {
  * A held vertex is a fixed one, a known value of the linear system (Sec. 4.4), from the start. A
  * collapse moves its neighbour onto it, never two held vertices onto each other; a split puts a held
  * vertex into a triangle whose corners are all held, so that a held triangle keeps its place too.
- * @param held  1 where a vertex is to be held, #V.
+ * @param held  1 where a vertex is to be held, one for each vertex.
  * @throws InvalidInput if there are not as many entries as vertices. Complexity: O(V).
  */
 inline void holdVertices(Stage& stage, const std::vector<char>& held)
@@ -44,7 +44,7 @@ inline void holdVertices(Stage& stage, const std::vector<char>& held)
 /**
  * Carries a selection over to a resampled surface: the vertex nearest to each selected one, and all
  * vertices on triangles whose corners are all selected.
- * @param selected  1 where a vertex of `surface` is selected, #V.
+ * @param selected  1 where a vertex of `surface` is selected, one for each.
  * @return 1 for such vertices of `resampled`; at least one if any vertex is selected.
  * @pre both are compact. @throws Cancelled
  * Complexity: O((V + R) log (V + R)) for R vertices of `resampled`.

@@ -124,7 +124,7 @@ inline std::vector<double> sheetnessOfComponent(
  * 1 : 2 about 0.55, with 1 : 4 about 0.8; between parallel walls it is above 0.9. Each component is looked at as if
  * the others were not there.
  * @param poles  one for each vertex; a vertex without one takes its neighbours' mean.
- * @return s, #V, in [0, 1]. @pre mesh is compact.
+ * @return s of each vertex, in [0, 1]. @pre mesh is compact.
  * @throws Cancelled. Complexity: O(V k) for k vertices around a ball. Same bits on any number of threads.
  */
 inline std::vector<double> sheetness(

@@ -71,7 +71,7 @@ struct Stage
 	bool converged = false;
 
 	/// Finds the frames. @param points the surface's. @param component of each of them.
-	/// @throws Cancelled. Complexity: O(#points).
+	/// @throws Cancelled. Complexity: linear in the points.
 	void findFrames(const std::vector<Point3d>& points, const std::vector<int>& component,
 		const Progress& progress)
 	{

@@ -35,7 +35,7 @@ inline std::vector<double> vertexAreas(
 
 /**
  * The vertices whose mark is `value`, by connected part, in the order of their lowest vertices.
- * @param marked  0 or 1, #V. @throws Cancelled. Complexity: O(V).
+ * @param marked  0 or 1 for each vertex. @throws Cancelled. Complexity: O(V).
  */
 inline std::vector<std::vector<int>> markedParts(const SurfaceMesh& mesh,
 	const std::vector<char>& marked, char value = 1, const Progress& progress = Progress())

@@ -24,7 +24,7 @@ namespace detail {
 
 /**
  * What find(mesh, poles, progress) tells of each vertex, asked of each component by itself.
- * @return #V. @pre mesh is compact. @throws Cancelled, and what find() throws.
+ * @return one value for each vertex. @pre mesh is compact. @throws Cancelled, and what find() throws.
  */
 template <class Find>
 std::vector<double> foundByComponent(const SurfaceMesh& mesh, const PoleSet& poles,

@@ -17,9 +17,9 @@ namespace vcg::tri::mcf {
 /// One inner medial pole for each vertex.
 struct PoleSet
 {
-	/// Centres, #V, mesh units; meaningless where the radius is negative.
+	/// Centres, one for each vertex, mesh units; meaningless where the radius is negative.
 	std::vector<Point3d> centre;
-	/// Distance from the vertex to its pole, #V, mesh units; -1 where the vertex has none.
+	/// Distance from the vertex to its pole, mesh units; -1 where the vertex has none.
 	std::vector<double> radius;
 
 	bool has(int v) const { return radius[v] >= 0; }

@@ -214,11 +214,11 @@ inline OsculatingNormals osculatingNormals(const SurfaceMesh& mesh, const Progre
  *
  * Without faces a ball that reaches out between two samples cannot be told from one that does not:
  * see shrinkingBallPoles() for poles that are inside for certain.
- * @param points   where the balls touch, #P, mesh units.
- * @param normals  outward unit normals of the points, #P.
- * @param against  the samples that bound the balls, #Q; `points` need not be among them.
+ * @param points   where the balls touch, mesh units.
+ * @param normals  outward unit normals, one for each point.
+ * @param against  the samples that bound the balls; `points` need not be among them.
  * @param delta    how deep a sample may lie inside a ball, mesh units, >= 0: the tolerance to noise.
- * @return poles, #P; radius -1 for a zero normal and for a ball that nothing bounds.
+ * @return a pole for each point; radius -1 for a zero normal and for a ball that nothing bounds.
  * @throws Cancelled
  * Complexity: O((P + Q) log Q) for samples of a surface. Same bits on any number of threads.
  */
@@ -243,10 +243,10 @@ inline PoleSet shrinkingBalls(const std::vector<Point3d>& points,
  * A ball whose centre cannot be seen from its vertex through the inside reached out through a coarse
  * triangle, or through a wall thinner than its tolerance: then it is searched again without tolerance,
  * and if that reaches out as well, there is no pole.
- * @param vertices  ids, #P, each at most once.
+ * @param vertices  ids, each at most once.
  * @param delta     as in shrinkingBalls().
  * @pre mesh is compact.
- * @return poles, #P, in the order of `vertices`; radius -1 where there is none.
+ * @return poles in the order of `vertices`; radius -1 where there is none.
  * @throws Cancelled
  * Complexity: O((P + V) log V). Same bits on any number of threads.
  */

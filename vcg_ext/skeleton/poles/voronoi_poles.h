@@ -323,7 +323,7 @@ inline bool isVoronoiVertex(const Point3d& c, const Tetrahedron& t,
  * which it can be seen through the inside of the shape; one that does not count makes way for the
  * next farthest of the cell.
  * @pre mesh is compact.
- * @return poles, #V; radius -1 where no Voronoi vertex of the cell counts.
+ * @return a pole for each vertex; radius -1 where no Voronoi vertex of the cell counts.
  * @throws SolverError, also in a program without Qhull; Cancelled.
  * Complexity: O(V log V) for samples of a surface.
  */

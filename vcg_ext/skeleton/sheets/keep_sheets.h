@@ -135,7 +135,7 @@ inline MesoSkeleton collapseAround(
  * The vertices of a stage that are sheets: those that the flow kept (see markSheets()), or if it was
  * not told to keep any, those of that kind (see vertexKinds()); parts of less than 0.5 % of the squared
  * diagonal, both walls counted, left out.
- * @return 1 for such vertices, #V. @throws Cancelled
+ * @return 1 for such vertices, else 0. @throws Cancelled
  */
 inline std::vector<char> sheetVertices(const Stage& stage, const Progress& progress = Progress())
 {
@@ -269,7 +269,7 @@ inline Stage stageOfComponent(const Stage& stage, int c, const SurfaceMesh& own,
  * fails alone becomes curves; where they fail together, the smallest does, and so on. The result always
  * has the topology of the shape: at worst it is a curve skeleton.
  *
- * @param sheet    1 for vertices of sheets, #V, e.g. from sheetVertices().
+ * @param sheet    1 for vertices of sheets, else 0, e.g. from sheetVertices().
  * @param epsilon  fraction of the diagonal.
  * @throws SolverError, Cancelled. Complexity: O(S V log V) for S sheets.
  * Source: ours.

@@ -444,7 +444,7 @@ inline std::vector<VertexKind> majority(
  * vertices within d of one of them all hold its ball of R - d and lie in that of R + d: if the first has
  * enough, all are sheets, if the second has not, all are curves.
  *
- * @return the kind of each vertex, #V. @pre stage.mesh is compact. @throws Cancelled
+ * @return the kind of each vertex. @pre stage.mesh is compact. @throws Cancelled
  * Complexity: O(V) where no edge is much shorter than epsilon. Source: ours; the paper shows kinds, but does
  * not say how to tell them.
  */

@@ -40,7 +40,7 @@ class IncompleteFactor
 public:
 	/**
 	 * @param M     symmetric, by rows.
-	 * @param shift added to M's diagonal, #rows, > 0.
+	 * @param shift added to M's diagonal, one for each row, > 0.
 	 * @throws Cancelled, and what the class says.
 	 */
 	IncompleteFactor(const SymmetricRows& M, const std::vector<float>& shift, float dropTolerance,

@@ -1,0 +1,50 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+# SPDX-License-Identifier: GPL-3.0-or-later
+#
+# The pages and the library's reference as a site in out/site; any warning is an error.
+
+set -euo pipefail
+# shellcheck source=lib/common.sh
+. "$(dirname "${BASH_SOURCE[0]}")/lib/common.sh"
+# shellcheck source=lib/python_env.sh
+. "$ROOT/scripts/lib/python_env.sh"
+
+case "${1:-}" in
+'') ;;
+-h | --help)
+	cat <<END
+usage: scripts/docs.sh
+
+Builds out/site: the pages by MkDocs, whose links are checked, and under reference/ the library's headers by
+Doxygen. Installs both if need be. Open out/site/index.html.
+END
+	exit 0
+	;;
+*) die "unknown option '$1'; see --help" ;;
+esac
+
+need_packages doxygen git
+python="$(python_env requirements-docs.txt)"
+out="$ROOT/out"
+pages="$out/pages"
+rm -rf "$pages" "$out/site" "$out/reference"
+mkdir -p "$pages"
+
+say "reference"
+cd "$ROOT"
+warnings="$( (
+	cat docs/Doxyfile
+	echo "OUTPUT_DIRECTORY = $out/reference"
+) | doxygen - 2>&1)" || die "$warnings"
+[ -z "$warnings" ] || die "Doxygen warns:
+$warnings"
+
+say "pages"
+# Links between the pages, and to programs and headers, stay what they are in the tree.
+git ls-files -z -- '*.md' docs examples vcg_ext filter_mcfskel/CMakeLists.txt meshes/README.md |
+	xargs -0 cp --parents -t "$pages"
+quietly "$python" -m mkdocs build --strict --config-file docs/mkdocs.yml || die "MkDocs: see above"
+mv "$out/reference/html" "$out/site/reference"
+rm -rf "$pages" "$out/reference"
+echo "$out/site/index.html"
