@@ -27,32 +27,46 @@ QStringList toLines(const std::vector<std::string>& texts)
 	return lines;
 }
 
-QStringList writeSwc(std::ostream& out, const mcf::CurveSkeleton& skeleton, const std::string&)
+QStringList writeSwc(
+	std::ostream& out, const mcf::CurveSkeleton& skeleton, const SkeletonContext& context)
 {
-	return toLines(mcf::writeSwc(out, skeleton).warnings);
+	return toLines(mcf::writeSwc(out, skeleton, context.swc).warnings);
 }
 
-QStringList writeCg(std::ostream& out, const mcf::CurveSkeleton& skeleton, const std::string&)
+QStringList writeCg(std::ostream& out, const mcf::CurveSkeleton& skeleton, const SkeletonContext&)
 {
 	mcf::writeCg(out, skeleton);
 	return {};
 }
 
 QStringList writeGraphml(
-	std::ostream& out, const mcf::CurveSkeleton& skeleton, const std::string& surfaceName)
+	std::ostream& out, const mcf::CurveSkeleton& skeleton, const SkeletonContext& context)
 {
-	mcf::writeGraphml(out, skeleton, surfaceName);
+	mcf::writeGraphml(out, skeleton, context.surfaceName);
 	return {};
 }
 
 QStringList writeJson(
-	std::ostream& out, const mcf::CurveSkeleton& skeleton, const std::string& surfaceName)
+	std::ostream& out, const mcf::CurveSkeleton& skeleton, const SkeletonContext& context)
 {
-	mcf::writeJson(out, skeleton, surfaceName);
+	mcf::writeJson(out, skeleton, context.surfaceName);
 	return {};
 }
 
-QStringList writePly(std::ostream& out, const mcf::CurveSkeleton& skeleton, const std::string&)
+QStringList writeVtp(std::ostream& out, const mcf::CurveSkeleton& skeleton, const SkeletonContext&)
+{
+	mcf::writeVtp(out, skeleton);
+	return {};
+}
+
+QStringList writeGlb(
+	std::ostream& out, const mcf::CurveSkeleton& skeleton, const SkeletonContext& context)
+{
+	mcf::writeGlb(out, skeleton, context.surface, context.boneTolerance, context.surfaceName);
+	return {};
+}
+
+QStringList writePly(std::ostream& out, const mcf::CurveSkeleton& skeleton, const SkeletonContext&)
 {
 	mcf::writeSkeletonPly(out, skeleton);
 	return {};
@@ -100,13 +114,21 @@ const std::vector<SkeletonFormat>& skeletonFormats()
 		{"cg", "Curve graph", true, writeCg, mcf::readCg},
 		{"graphml", "GraphML of a curve skeleton", true, writeGraphml, nullptr},
 		{"json", "JSON graph of a curve skeleton", false, writeJson, nullptr},
+		{"vtp", "VTK PolyData of a curve skeleton", true, writeVtp, nullptr},
+		{"glb", "glTF of a surface with an armature", false, writeGlb, nullptr, true},
 		{"ply", "PLY with edges", false, writePly, nullptr},
 	};
 	return formats;
 }
 
-QStringList writeSkeleton(const QString& file, const mcf::CurveSkeleton& skeleton,
-	const std::vector<int>& sources, const QString& surfaceName)
+bool needsSurface(const QString& file)
+{
+	const SkeletonFormat* format = formatOf(file);
+	return format && format->needsSurface;
+}
+
+QStringList writeSkeleton(
+	const QString& file, const mcf::CurveSkeleton& skeleton, const SkeletonContext& context)
 {
 	const SkeletonFormat* format = formatOf(file);
 	if (!format || !format->write) {
@@ -117,22 +139,20 @@ QStringList writeSkeleton(const QString& file, const mcf::CurveSkeleton& skeleto
 							.arg(file, known.join(", "))
 							.toStdString());
 	}
-	mcf::CurveSkeleton copy = skeleton;
-	copy.node = sources;
 	QStringList warnings;
-	writeFile(file, [&](std::ostream& out) {
-		warnings =
-			format->write(out, copy, sources.empty() ? std::string() : surfaceName.toStdString());
-	});
+	writeFile(file, [&](std::ostream& out) { warnings = format->write(out, skeleton, context); });
 	return warnings;
 }
 
 FileOutcome saveSkeleton(const QString& file, const MeshModel& layer)
 {
 	return guarded(file, [&](FileOutcome& outcome) {
-		const CurveLayer curve = readCurve(layer);
-		outcome.warnings =
-			writeSkeleton(file, curve.skeleton, curve.nodeOfLayerVertex(), curve.surfaceName);
+		CurveLayer curve = readCurve(layer);
+		SkeletonContext context;
+		curve.skeleton.node = curve.nodeOfLayerVertex();
+		if (!curve.skeleton.node.empty())
+			context.surfaceName = curve.surfaceName.toStdString();
+		outcome.warnings = writeSkeleton(file, curve.skeleton, context);
 	});
 }
 

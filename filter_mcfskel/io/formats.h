@@ -20,9 +20,22 @@
 
 #include <istream>
 #include <ostream>
+#include <string>
 #include <vector>
 
 namespace mcfskel {
+
+/// What a file is made from, beside the skeleton with its correspondence.
+struct SkeletonContext
+{
+	/// Of the surface's layer, in UTF-8.
+	std::string surfaceName;
+	/// The surface; without faces if it is not at hand.
+	vcg::tri::mcf::SkinnedSurface surface;
+	vcg::tri::mcf::SwcOptions swc;
+	/// How far the bones of an armature may be from the curve, mesh units; 0: the default.
+	double boneTolerance = 0;
+};
 
 struct SkeletonFormat
 {
@@ -33,9 +46,11 @@ struct SkeletonFormat
 	bool offered;
 	/// Null if it is not written; returns warnings.
 	QStringList (*write)(
-		std::ostream&, const vcg::tri::mcf::CurveSkeleton&, const std::string& surfaceName);
+		std::ostream&, const vcg::tri::mcf::CurveSkeleton&, const SkeletonContext&);
 	/// Null if it is not read.
 	vcg::tri::mcf::SkeletonFile (*read)(std::istream&);
+	/// Whether it holds the surface as well.
+	bool needsSurface = false;
 
 	bool isWritten() const { return offered && write; }
 	bool isRead() const { return offered && read; }
@@ -49,12 +64,16 @@ constexpr int writtenElements = vcg::tri::io::Mask::IOM_VERTCOORD
 
 /**
  * Writes a skeleton to a file of the format that its name ends with.
- * @param sources for each vertex of the surface's layer its node; empty: not known.
+ * @param skeleton its correspondence counts the vertices of the surface's layer, or of `context.surface`
+ *                 where the format needs that.
  * @return warnings, a sentence each.
  * @throws FileError, InvalidInput
  */
 QStringList writeSkeleton(const QString& file, const vcg::tri::mcf::CurveSkeleton& skeleton,
-	const std::vector<int>& sources, const QString& surfaceName);
+	const SkeletonContext& context);
+
+/// Whether the format that a file's name ends with holds the surface as well.
+bool needsSurface(const QString& file);
 
 /// How a reading or writing ended. No exception leaves the two functions below.
 struct FileOutcome

@@ -5,6 +5,7 @@
 import json
 import os
 import re
+import struct
 import subprocess
 import sys
 import warnings
@@ -123,6 +124,33 @@ class TestSwc:
         assert scalars(layers.current_mesh(), "mcfskel_radius").tolist() == [5, 1, 0.5, 1]
 
 
+    @pytest.mark.parametrize("soma", ["none", "auto", "thickest"])
+    def test_one_root_a_component_and_one_soma_for_morphio(self, tmp_path, soma):
+        """A ball with a stalk beside a body of its own: two components, one of them with a soma."""
+        (tmp_path / "cell.swc").write_text("".join(
+            f"{i} 0 {i} 0 0 {8 if i == 1 else 1} {i - 1 if i > 1 else -1}\n" for i in range(1, 20))
+            + "20 0 0 90 0 1 -1\n21 0 9 90 0 1 20\n")
+        layers = pymeshlab.MeshSet()
+        layers.load_new_mesh(str(tmp_path / "cell.swc"))
+        path = tmp_path / "s.swc"
+        layers.apply_filter("save_skeleton_mcf", file=str(path), soma=soma, scale=1000.0, units="nm")
+        rows = np.loadtxt(path)
+        assert "lengths in nm, mesh units times 1000" in path.read_text()
+        assert (rows[:, 6] == -1).sum() == 2
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            neuron = morphio.Morphology(str(path))
+        if soma == "none":
+            assert (rows[:, 1] == 0).all()
+            assert neuron.soma_type == morphio.SomaType.SOMA_UNDEFINED
+        else:
+            assert rows[rows[:, 1] == 1].tolist() == [[1, 1, 1000, 0, 0, 8000, -1]]
+            assert neuron.soma_type == morphio.SomaType.SOMA_SINGLE_POINT
+            assert neuron.soma.diameters.tolist() == [16000]
+            assert {s.type for s in neuron.iter()} == {morphio.SectionType.basal_dendrite}
+        assert neuron.points[:, 0].max() == 19000
+
+
 class TestCg:
     def test_round_trip_is_exact(self, plate, skeleton, tmp_path):
         layers, _ = plate
@@ -216,6 +244,122 @@ class TestGraphs:
         sources = [node["surface_vertices"] for node in content["nodes"]]
         expected = sources_of(layers.mesh(0))
         assert sources[:len(expected)] == expected
+
+
+class Posed:
+    """A .glb read by itself: its surface, its joints, and the surface as they move it."""
+
+    def __init__(self, path) -> None:
+        content = path.read_bytes()
+        magic, version, size, json_size, kind = struct.unpack_from("<4sIII4s", content)
+        assert (magic, version, size, kind) == (b"glTF", 2, len(content), b"JSON")
+        self.gltf = json.loads(content[20:20 + json_size])
+        self.binary = content[28 + json_size:]
+        primitive = self.gltf["meshes"][0]["primitives"][0]
+        of = primitive["attributes"]
+        self.vertices, self.joints, self.weights = (
+            self.array(of[name]) for name in ("POSITION", "JOINTS_0", "WEIGHTS_0"))
+        self.faces = self.array(primitive["indices"]).reshape(-1, 3)
+        skin = self.gltf["skins"][0]
+        self.skin_joints = skin["joints"]
+        self.inverse = self.array(skin["inverseBindMatrices"]).reshape(-1, 4, 4).transpose(0, 2, 1)
+
+    def array(self, index: int) -> np.ndarray:
+        accessor = self.gltf["accessors"][index]
+        view = self.gltf["bufferViews"][accessor["bufferView"]]
+        kind = {5123: "<u2", 5125: "<u4", 5126: "<f4"}[accessor["componentType"]]
+        width = {"SCALAR": 1, "VEC3": 3, "VEC4": 4, "MAT4": 16}[accessor["type"]]
+        values = np.frombuffer(self.binary, kind, accessor["count"] * width, view["byteOffset"])
+        return values.reshape(-1, width) if width > 1 else values
+
+    def matrices(self, turned: dict[int, np.ndarray]) -> np.ndarray:
+        """Of all nodes, with some of them turned in place."""
+        nodes = self.gltf["nodes"]
+        result = np.zeros((len(nodes), 4, 4))
+
+        def place(node: int, above: np.ndarray) -> None:
+            local = np.eye(4)
+            local[:3, 3] = nodes[node].get("translation", [0, 0, 0])
+            local[:3, :3] = turned.get(node, np.eye(3))
+            result[node] = above @ local
+            for child in nodes[node].get("children", []):
+                place(child, result[node])
+
+        for node in self.gltf["scenes"][0]["nodes"]:
+            place(node, np.eye(4))
+        return result
+
+    def posed(self, turned: dict[int, np.ndarray]) -> np.ndarray:
+        of_joint = self.matrices(turned)[self.skin_joints] @ self.inverse
+        blend = np.einsum("vk,vkij->vij", self.weights, of_joint[self.joints])
+        return np.einsum("vij,vj->vi", blend, np.column_stack([self.vertices, np.ones(len(self.vertices))])
+                         )[:, :3]
+
+
+@pytest.fixture(scope="module")
+def limbs(tmp_path_factory):
+    """The armature of an animal: eight limbs and a body."""
+    layers = opened("animal450")
+    layers.apply_filter(FULL)
+    path = tmp_path_factory.mktemp("glb") / "animal.glb"
+    layers.apply_filter("save_skeleton_mcf", file=str(path), surface=0)
+    return layers, Posed(path)
+
+
+class TestGlb:
+    def test_the_surface_is_that_of_the_layer(self, limbs):
+        layers, armature = limbs
+        assert np.array_equal(armature.vertices, np.float32(layers.mesh(0).vertex_matrix()))
+        assert np.array_equal(armature.faces, layers.mesh(0).face_matrix())
+
+    def test_another_reader_finds_the_surface(self, limbs, tmp_path):
+        layers, armature = limbs
+        layers.apply_filter("save_skeleton_mcf", file=str(tmp_path / "a.glb"), surface=0)
+        mesh = trimesh.load(tmp_path / "a.glb", force="mesh", process=False)
+        assert mesh.is_watertight and len(mesh.vertices) == len(armature.vertices)
+
+    def test_at_rest_nothing_moves(self, limbs):
+        layers, armature = limbs
+        size = np.ptp(armature.vertices, axis=0).max()
+        assert np.abs(armature.posed({}) - armature.vertices).max() < 1e-5 * size
+
+    def test_no_vertex_is_left_behind(self, limbs):
+        """Whatever moves all roots moves every vertex, and weights add up to one."""
+        _, armature = limbs
+        assert np.allclose(armature.weights.sum(axis=1), 1, atol=1e-6)
+        assert armature.joints.max() < len(armature.skin_joints)
+        turn = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
+        nodes = armature.gltf["nodes"]
+        root, = (n for n in nodes if n["name"] == "armature")
+        moved = armature.posed({child: turn for child in root["children"]})
+        centre = armature.matrices({})[root["children"][0]][:3, 3]
+        expected = (armature.vertices - centre) @ turn.T + centre
+        assert np.abs(moved - expected).max() < 1e-4 * np.ptp(armature.vertices, axis=0).max()
+
+    def test_a_bone_that_turns_bends_the_surface_smoothly(self, limbs):
+        """Each joint in turn by 30 degrees: no edge of the surface is torn, nothing far away moves."""
+        _, armature = limbs
+        angle = np.radians(30)
+        turn = np.array([[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0],
+                         [0, 0, 1]])
+        edges = np.unique(np.sort(armature.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0)
+        lengths = np.linalg.norm(np.subtract(*armature.vertices[edges].transpose(1, 0, 2)), axis=1)
+        size = np.ptp(armature.vertices, axis=0).max()
+        moving = 0
+        for joint in armature.skin_joints:
+            posed = armature.posed({joint: turn})
+            after = np.linalg.norm(np.subtract(*posed[edges].transpose(1, 0, 2)), axis=1)
+            assert (np.abs(after - lengths) < 0.15 * size).all()
+            moving += bool((np.linalg.norm(posed - armature.vertices, axis=1) > 1e-3 * size).any())
+        assert moving > len(armature.skin_joints) / 2
+
+    def test_without_its_surface_it_cannot_be(self, tmp_path):
+        layers = pymeshlab.MeshSet()
+        (tmp_path / "s.cg").write_text("# D:3 NV:2 NE:1\nv 0 0 0\nv 1 0 0\ne 1 2\n")
+        layers.load_new_mesh(str(tmp_path / "s.cg"))
+        with pytest.raises(pymeshlab.PyMeshLabException, match="surface"):
+            layers.apply_filter("save_skeleton_mcf", file=str(tmp_path / "s.glb"))
+        assert not (tmp_path / "s.glb").exists()
 
 
 class TestPly:

@@ -8,11 +8,13 @@
 #define VCG_MCF_SKELETON_FILES_H
 
 #include <skeleton/io/cg.h>
+#include <skeleton/io/glb.h>
 #include <skeleton/io/graphml.h>
 #include <skeleton/io/json.h>
 #include <skeleton/io/skeleton_file.h>
 #include <skeleton/io/skeleton_ply.h>
 #include <skeleton/io/stage_ply.h>
 #include <skeleton/io/swc.h>
+#include <skeleton/io/vtp.h>
 
 #endif

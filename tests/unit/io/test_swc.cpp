@@ -180,3 +180,76 @@ TEST(Swc, DamagedFilesAreReadOrRefused)
 		}
 	});
 }
+
+namespace {
+
+struct SwcRow
+{
+	int id, type, parent;
+	double x, y, z, radius;
+};
+
+std::vector<SwcRow> rowsOf(const std::string& text)
+{
+	std::vector<SwcRow> rows;
+	std::istringstream lines(text);
+	for (std::string line; std::getline(lines, line);) {
+		if (line.front() == '#')
+			continue;
+		SwcRow row;
+		std::istringstream(line) >> row.id >> row.type >> row.x >> row.y >> row.z >> row.radius
+			>> row.parent;
+		rows.push_back(row);
+	}
+	return rows;
+}
+
+std::string swc(const CurveSkeleton& skeleton, const SwcOptions& options)
+{
+	return written([&](std::ostream& out) { writeSwc(out, skeleton, options); });
+}
+
+} // namespace
+
+TEST(Swc, OneSomaWhereTheRadiusSaysSo)
+{
+	CurveSkeleton s = ringWithTailAndY();
+	const auto somas = [&](SwcSoma rule) {
+		std::vector<double> radii;
+		for (const SwcRow& row : rowsOf(swc(s, {1, "", rule})))
+			if (row.type == 1) {
+				EXPECT_EQ(row.parent, -1);
+				radii.push_back(row.radius);
+			}
+		return radii;
+	};
+	EXPECT_EQ(somas(SwcSoma::None), std::vector<double>());
+	EXPECT_EQ(somas(SwcSoma::Thickest), std::vector<double> {0.9});
+	// The median of its tree, seven nodes, is 0.3.
+	EXPECT_EQ(somas(SwcSoma::Auto), std::vector<double> {0.9});
+	s.radius[2] = 0.71; // more than any other, and more than twice 0.3
+	EXPECT_EQ(somas(SwcSoma::Auto), std::vector<double> {0.71});
+	s.radius[5] = 0.36;
+	EXPECT_EQ(somas(SwcSoma::Auto), std::vector<double>());
+	for (const SwcRow& row : rowsOf(swc(s, {1, "", SwcSoma::Thickest})))
+		EXPECT_EQ(row.type, row.radius == 0.71 ? 1 : 3);
+	for (const SwcRow& row : rowsOf(swc(s, {})))
+		EXPECT_EQ(row.type, 0);
+}
+
+TEST(Swc, ScaleAndUnits)
+{
+	const CurveSkeleton s = ringWithTailAndY();
+	const std::string text = swc(s, {1000, "nm", SwcSoma::None});
+	EXPECT_EQ(
+		text.substr(0, text.find('\n')), "# Curve skeleton, lengths in nm, mesh units times 1000");
+	const std::vector<SwcRow> rows = rowsOf(text), plain = rowsOf(swc(s, {}));
+	ASSERT_EQ(rows.size(), plain.size());
+	for (size_t i = 0; i < rows.size(); ++i) {
+		EXPECT_DOUBLE_EQ(rows[i].x, 1000 * plain[i].x);
+		EXPECT_DOUBLE_EQ(rows[i].z, 1000 * plain[i].z);
+		EXPECT_DOUBLE_EQ(rows[i].radius, 1000 * plain[i].radius);
+	}
+	for (double scale : {0.0, -1.0, 1e37, std::numeric_limits<double>::quiet_NaN()})
+		EXPECT_THROW(swc(s, {scale, "", SwcSoma::None}), InvalidInput);
+}

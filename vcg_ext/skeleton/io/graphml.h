@@ -36,8 +36,8 @@ inline std::string xmlText(const std::string& text)
 /**
  * Writes a skeleton as GraphML: nodes 0, 1, ... with the numbers x, y, z and radius (mesh units) and
  * the text surface_vertices (ids from 0, blanks between); edges with their length;
- * the graph with the name of the surface. What is not known
- * is left out.
+ * the graph with the name of the surface and, as surface_vertices, how many vertices it has. What is not
+ * known is left out.
  * @param surfaceName what the mesh is called whose vertices surface_vertices counts, in UTF-8.
  * @throws InvalidInput: see requireWritable().
  */
@@ -64,9 +64,17 @@ inline void writeGraphml(
 	key("length", "edge", "double");
 	if (!surfaceName.empty())
 		key("surface", "graph", "string");
+	if (hasSources) {
+		out << "  <key id=\"surface_vertex_count\" for=\"graph\" attr.name=\"surface_vertices\" "
+			   "attr.type=\"int\"/>\n";
+	}
 	out << "  <graph id=\"skeleton\" edgedefault=\"undirected\">\n";
 	if (!surfaceName.empty()) {
 		data("surface", detail::xmlText(surfaceName));
+		out << '\n';
+	}
+	if (hasSources) {
+		data("surface_vertex_count", std::to_string(skeleton.node.size()));
 		out << '\n';
 	}
 

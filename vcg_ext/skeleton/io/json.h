@@ -33,8 +33,8 @@ inline std::string jsonText(const std::string& text)
 
 /**
  * Writes a skeleton as JSON: `nodes` with id, position (three numbers), radius and surface_vertices
- * (ids from 0); `edges` with source, target and length; `graph` with the counts of statistics() and the name of
- * the surface.
+ * (ids from 0); `edges` with source, target and length; `graph` with the counts of statistics(), the name of
+ * the surface and how many vertices it has.
  * Lengths are mesh units; what is not known is left out.
  * @param surfaceName what the mesh is called whose vertices surface_vertices counts, in UTF-8.
  * @throws InvalidInput: see requireWritable().
@@ -47,6 +47,8 @@ inline void writeJson(
 	out << "{\"directed\": false, \"multigraph\": false,\n\"graph\": {";
 	if (!surfaceName.empty())
 		out << "\"surface\": " << detail::jsonText(surfaceName) << ", ";
+	if (!skeleton.node.empty())
+		out << "\"surface_vertices\": " << skeleton.node.size() << ", ";
 	out << "\"components\": " << s.components << ", \"cycles\": " << s.cycles
 		<< ", \"branches\": " << s.branches << ", \"terminals\": " << s.terminals
 		<< ", \"junctions\": " << s.junctions << ", \"length\": " << numberText(s.length)

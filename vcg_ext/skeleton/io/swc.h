@@ -15,6 +15,8 @@
 
 #include <skeleton/graph/spanning_forest.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <limits>
 #include <map>
 #include <ostream>
@@ -34,25 +36,88 @@ struct SwcReport
 	std::vector<std::string> warnings;
 };
 
+/// Which node is the soma, the body of a neuron.
+enum class SwcSoma {
+	None,
+	/// The thickest node, if it is at least twice as thick as the median of its tree's nodes.
+	Auto,
+	/// The thickest node.
+	Thickest
+};
+
+/// How a skeleton becomes a neuron.
+struct SwcOptions
+{
+	/// What every length is multiplied with.
+	double scale = 1;
+	/// The unit after that, such as "um", for the file's first line; empty: not known.
+	std::string units;
+	SwcSoma soma = SwcSoma::None;
+};
+
+namespace detail {
+
+/// The root that is the soma; -1 for none. Readers know one soma in a file.
+inline int swcSoma(const CurveSkeleton& skeleton, const SpanningForest& forest, SwcSoma rule)
+{
+	if (rule == SwcSoma::None || skeleton.radius.empty())
+		return -1;
+	int soma = -1;
+	for (int v : forest.order)
+		if (forest.parent[size_t(v)] < 0
+			&& (soma < 0 || skeleton.radius[size_t(v)] > skeleton.radius[size_t(soma)]))
+			soma = v;
+	if (rule == SwcSoma::Thickest || soma < 0)
+		return soma;
+	std::vector<double> radii;
+	bool inTree = false; // trees follow one after the other
+	for (int v : forest.order) {
+		if (forest.parent[size_t(v)] < 0)
+			inTree = v == soma;
+		if (inTree)
+			radii.push_back(skeleton.radius[size_t(v)]);
+	}
+	const auto median = radii.begin() + std::ptrdiff_t(radii.size() / 2);
+	std::nth_element(radii.begin(), median, radii.end());
+	return skeleton.radius[size_t(soma)] >= 2 * *median ? soma : -1;
+}
+
+} // namespace detail
+
 /**
- * Writes a skeleton as SWC. Ids run from 1, each node after its parent; the type is 0, undefined.
+ * Writes a skeleton as SWC. Ids run from 1, each node after its parent; each component has one root, with the
+ * parent -1. The type is 0, undefined; where there is a soma it is 1 there and 3, dendrite, elsewhere.
  *
  * Each cycle is cut at its thinnest edge, see spanningForest(); the cuts are also listed in the file's
  * comments. A radius that is not known is written as 0.
  * @return the cuts, the ids and the warnings.
- * @throws InvalidInput: see requireWritable().
+ * @throws InvalidInput: see requireWritable(); a scale that is not above 0, or that makes a length too large.
  */
-inline SwcReport writeSwc(std::ostream& out, const CurveSkeleton& skeleton)
+inline SwcReport writeSwc(
+	std::ostream& out, const CurveSkeleton& skeleton, const SwcOptions& options = {})
 {
 	requireWritable(skeleton);
+	if (!(options.scale > 0 && options.scale <= maxCoordinate))
+		throw InvalidInput("The scale must be above 0.");
+	for (size_t v = 0; v < skeleton.position.size(); ++v)
+		if (!isUsablePlace(skeleton.position[v] * options.scale)
+			|| (!skeleton.radius.empty() && !isUsableRadius(skeleton.radius[v] * options.scale)))
+			throw InvalidInput("Node " + std::to_string(v) + " times the scale is beyond "
+				+ numberText(maxCoordinate) + ".");
 	const SpanningForest forest = spanningForest(skeleton);
+	const int soma = detail::swcSoma(skeleton, forest, options.soma);
 	SwcReport report;
 	report.cuts = forest.cuts;
 	report.idOfNode.resize(skeleton.position.size());
 	for (size_t i = 0; i < forest.order.size(); ++i)
 		report.idOfNode[size_t(forest.order[i])] = int(i) + 1;
 
-	out << "# Curve skeleton, lengths in mesh units\n";
+	out << "# Curve skeleton, lengths in "
+		<< (options.units.empty() ? "mesh units" : options.units);
+	if (options.scale != 1)
+		out << (options.units.empty() ? "" : ", mesh units") << " times "
+			<< numberText(options.scale);
+	out << '\n';
 	for (const auto& [a, b] : report.cuts) {
 		const std::string cut = std::to_string(report.idOfNode[size_t(a)]) + " "
 			+ std::to_string(report.idOfNode[size_t(b)]);
@@ -64,11 +129,13 @@ inline SwcReport writeSwc(std::ostream& out, const CurveSkeleton& skeleton)
 		report.warnings.push_back("The radius is not known: it is written as 0.");
 	out << "# id type x y z radius parent\n";
 	for (int v : forest.order) {
-		const Point3d& p = skeleton.position[size_t(v)];
-		const double radius = skeleton.radius.empty() ? 0 : skeleton.radius[size_t(v)];
+		const Point3d p = skeleton.position[size_t(v)] * options.scale;
+		const double radius =
+			skeleton.radius.empty() ? 0 : skeleton.radius[size_t(v)] * options.scale;
+		const int type = soma < 0 ? 0 : v == soma ? 1 : 3;
 		const int parent = forest.parent[size_t(v)];
-		out << report.idOfNode[size_t(v)] << " 0 " << numberText(p[0]) << ' ' << numberText(p[1])
-			<< ' ' << numberText(p[2]) << ' ' << numberText(radius) << ' '
+		out << report.idOfNode[size_t(v)] << ' ' << type << ' ' << numberText(p[0]) << ' '
+			<< numberText(p[1]) << ' ' << numberText(p[2]) << ' ' << numberText(radius) << ' '
 			<< (parent < 0 ? -1 : report.idOfNode[size_t(parent)]) << '\n';
 	}
 	return report;
