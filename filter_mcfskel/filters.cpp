@@ -3,6 +3,7 @@
 
 #include "filters.h"
 
+#include "cancel_flag.h"
 #include "filters/all_filters.h"
 #include "layers/layers.h"
 
@@ -24,7 +25,8 @@ namespace {
 vcg::tri::mcf::Progress hostProgress(const HostCallback& callback)
 {
 	using Clock = std::chrono::steady_clock;
-	if (!callback)
+	const volatile int* const cancel = cancelFlag();
+	if (!callback && !cancel)
 		return {};
 	struct Last
 	{
@@ -33,13 +35,15 @@ vcg::tri::mcf::Progress hostProgress(const HostCallback& callback)
 	};
 	// Shared by all windows into the bar, which copy the function.
 	return vcg::tri::mcf::Progress(
-		[callback, last = std::make_shared<Last>()](int percent, const char* what) {
+		[callback, cancel, last = std::make_shared<Last>()](int percent, const char* what) {
+			if (cancel && *cancel)
+				return false;
 			percent = std::max(percent, last->percent);
 			const auto now = Clock::now();
 			if (percent == last->percent && now < last->time + std::chrono::milliseconds(50))
 				return true;
 			*last = {percent, now};
-			return callback(percent, what);
+			return !callback || callback(percent, what);
 		});
 }
 

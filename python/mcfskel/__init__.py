@@ -3,11 +3,13 @@
 """Curve skeletons of surfaces by mean curvature flow.
 
 Importing this package loads the plugin into pymeshlab and makes its filters methods of
-``pymeshlab.MeshSet``; :data:`FILTERS` lists them. :func:`skeletonize` goes from arrays to a
+``pymeshlab.MeshSet``; :data:`FILTERS` lists them. :func:`skeletonize` goes from a mesh to a
 :class:`Skeleton` in one call.
 """
 
 from ._plugin import FILTERS, PLUGIN
-from ._skeleton import Skeleton, SkeletonError, load, skeletonize
+from ._run import SkeletonError, SkeletonWarning
+from ._skeleton import Skeleton, Surface, check_options, load, skeletonize
 
-__all__ = ["FILTERS", "PLUGIN", "Skeleton", "SkeletonError", "load", "skeletonize"]
+__all__ = ["FILTERS", "PLUGIN", "Skeleton", "SkeletonError", "SkeletonWarning", "Surface",
+           "check_options", "load", "skeletonize"]

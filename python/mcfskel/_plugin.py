@@ -2,6 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Loads the plugin once and binds its filters."""
 
+from __future__ import annotations
+
+import ctypes
 import os
 from pathlib import Path
 
@@ -27,3 +30,20 @@ def _load() -> list[str]:
 
 #: The names of the plugin's filters, each a method of ``pymeshlab.MeshSet`` now.
 FILTERS = _load()
+
+
+def _library() -> ctypes.CDLL | None:
+    """The plugin's functions; None if another file of the plugin was loaded before."""
+    try:  # the one that is loaded, never another copy
+        return ctypes.CDLL(str(PLUGIN), mode=getattr(os, "RTLD_NOLOAD", 0) | getattr(os, "RTLD_NOW", 0))
+    except OSError:
+        return None
+
+
+_LIBRARY = _library()
+
+
+def cancel_when(flag: ctypes.c_int | None) -> None:
+    """The filters that this thread runs from now on end as soon as the flag is not 0; None: never."""
+    if _LIBRARY is not None and hasattr(_LIBRARY, "mcfskel_cancel_when"):
+        _LIBRARY.mcfskel_cancel_when(ctypes.byref(flag) if flag is not None else None)

@@ -1,33 +1,45 @@
 # SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From arrays to a skeleton, and from a skeleton to files and graphs."""
+"""From a mesh to a skeleton, and from a skeleton to files, graphs and pictures."""
 
 from __future__ import annotations
 
 import os
 import warnings
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 import pymeshlab
 
-from . import _plugin  # noqa: F401 (loads the filters)
+from . import _branches, _convert, _files, _picture, _plot
+from ._run import (INT_MAX, Length, SkeletonError, SkeletonWarning, apply, filter_options,
+                   open_mesh)
 
 if TYPE_CHECKING:
+    import navis
     import networkx
+    import pyvista
+    import trimesh
 
 FILTER = "generate_curve_skeleton_mcf"
-Length = float | str | pymeshlab.PercentageValue | pymeshlab.PureValue
 
 
-class SkeletonError(ValueError):
-    """The mesh, an option or a file is not right; the text says what, how many, and what cures it."""
+class Surface(NamedTuple):
+    """A triangle mesh: vertices, (V, 3), and faces, (F, 3)."""
+
+    vertices: npt.NDArray[np.float64]
+    faces: npt.NDArray[np.int32]
 
 
-@dataclass(frozen=True, eq=False)
+def _no_faces() -> npt.NDArray[np.int64]:
+    return np.empty((0, 3), np.int64)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Skeleton:
     """A curve skeleton: a graph in space, and how the surface belongs to it.
 
@@ -36,15 +48,64 @@ class Skeleton:
         edges: Pairs of nodes, (E, 2), lower node first, ascending.
         radius: Local thickness at each node, (N,), in the mesh's units.
         correspondence: For each vertex of the mesh the node that it has merged into, (V,); -1 for a
-            vertex of no face. Empty for a skeleton from a file.
-        results: The numbers of the filter: iterations, converged, components, cycles, ...
+            vertex of no face. Empty if it is not known, as for a skeleton from a .swc file.
+        results: The numbers of the filter: iterations, converged, components, cycles, ... Those that
+            begin with seconds_ are seconds; skeleton_length is in the mesh's units; those that end
+            with _fraction are parts of 1.
+        faces: The triangles of the sheets as nodes, (F, 3), if ``keep_sheets`` was set and there are
+            any; their sides are not among ``edges``.
+        surface: The mesh that the skeleton was made from, for pictures; None after ``load()``.
     """
 
     nodes: npt.NDArray[np.float64]
     edges: npt.NDArray[np.int64]
     radius: npt.NDArray[np.float64]
     correspondence: npt.NDArray[np.int64]
-    results: dict[str, float] = field(default_factory=dict)
+    results: dict[str, Any] = field(default_factory=dict)
+    faces: npt.NDArray[np.int64] = field(default_factory=_no_faces)
+    surface: Surface | None = None
+
+    def __repr__(self) -> str:
+        counts = [(len(self.nodes), "node"), (len(self.edges), "edge"),
+                  (len(self.branches), "branch"), (len(self.faces), "face")]
+        texts = [f"{count} {name}{'' if count == 1 else 'es' if name == 'branch' else 's'}"
+                 for count, name in counts if count or name != "face"]
+        return f"<mcfskel.Skeleton: {', '.join(texts)}, length {self.lengths().sum():.4g}>"
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the skeleton inside its surface, and the counts."""
+        text = repr(self)[1:-1].replace("mcfskel.", "")
+        if len(self.radius):
+            text += f", radius {self.radius.min():.3g} to {self.radius.max():.3g}"
+        return f"<div>{_picture.svg(self)}<br><small>{text}</small></div>"
+
+    @cached_property
+    def degree(self) -> npt.NDArray[np.int64]:
+        """The number of edges at each node, (N,)."""
+        return np.bincount(self.edges.ravel(), minlength=len(self.nodes))
+
+    @property
+    def _on_sheet(self) -> npt.NDArray[np.bool_]:
+        return np.bincount(self.faces.ravel(), minlength=len(self.nodes)) > 0
+
+    @property
+    def leafs(self) -> npt.NDArray[np.int64]:
+        """The tips: nodes with one edge, none of them on a sheet."""
+        return np.flatnonzero((self.degree == 1) & ~self._on_sheet)
+
+    @property
+    def junctions(self) -> npt.NDArray[np.int64]:
+        """The nodes with three edges or more."""
+        return np.flatnonzero(self.degree >= 3)
+
+    @cached_property
+    def branches(self) -> list[npt.NDArray[np.int64]]:
+        """The branches as chains of nodes, from tip or junction to tip or junction.
+
+        A cycle without junctions ends with the node that it begins with. They are in the order of the
+        node with which they begin, the lower one of their ends.
+        """
+        return _branches.branches(len(self.nodes), self.edges)
 
     def surface_vertices(self) -> list[npt.NDArray[np.int64]]:
         """For each node the vertices of the mesh that have merged into it, ascending."""
@@ -57,174 +118,182 @@ class Skeleton:
         ends = self.nodes[self.edges]
         return np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
 
-    def to_networkx(self) -> networkx.Graph:
-        """The skeleton as a graph: nodes with position, radius and surface_vertices, edges with length."""
-        import networkx
+    def to_networkx(self, *, arrays: bool = False) -> networkx.Graph:
+        """The skeleton as a graph, sides of sheets included; the results are the graph's attributes.
 
-        graph = networkx.Graph(**self.results)
-        sources = self.surface_vertices()
-        for node, position in enumerate(self.nodes.tolist()):
-            graph.add_node(node, position=tuple(position), radius=float(self.radius[node]),
-                           surface_vertices=sources[node].tolist())
-        for (a, b), length in zip(self.edges.tolist(), self.lengths().tolist()):
-            graph.add_edge(a, b, length=length)
-        return graph
+        Nodes have x, y, z, radius and, where the correspondence is known, surface_vertices, ids with
+        blanks between; edges have length and, where there are sheets, sheet. All of these are numbers
+        and texts, so that every writer of networkx takes them.
 
-    def save(self, path: str | os.PathLike[str]) -> None:
+        Args:
+            arrays: For Python instead: position, a tuple, in place of x, y, z, and surface_vertices as
+                a list.
+        """
+        return _convert.to_networkx(self, arrays)
+
+    def to_pyvista(self) -> pyvista.PolyData:
+        """A polyline for each branch and the sheets' triangles; point data radius, cell data branch
+        (-1 on a sheet)."""
+        return _convert.to_pyvista(self)
+
+    def to_trimesh(self) -> trimesh.path.Path3D:
+        """A line for each branch; the radius is in the metadata. Sheets are left out."""
+        return _convert.to_trimesh(self)
+
+    def to_navis(self, *, units: str | None = None) -> navis.TreeNeuron:
+        """A neuron, or a list of them if there are several components. Cycles are cut as in .swc.
+
+        Args:
+            units: Of the mesh, such as ``"nm"``; navis takes them for its own lengths.
+        """
+        return _convert.to_navis(self, units)
+
+    def plot(self, *, backend: str = "matplotlib", ax: Any = None, surface: bool = True) -> Any:
+        """Draws the skeleton, coloured by its radius, in its translucent surface.
+
+        Args:
+            backend: ``"matplotlib"``, ``"pyvista"`` or ``"trimesh"``.
+            ax: matplotlib axes with ``projection="3d"`` to draw into; by default new ones.
+            surface: Whether the mesh is drawn, where it is known.
+
+        Returns:
+            The axes, a ``pyvista.Plotter`` or a ``trimesh.Scene``; the latter two have ``show()``.
+
+        Raises:
+            SkeletonError: There is no such backend, or its package is not installed.
+        """
+        return _plot.plot(self, backend, ax, surface)
+
+    def save(self, path: str | os.PathLike[str], **options: Any) -> None:
         """Writes the skeleton in the format that the name ends with.
 
         The file is replaced as a whole, or stays as it was: after an error such as a full disk, and if
         the process is killed.
 
         Args:
-            path: Ends with .swc, .cg, .graphml, .json or .ply. SWC holds trees only: each cycle is
-                cut at its thinnest edge, and a warning lists the cuts. Only .graphml and .json keep
-                the correspondence.
+            path: Ends with .swc, .cg, .graphml, .json, .vtp, .glb or .ply. SWC holds trees only: each
+                cycle is cut at its thinnest edge, and a warning lists the cuts. Sheets are kept by
+                .ply. The correspondence is not in .swc and .cg. A .glb is the surface with an armature.
+            **options: Of the filter Save Skeleton: for .swc ``scale``, ``units`` (``"um"``) and
+                ``soma`` (``"auto"``); for .glb ``bone_tolerance``, a length such as ``"1%"``.
 
         Raises:
-            SkeletonError: The name ends otherwise, or the file cannot be written.
+            SkeletonError: The name ends otherwise, an option is wrong, or the file cannot be written.
         """
-        layers = pymeshlab.MeshSet()
-        skeleton = pymeshlab.Mesh(vertex_matrix=self.nodes, edge_matrix=self.edges.astype(np.int32))
-        skeleton.add_vertex_custom_scalar_attribute(self.radius, "mcfskel_radius")
-        layers.add_mesh(skeleton, "skeleton")
-        options = {"file": os.fspath(path)}
-        if len(self.correspondence):
-            surface = pymeshlab.Mesh(vertex_matrix=np.zeros((len(self.correspondence), 3)))
-            surface.add_vertex_custom_scalar_attribute(
-                self.correspondence.astype(float), "mcfskel_node")
-            layers.add_mesh(surface, "surface", set_as_current=False)
-            options["surface"] = 1
-        _apply(layers, "save_skeleton_mcf", options)
-        if Path(path).suffix.lower() == ".swc" and Path(path).is_file():  # not from a pipe
-            _warn_of_cuts(Path(path))
+        _files.save(self, Path(path), options)
 
 
 def skeletonize(vertices: Any, faces: npt.ArrayLike | None = None, *,
                 target_length: Length | None = None, epsilon: Length | None = None,
                 **options: Any) -> Skeleton:
-    """Computes the curve skeleton of a closed triangle mesh.
+    """Computes the curve skeleton of a closed triangle mesh. Ctrl-C ends it at once.
 
     Args:
-        vertices: Positions, (V, 3); or an object with ``vertices`` and ``faces``, such as a
-            ``trimesh.Trimesh``, and then no ``faces``.
+        vertices: Positions, (V, 3); or the path of a file that MeshLab reads; or an object with
+            ``vertices`` and ``faces``, such as a ``trimesh.Trimesh``. In the latter cases no ``faces``.
         faces: Triangles as vertex ids, (F, 3), counter-clockwise seen from outside.
         target_length: Edge length of the resampling; by default chosen from the mesh.
         epsilon: Edges shorter than this are collapsed; by default 0.2 % of the diagonal. A length is
             a number of mesh units, or a text such as ``"0.2%"`` of the bounding box diagonal.
         **options: Further parameters of the filter Full Skeletonize, by their names in pymeshlab:
             ``w_l``, ``w_h``, ``w_m``, ``resample``, ``denoise``, ``refine``, ``pole_method``,
-            ``max_iterations``, ...
+            ``max_iterations``, ``keep_sheets``, ... None stands for the default.
 
     Returns:
         The skeleton.
 
     Raises:
-        SkeletonError: The mesh is not a closed two-manifold, or an option is out of its range.
+        SkeletonError: The mesh is not a closed two-manifold, there is no such file, or an option does
+            not exist or is out of its range.
+
+    Warns:
+        SkeletonWarning: The contraction has not converged within ``max_iterations``.
     """
+    layers = _document(vertices, faces)
+    surface = Surface(layers.current_mesh().vertex_matrix(), layers.current_mesh().face_matrix())
+    options = filter_options("skeletonize()", options | {"target_length": target_length,
+                                                         "epsilon": epsilon},
+                             layers.filter_parameter_values(FILTER))
+    if not len(surface.faces):
+        raise SkeletonError("There are no faces: faces is empty, or the file is one of points only.")
+    mesh = layers.current_mesh_id()
+    results = apply(layers, FILTER, options)
+    if not results.get("converged", 1):
+        warnings.warn(f"The contraction has not converged within max_iterations="
+                      f"{int(results['iterations'])}: raise max_iterations, or expect a skeleton that "
+                      "is off the middle.", SkeletonWarning, stacklevel=2)
+    return _from_layer(layers.current_mesh(), layers.mesh(mesh), results, surface)
+
+
+def check_options(**options: Any) -> None:
+    """Checks options of ``skeletonize()`` before there is a mesh: their names and kinds.
+
+    Raises:
+        SkeletonError: One does not exist, or its value is of the wrong kind; the text names it.
+    """
+    layers = pymeshlab.MeshSet()
+    layers.add_mesh(pymeshlab.Mesh(np.zeros((1, 3))), "none")  # defaults are those of some layer
+    filter_options("skeletonize()", options, layers.filter_parameter_values(FILTER))
+
+
+def load(path: str | os.PathLike[str]) -> Skeleton:
+    """Reads a skeleton that ``Skeleton.save()`` or the filter Save Skeleton has written.
+
+    Radius and correspondence are those that the format keeps; .cg has neither (the radius is then 0),
+    .swc has no correspondence. SWC and curve graphs from elsewhere are read as well.
+
+    Raises:
+        SkeletonError: The file cannot be read; the text says where it is wrong.
+    """
+    nodes, edges, radius, correspondence, faces = _files.load(Path(path))
+    return Skeleton(nodes, edges, radius, correspondence, {}, faces)
+
+
+def _document(vertices: Any, faces: Any) -> pymeshlab.MeshSet:
+    """A document with the mesh as its current layer."""
+    if isinstance(vertices, (str, os.PathLike)):
+        if faces is not None:
+            raise SkeletonError("faces must not be given where vertices is the path of a file.")
+        return open_mesh(os.fspath(vertices))
     if faces is None:
         try:
             vertices, faces = vertices.vertices, vertices.faces
         except AttributeError:
-            raise SkeletonError("skeletonize() takes vertices and faces, or a mesh that has both.") from None
+            raise SkeletonError("skeletonize() takes vertices and faces, a mesh that has both, or the "
+                                f"path of a file, not {type(vertices).__name__} alone.") from None
     points = _array(vertices, "vertices", np.float64)
     triangles = _array(faces, "faces", np.int32)
     if triangles.size and (triangles.min() < 0 or triangles.max() >= len(points)):
-        raise SkeletonError(f"A face has a vertex that is not one of the {len(points)} vertices.")
-    for name, length in [("target_length", target_length), ("epsilon", epsilon)]:
-        if length is not None:
-            options[name] = _length(name, length)
-
+        raise SkeletonError("faces: a face has a vertex that is not one of the "
+                            f"{len(points)} vertices.")
     layers = pymeshlab.MeshSet()
     layers.add_mesh(pymeshlab.Mesh(vertex_matrix=points, face_matrix=triangles), "mesh")
-    _check_names(layers, options)
-    results = _apply(layers, FILTER, options)
-    return _from_layer(layers.current_mesh(), layers.mesh(0), results)
+    return layers
 
 
-def load(path: str | os.PathLike[str]) -> Skeleton:
-    """Reads a skeleton from a .swc or .cg file.
-
-    Raises:
-        SkeletonError: The file cannot be read; the text names the line.
-    """
-    if Path(path).suffix.lower() not in (".swc", ".cg"):
-        raise SkeletonError(f"'{os.fspath(path)}' does not end with .swc or .cg.")
-    layers = pymeshlab.MeshSet()
-    folder = os.getcwd()
-    try:
-        layers.load_new_mesh(os.path.abspath(path))
-    except pymeshlab.PyMeshLabException as error:
-        raise SkeletonError(_reason(error)) from None
-    finally:
-        os.chdir(folder)  # where a failed reading in pymeshlab leaves it is the file's folder
-    return _from_layer(layers.current_mesh(), None, {})
-
-
-def _from_layer(layer: pymeshlab.Mesh, surface: pymeshlab.Mesh | None,
-                results: dict[str, float]) -> Skeleton:
-    try:
-        radius = layer.vertex_custom_scalar_attribute_array("mcfskel_radius")
-    except pymeshlab.PyMeshLabException:
-        radius = np.zeros(layer.vertex_number())
-    correspondence = np.empty(0, np.int64)
-    if surface is not None:
-        correspondence = surface.vertex_custom_scalar_attribute_array("mcfskel_node").astype(np.int64)
+def _from_layer(layer: pymeshlab.Mesh, mesh: pymeshlab.Mesh, results: dict[str, Any],
+                surface: Surface) -> Skeleton:
+    radius = layer.vertex_custom_scalar_attribute_array("mcfskel_radius")
+    correspondence = mesh.vertex_custom_scalar_attribute_array("mcfskel_node").astype(np.int64)
     edges = np.sort(layer.edge_matrix().astype(np.int64).reshape(-1, 2), axis=1)
     edges = edges[np.lexsort((edges[:, 1], edges[:, 0]))]
-    return Skeleton(layer.vertex_matrix(), edges, radius, correspondence, results)
+    faces = layer.face_matrix().astype(np.int64).reshape(-1, 3)
+    return Skeleton(layer.vertex_matrix(), edges, radius, correspondence, results, faces, surface)
 
 
 def _array(values: Any, name: str, kind: type) -> np.ndarray:
     try:
         array = np.ascontiguousarray(values)
-        if kind is np.int32 and array.size and not np.issubdtype(array.dtype, np.integer):
-            raise ValueError("ids must be integers")
+        if kind is np.int32 and array.size:
+            if not np.issubdtype(array.dtype, np.integer):
+                raise ValueError("ids must be integers")
+            if int(array.max()) > INT_MAX or int(array.min()) < 0:
+                raise ValueError(f"ids must be between 0 and {INT_MAX}")
         array = array.astype(kind, casting="unsafe")
     except (TypeError, ValueError) as error:
         raise SkeletonError(f"{name} is no array of numbers: {error}") from None
+    if array.size == 0:
+        raise SkeletonError(f"{name} is empty.")
     if array.ndim != 2 or array.shape[1] != 3:
         raise SkeletonError(f"{name} must have the shape (n, 3), not {array.shape}.")
     return array
-
-
-def _length(name: str, value: Length) -> Any:
-    if isinstance(value, str):
-        try:
-            return pymeshlab.PercentageValue(float(value.removesuffix("%")))
-        except ValueError:
-            raise SkeletonError(f"{name}='{value}' is no length: write 0.01 or '0.2%'.") from None
-    if isinstance(value, (int, float)):
-        return pymeshlab.PureValue(float(value))
-    return value
-
-
-def _check_names(layers: pymeshlab.MeshSet, options: dict[str, Any]) -> None:
-    """pymeshlab only prints a line about a parameter that does not exist."""
-    known = layers.filter_parameter_values(FILTER)
-    if unknown := sorted(set(options) - set(known)):
-        raise SkeletonError(f"There is no option {', '.join(unknown)}; there are {', '.join(sorted(known))}.")
-
-
-def _apply(layers: pymeshlab.MeshSet, name: str, options: dict[str, Any]) -> dict[str, float]:
-    try:
-        return layers.apply_filter(name, **options)
-    except pymeshlab.PyMeshLabException as error:
-        raise SkeletonError(_reason(error)) from None
-
-
-def _reason(error: Exception) -> str:
-    """The plugin's own words in pymeshlab's error, on one line."""
-    lines = [line.strip() for line in str(error).splitlines() if line.strip()]
-    if len(lines) > 1:
-        lines = [line.removeprefix("Details: ") for line in lines[1:]]
-    return " ".join(lines)
-
-
-def _warn_of_cuts(path: Path) -> None:
-    with open(path, encoding="utf-8") as lines:
-        cuts = [line[2:].strip() for line in lines if line.startswith("# cycle cut")]
-    if cuts:
-        warnings.warn(f"SWC holds trees only; in '{path}': {'; '.join(cuts)}", stacklevel=3)
-
-

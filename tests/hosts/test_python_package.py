@@ -39,7 +39,7 @@ def python(plugin, tmp_path_factory) -> Path:
     interpreter = folder / "env" / "bin" / "python"
     environment = {name: value for name, value in os.environ.items() if name != "MCFSKEL_PLUGIN"}
     subprocess.run([str(interpreter), "-m", "pip", "install", "-q", "--disable-pip-version-check",
-                    str(folder / "project" / "python") + "[networkx,trimesh]"],
+                    str(folder / "project" / "python") + "[networkx,trimesh,pyvista,plot]"],
                    check=True, env=environment)
     shutil.rmtree(folder / "project")  # nothing of it is needed any more
     return interpreter
@@ -52,7 +52,7 @@ def run(python, tmp_path):
         environment = {name: value for name, value in os.environ.items()
                        if name not in ("MCFSKEL_PLUGIN", "PYTHONPATH")}
         text = ("import json, sys\nimport numpy as np\nMESHES = sys.argv[1]\n"
-                + textwrap.dedent(script) + "\nprint('ANSWER' + json.dumps(answer))\n")
+                + textwrap.dedent(script) + "\nprint('ANSWER' + json.dumps(answer, default=lambda v: v.item()))\n")
         done = subprocess.run([str(python), "-c", text, str(MESHES)], cwd=tmp_path, env=environment,
                               capture_output=True, text=True)
         assert done.returncode == 0, done.stderr
@@ -125,17 +125,201 @@ def test_networkx(run):
     answer = run("""
         import mcfskel, networkx, trimesh
         s = mcfskel.skeletonize(trimesh.load(MESHES + "/torus.off", process=False), target_length="1.2%")
-        g = s.to_networkx()
-        node = g.nodes[5]
+        g, a = s.to_networkx(), s.to_networkx(arrays=True)
+        node = a.nodes[5]
+        for name in ("graphml", "gml", "gexf", "adjlist", "multiline_adjlist", "edgelist",
+                     "weighted_edgelist"):
+            getattr(networkx, "write_" + name)(g, "s." + name)
+        again = networkx.read_graphml("s.graphml", node_type=int)
+        s.save("ours.graphml")
+        ours = networkx.read_graphml("ours.graphml", node_type=int)
         answer = {"cycles": len(networkx.cycle_basis(g)), "connected": networkx.is_connected(g),
-                  "position": bool(np.array_equal(node["position"], s.nodes[5])),
-                  "radius": bool(node["radius"] == s.radius[5]),
+                  "position": node["position"] == tuple(s.nodes[5].tolist()),
+                  "radius": node["radius"] == s.radius[5],
                   "sources": node["surface_vertices"] == s.surface_vertices()[5].tolist(),
+                  "same": all(dict(again.nodes[n]) == dict(g.nodes[n]) for n in g),
+                  "as_the_file": all({k: v or "" for k, v in ours.nodes[n].items()} == dict(g.nodes[n])
+                                     for n in g),
                   "length": g.size("length"), "expected": s.results["skeleton_length"]}
     """)
     assert answer["cycles"] == 1 and answer["connected"]
     assert answer["position"] and answer["radius"] and answer["sources"]
+    assert answer["same"] and answer["as_the_file"]
     assert answer["length"] == pytest.approx(answer["expected"])
+
+
+def test_tips_junctions_and_branches_are_those_of_the_filter(run):
+    answer = run("""
+        import mcfskel
+        answer = []
+        for name in ("animal450", "plate3", "torus"):
+            s = mcfskel.skeletonize(MESHES + f"/{name}.off", target_length="1.5%", refine=False)
+            r = s.results
+            chains = [np.sort(np.column_stack([b[:-1], b[1:]]), axis=1) for b in s.branches]
+            edges = np.unique(np.concatenate(chains), axis=0)
+            answer.append({"counts": [len(s.leafs), len(s.junctions), len(s.branches)],
+                           "filter": [r["terminals"], r["junctions"], r["branches"]],
+                           "each edge once": len(np.concatenate(chains)) == len(edges)
+                                             and bool((edges == s.edges).all()),
+                           "inner": all((s.degree[b[1:-1]] == 2).all() for b in s.branches),
+                           "closed": [bool(b[0] == b[-1]) for b in s.branches]})
+    """)
+    for skeleton in answer:
+        assert skeleton["counts"] == skeleton["filter"]
+        assert skeleton["each edge once"] and skeleton["inner"]
+    assert answer[2]["closed"] == [True]
+
+
+def test_shown_in_a_notebook_and_plotted(run):
+    answer = run("""
+        import mcfskel, re, matplotlib
+        from base64 import b64decode
+        from xml.etree import ElementTree
+        matplotlib.use("Agg")
+        s = mcfskel.skeletonize(MESHES + "/torus.off", target_length="1.5%", refine=False)
+        page = s._repr_html_()
+        ElementTree.fromstring(page.replace("<br>", "<br/>"))
+        image = b64decode(re.search('base64,([^"]*)', page)[1])
+        open("s.png", "wb").write(image)
+        import matplotlib.image
+        pixels = matplotlib.image.imread("s.png")
+        ax = s.plot()
+        ax.figure.savefig("plot.png")
+        lines = [c for c in ax.collections if type(c).__name__ == "Line3DCollection"]
+        answer = {"repr": repr(s), "html": len(page), "lines": page.count("<path"),
+                  "covered": float((pixels[..., 3] > 0).mean()), "alpha": float(pixels[0, 0, 3]),
+                  "segments": len(lines[0].get_array()), "edges": len(s.edges),
+                  "without": repr(mcfskel.Skeleton(s.nodes, s.edges, s.radius, s.correspondence))}
+    """)
+    assert answer["repr"] == answer["without"] and len(answer["repr"]) < 120
+    assert f"{answer['edges']} edges, 1 branch" in answer["repr"]
+    assert answer["html"] < 400_000 and answer["lines"] >= 1
+    # A ring seen along its axis: there is a hole in the middle and nothing in the corners.
+    assert 0.2 < answer["covered"] < 0.75 and answer["alpha"] == 0
+    assert answer["segments"] == answer["edges"]
+
+
+def test_other_packages(run):
+    answer = run("""
+        import mcfskel, trimesh, pyvista
+        s = mcfskel.skeletonize(MESHES + "/plate3.off", target_length="1.5%", refine=False)
+        lines, path = s.to_pyvista(), s.to_trimesh()
+        answer = {"length": float(s.lengths().sum()), "branches": len(s.branches),
+                  "pyvista": [lines.n_lines, float(lines.compute_cell_sizes()["Length"].sum()),
+                              bool((lines["radius"] == s.radius).all())],
+                  "trimesh": [len(path.entities), float(path.length)]}
+    """)
+    assert answer["pyvista"] == [answer["branches"], pytest.approx(answer["length"]), True]
+    assert answer["trimesh"] == [answer["branches"], pytest.approx(answer["length"])]
+
+
+def test_vtk_reads_vtp(run):
+    """VTK's own reader, through PyVista: each branch one polyline, VMTK's names, no bit lost."""
+    answer = run("""
+        import mcfskel, pyvista
+        s = mcfskel.skeletonize(MESHES + "/plate3.off", target_length="1.5%", refine=False)
+        s.save("s.vtp")
+        t = mcfskel.load("s.vtp")
+        v = pyvista.read("s.vtp")
+        chains, at = [], 0
+        while at < len(v.lines):
+            chains.append(v.lines[at + 1:at + 1 + v.lines[at]].tolist())
+            at += v.lines[at] + 1
+        answer = {"branches": chains == [b.tolist() for b in s.branches],
+                  "points": bool(np.array_equal(v.points, s.nodes)),
+                  "radius": bool(np.array_equal(v["MaximumInscribedSphereRadius"], s.radius)),
+                  "groups": v["GroupIds"].tolist(), "count": len(s.branches),
+                  "names": sorted(v.cell_data.keys()),
+                  "node": bool(np.array_equal(v.field_data["mcfskel_node"], s.correspondence)),
+                  "again": all(np.array_equal(getattr(s, k), getattr(t, k)) for k in
+                               ("nodes", "edges", "radius", "correspondence"))}
+    """)
+    assert answer["branches"] and answer["points"] and answer["radius"] and answer["node"]
+    assert answer["groups"] == list(range(answer["count"])) and answer["again"]
+    assert answer["names"] == ["Blanking", "CenterlineIds", "GroupIds", "TractIds"]
+
+
+def test_nothing_optional_is_imported_before_it_is_used(run):
+    answer = run("""
+        import mcfskel
+        s = mcfskel.skeletonize(MESHES + "/box8.off", target_length="4%", refine=False)
+        s._repr_html_()
+        answer = [name for name in ("networkx", "trimesh", "pyvista", "navis", "matplotlib")
+                  if name in sys.modules]
+        sys.modules["navis"] = None
+        try:
+            s.to_navis()
+        except mcfskel.SkeletonError as error:
+            answer.append(str(error))
+    """)
+    assert len(answer) == 1 and "pip install navis" in answer[0]
+
+
+def test_sheets_are_kept(run):
+    answer = run("""
+        import mcfskel, networkx, warnings
+        s = mcfskel.skeletonize(MESHES + "/cup.off", keep_sheets=True, target_length="1.5%")
+        s.save("s.ply")
+        t = mcfskel.load("s.ply")
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            s.save("s.json")
+        sides = np.unique(np.sort(s.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0)
+        graph = s.to_networkx()
+        answer = {"faces": [len(s.faces), s.results["sheet_faces"]], "b0": s.results["b0"],
+                  "pieces": networkx.number_connected_components(graph),
+                  "same": all(np.array_equal(getattr(s, k), getattr(t, k)) for k in
+                              ("nodes", "edges", "radius", "correspondence", "faces")),
+                  "warnings": [str(w.message) for w in caught],
+                  "edges": [graph.number_of_edges(), len(s.edges), len(sides)],
+                  "tips": [len(s.leafs), bool(np.isin(s.leafs, s.faces).any())]}
+    """)
+    assert answer["faces"][0] == answer["faces"][1] > 0
+    assert answer["pieces"] == answer["b0"] == 1
+    assert answer["edges"][0] == answer["edges"][1] + answer["edges"][2]
+    assert answer["same"]
+    assert len(answer["warnings"]) == 1 and "triangles of the sheets" in answer["warnings"][0]
+    assert not answer["tips"][1]
+
+
+def test_ctrl_c_ends_a_job(run):
+    answer = run("""
+        import mcfskel, os, signal, threading, time
+        mcfskel.skeletonize(MESHES + "/box8.off", target_length="4%", refine=False)
+        answer = []
+        for wait in (0.2, 1.0, 3.0):
+            sent = []
+            def send():
+                sent.append(time.monotonic())
+                os.kill(os.getpid(), signal.SIGINT)
+            timer = threading.Timer(wait, send)
+            timer.start()
+            try:
+                mcfskel.skeletonize(MESHES + "/animal.off", target_length="0.25%")
+                timer.join()
+                answer.append("not interrupted")
+            except KeyboardInterrupt:
+                answer.append(time.monotonic() - sent[0])
+        again = mcfskel.skeletonize(MESHES + "/box8.off", target_length="4%", refine=False)
+        answer.append(len(again.nodes))
+    """)
+    # 0.2 seconds where a processor is free; the tests run beside each other.
+    assert all(isinstance(seconds, float) and seconds < 2 for seconds in answer[:3]), answer
+    assert answer[3] > 0
+
+
+def test_a_contraction_that_is_cut_short_warns(run):
+    answer = run("""
+        import mcfskel, warnings
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            mcfskel.skeletonize(MESHES + "/torus.off", target_length="1.5%", max_iterations=2)
+            short = len(caught)
+            mcfskel.skeletonize(MESHES + "/torus.off", target_length="1.5%")
+        answer = [short, len(caught), str(caught[0].message), caught[0].category.__name__]
+    """)
+    assert answer[:2] == [1, 1]
+    assert "not converged within max_iterations=2" in answer[2] and answer[3] == "SkeletonWarning"
 
 
 def test_save_and_load(run, tmp_path):
@@ -145,11 +329,14 @@ def test_save_and_load(run, tmp_path):
         s = pickle.loads(pickle.dumps(s))
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
-            for kind in ("swc", "cg", "graphml", "json", "ply"):
+            for kind in ("swc", "cg", "graphml", "json", "vtp", "ply"):
                 s.save("s." + kind)
         cg, swc = mcfskel.load("s.cg"), mcfskel.load("s.swc")
+        all_of_it = [np.array_equal(getattr(s, k), getattr(mcfskel.load("s." + kind), k))
+                     for kind in ("graphml", "json", "vtp", "ply")
+                     for k in ("nodes", "edges", "radius", "correspondence")]
         g = networkx.node_link_graph(json.load(open("s.json")), edges="edges")
-        answer = {"warnings": [str(w.message) for w in caught],
+        answer = {"warnings": [str(w.message) for w in caught], "all": all_of_it,
                   "cg": bool(np.array_equal(cg.nodes, s.nodes) and np.array_equal(cg.edges, s.edges)),
                   "swc": [len(swc.nodes) == len(s.nodes), len(s.edges) - len(swc.edges)],
                   "radius": bool(np.array_equal(np.sort(swc.radius), np.sort(s.radius))),
@@ -158,38 +345,86 @@ def test_save_and_load(run, tmp_path):
     """)
     assert len(answer["warnings"]) == 1 and "cycle cut between" in answer["warnings"][0]
     assert answer["cg"] and answer["swc"] == [True, 1] and answer["radius"] and answer["json"]
-    assert (tmp_path / "s.ply").is_file()
+    assert all(answer["all"]) and len(answer["all"]) == 16
 
 
-def test_errors_are_one_sentence_with_the_cure(run):
-    answer = run("""
+ERRORS = {
+    "mesh.vertices, mesh.faces[:-1]": "Close Holes",
+    "mesh, epsilom=0.2": "no option epsilom",
+    "mesh, epsilon='much'": "epsilon='much' is no length",
+    "mesh, w_l='a'": "w_l='a' is no number",
+    "mesh, resample='no'": "resample='no' is no truth value",
+    "mesh, max_iterations=2.5": "max_iterations=2.5 is no whole number",
+    "mesh, max_iterations=2**40": "max_iterations=1099511627776 is too large",
+    "mesh, pole_method='x'": "pole_method: Enum 'x' not found",
+    "mesh, w_m=-1": "w_m",
+    "mesh.vertices[:, :2], mesh.faces": "vertices must have the shape (n, 3)",
+    "mesh.vertices, mesh.faces + 1": "not one of the",
+    "mesh.vertices, mesh.faces + 2**32": "faces is no array of numbers: ids must be between",
+    "mesh.vertices, mesh.faces / 2": "ids must be integers",
+    "np.empty((0, 3)), mesh.faces": "vertices is empty",
+    "mesh.vertices, np.empty((0, 3), int)": "faces is empty",
+    "5": "vertices and faces",
+    "'none.off'": "There is no file 'none.off'",
+    "'.'": "is a folder",
+    "'text.off'": "'text.off' cannot be read",
+    "'mesh.off', mesh.faces": "faces must not be given",
+}
+FILES = {
+    "bad.swc": ("1 0 0 0 0 1 -1\n2 0 x 0 0 1 1\n", "Line 2"),
+    "bad.xyz": ("", "does not end with"),
+    "none.json": (None, "No such file"),
+    "bad.json": ("{", "cannot be read"),
+    "half.json": ('{"nodes": [{"id": 0}], "edges": []}', "'position' is missing"),
+    "twice.json": ('{"nodes": [{"id": 0, "position": [0, 0, 0], "surface_vertices": [1]},'
+                   ' {"id": 1, "position": [1, 0, 0], "surface_vertices": [1]}], "edges": []}',
+                   "belongs to two nodes"),
+    "bad.graphml": ("<graphml>", "cannot be read"),
+    "bad.ply": ("ply\nend_header\n", "no PLY file of a skeleton"),
+    "empty.cg": ("", "Line 1"),
+}
+
+
+def test_errors_are_one_sentence_with_the_cure(run, tmp_path):
+    for name, (content, _) in FILES.items():
+        if content is not None:
+            (tmp_path / name).write_text(content)
+    (tmp_path / "text.off").write_text("not a mesh")
+    calls = [f"mcfskel.skeletonize({arguments})" for arguments in ERRORS]
+    calls += [f"mcfskel.load({name!r})" for name in FILES]
+    answer = run(f"""
         import mcfskel, os, trimesh
         mesh = trimesh.load(MESHES + "/torus.off", process=False)
-        def reason(call):
-            try:
-                call()
-            except mcfskel.SkeletonError as error:
-                return str(error)
-        open("bad.swc", "w").write("1 0 0 0 0 1 -1\\n2 0 x 0 0 1 1\\n")
         here = os.getcwd()
-        answer = [reason(call) for call in [
-            lambda: mcfskel.skeletonize(mesh.vertices, mesh.faces[:-1]),
-            lambda: mcfskel.skeletonize(mesh, epsilom=0.2),
-            lambda: mcfskel.skeletonize(mesh, epsilon="much"),
-            lambda: mcfskel.skeletonize(mesh.vertices[:, :2], mesh.faces),
-            lambda: mcfskel.skeletonize(mesh.vertices, mesh.faces + 1),
-            lambda: mcfskel.skeletonize(mesh.vertices, mesh.faces / 2),
-            lambda: mcfskel.skeletonize("mesh.off"),
-            lambda: mcfskel.load("bad.swc"),
-            lambda: mcfskel.load("bad.json"),
-        ]] + [os.getcwd() == here, len(mcfskel.skeletonize(mesh, target_length="1.5%").nodes)]
+        answer = []
+        for call in {calls}:
+            try:
+                eval(call)
+                answer.append("no error")
+            except mcfskel.SkeletonError as error:
+                answer.append(str(error))
+        answer += [os.getcwd() == here, len(mcfskel.skeletonize(mesh, target_length="1.5%").nodes)]
     """)
-    words = ["Close Holes", "no option epsilom", "is no length", "shape (n, 3)", "not one of the",
-             "ids must be integers", "vertices and faces", "Line 2", "does not end with"]
-    for text, word in zip(answer, words, strict=False):
-        assert text is not None and word in text, (text, word)
+    words = [*ERRORS.values(), *(word for _, word in FILES.values())]
+    for call, text, word in zip(calls, answer, words):
+        assert word in text and "\n" not in text, (call, text, word)
     assert answer[-2] is True
     assert answer[-1] > 0, "after all these errors the next mesh is done"
+
+
+def test_a_file_is_read_as_meshlab_reads_it(run):
+    answer = run("""
+        import mcfskel, pathlib, pymeshlab
+        layers = pymeshlab.MeshSet()
+        layers.load_new_mesh(MESHES + "/torus.off")
+        mesh = layers.current_mesh()
+        options = dict(target_length="1.5%", refine=False)
+        s = mcfskel.skeletonize(pathlib.Path(MESHES, "torus.off"), **options)
+        t = mcfskel.skeletonize(mesh.vertex_matrix(), mesh.face_matrix(), **options)
+        answer = [bool(np.array_equal(s.nodes, t.nodes)), len(s.correspondence) == mesh.vertex_number(),
+                  bool(np.array_equal(s.surface.vertices, mesh.vertex_matrix()))]
+    """)
+    assert answer == [True, True, True]
 
 
 def test_without_a_plugin_the_import_says_what_to_do(python, tmp_path):
