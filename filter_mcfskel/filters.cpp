@@ -74,15 +74,20 @@ const char* cureInMeshLab(vcg::tri::mcf::Defect defect)
 		return " Make a surface of the points first, e.g. with 'Surface Reconstruction: Screened "
 			   "Poisson'.";
 	case Defect::NotFinite:
-		return " Select them with 'Conditional Vertex Selection', delete them, and run 'Close "
-			   "Holes'.";
+		return " Select them with 'Conditional Vertex Selection' and the function x!=x || y!=y || z!=z "
+			   "|| abs(x)>1e300 || abs(y)>1e300 || abs(z)>1e300, delete them, and run 'Close Holes'.";
 	case Defect::NonManifoldEdges:
 		return " Run 'Repair non Manifold Edges', then, where there are border edges, 'Close "
 			   "Holes'.";
 	case Defect::NonManifoldVertices: return " Run 'Repair non Manifold Vertices by splitting'.";
-	case Defect::OneSided:
-	case Defect::BorderEdges: return " Run 'Close Holes'.";
-	case Defect::NoVolume: return " 'Remove Isolated pieces (wrt Diameter)' does the latter.";
+	case Defect::OneSided: return " Run 'Close Holes'.";
+	case Defect::BorderEdges:
+		return " Run 'Close Holes' with a maximum size of at least that number; where a hole remains, "
+			   "again without 'Prevent creation of selfIntersecting faces'; a stray piece, which is no hole, "
+			   "goes with 'Remove Isolated pieces (wrt Diameter)'.";
+	case Defect::NoVolume:
+		return " 'Remove Isolated pieces (wrt Diameter)' does the latter, with a diameter above that of "
+			   "the flat part.";
 	case Defect::Other:
 	case Defect::Empty: break;
 	}

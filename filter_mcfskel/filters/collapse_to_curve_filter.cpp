@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 #include "all_filters.h"
+#include "convergence.h"
 #include "filter_support.h"
 #include "sheet_choice.h"
 
@@ -24,13 +25,16 @@ Results run(FilterRun& run)
 					: "' is not a stage of the contraction")
 			+ ": make a layer NAME_meso_K current, or run 'Contraction Step' first.");
 	const double epsilon = readEpsilon(run.parameters);
+	logIfNotConverged(
+		run, *found.stage, "Run 'Contraction Step' on the stage until it has converged.");
 	if (run.parameters.flag("keep_sheets")) {
 		const mcf::SheetCollapse collapse =
 			mcf::collapseWithSheets(*found.stage, epsilon, run.progress, noteLog(run));
 		DocumentEdit edit(run.document);
 		edit.addMesoSkeleton(run.layer(), baseName(run.layer()) + "_skeleton", collapse.skeleton);
 		edit.writeNodes(found.surface, collapse.skeleton.node);
-		const Results results = sheetResults(collapse);
+		Results results = sheetResults(collapse);
+		results["converged"] = found.stage->converged ? 1 : 0;
 		edit.commit();
 		return results;
 	}
@@ -41,7 +45,8 @@ Results run(FilterRun& run)
 	edit.addCurve(run.layer(), baseName(run.layer()) + "_skeleton",
 		{skeleton, found.surface, surface ? surface->label() : QString()});
 	edit.writeNodes(found.surface, skeleton.node);
-	const Results results = curveResults(skeleton);
+	Results results = curveResults(skeleton);
+	results["converged"] = found.stage->converged ? 1 : 0;
 	edit.commit();
 	return results;
 }
@@ -53,7 +58,9 @@ FilterSpec collapseToCurveFilter()
 	return {"generate_curve_skeleton_from_meso_mcf", menuName("Collapse to Curve"),
 		helpPage(
 			"Turns a stage of the contraction into a curve skeleton, a new layer of nodes and edges: "
-			"collapses its shortest edges until no face is left, without changing its topology. The "
+			"collapses its shortest edges until no face is left, without changing its topology. A stage "
+			"that has not converged gives a curve that may be off the middle: the log says so, and the "
+			"result <i>converged</i> is 0. The "
 			"vertex quality is the local thickness of the shape, also kept as "
 			"<i>mcfskel_radius</i>.<br><br>"
 			"With <i>keep_sheets</i>, what has contracted to a sheet at this stage, or was kept as one by "

@@ -5,6 +5,7 @@
 
 #include <skeleton/pipeline.h>
 
+#include <algorithm>
 #include <numeric>
 #include <utility>
 
@@ -171,7 +172,8 @@ QString stageLine(const mcf::StageFigures& figures)
 		.arg(figures.iteration)
 		.arg(figures.vertices)
 		.arg(100 * figures.areaFraction, 0, 'g', 3)
-		.arg(100 * figures.volumeFraction, 0, 'g', 3)
+		.arg(std::max(100 * figures.volumeFraction, 0.0), 0, 'g',
+			3) // contracted lobes turn inside out
 		.arg(100 * figures.fixedFraction, 0, 'g', 3)
 		.arg(figures.converged ? "; converged" : "");
 }

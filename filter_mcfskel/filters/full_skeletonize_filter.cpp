@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 #include "all_filters.h"
+#include "convergence.h"
 #include "filter_support.h"
 #include "sheet_choice.h"
 
@@ -101,6 +102,7 @@ Results run(FilterRun& run)
 	if (parameters.resample)
 		edit.writeNodes(input, *read.vertexOfSlot, result.node);
 	Results results = resultsOf(result, parameters.keepSheets);
+	logIfNotConverged(run, *result.stage, "Raise max_iterations.");
 	edit.commit();
 	return results;
 }
@@ -142,8 +144,8 @@ FilterSpec fullSkeletonizeFilter()
 	parameters.push_back(sheetThresholdParameter());
 	return {"generate_curve_skeleton_mcf", menuName("Full Skeletonize"),
 		helpPage(
-			"Computes the curve skeleton of a closed surface: a graph of nodes and edges in the "
-			"middle of the shape, with one component for each of its components and one cycle for "
+			"Computes the curve skeleton (centerline, centreline, thinned medial axis) of a closed surface: "
+			"a graph of nodes and edges in the middle of the shape, with one component for each of its components and one cycle for "
 			"each of its handles. Resamples the surface, finds its medial poles, contracts it until "
 			"no volume is left, collapses the result to curves and refines these; each is a filter of "
 			"its own, too.<br><br>"

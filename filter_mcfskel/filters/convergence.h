@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief What filters say of a stage that becomes a curve too early.
+
+#ifndef MCFSKEL_FILTERS_CONVERGENCE_H
+#define MCFSKEL_FILTERS_CONVERGENCE_H
+
+#include "../filters.h"
+
+#include <skeleton/pipeline.h>
+
+#include <algorithm>
+
+namespace mcfskel {
+
+/// Says in the log that a stage that becomes a curve has not converged, and what to do; nothing if it has.
+inline void logIfNotConverged(
+	const FilterRun& run, const vcg::tri::mcf::Stage& stage, const char* cure)
+{
+	if (stage.converged)
+		return;
+	const double volume = std::max(vcg::tri::mcf::figuresOf(stage).volumeFraction, 0.0);
+	run.log(QString(
+		"Warning: the contraction has not converged after %1 iterations, %2 % of the volume "
+		"is left: the curve may be off the middle. %3")
+				.arg(stage.iteration)
+				.arg(100 * volume, 0, 'g', 3)
+				.arg(cure));
+}
+
+} // namespace mcfskel
+
+#endif
