@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Skeletonizes every mesh of a folder, on this machine or on a Dask cluster.
+"""Skeletonizes every mesh of a folder and its subfolders, on this machine or on a Dask cluster.
 
 Each mesh is done in a process of its own: a mesh that is refused, or that takes its process down,
 costs nobody else anything. The table RESULTS/results.csv has a line for each mesh that was tried; a
@@ -28,10 +28,12 @@ from contextlib import closing
 from pathlib import Path
 from typing import Any, TextIO
 
-MESHES = {".off", ".ply", ".obj", ".stl"}
-FORMATS = ("swc", "cg", "graphml", "json", "ply")
-COLUMNS = ("mesh", "status", "seconds", "skeleton_vertices", "branches", "components", "cycles",
-           "skeleton_length", "converged", "error")
+#: What MeshLab reads and is made of triangles.
+MESHES = {".off", ".ply", ".obj", ".stl", ".glb", ".gltf", ".dae", ".3ds", ".x3d", ".wrl"}
+FORMATS = ("swc", "cg", "graphml", "json", "vtp", "glb", "ply")
+COLUMNS = ("mesh", "status", "seconds", "mesh_vertices", "mesh_faces", "skeleton_vertices", "branches",
+           "terminals", "junctions", "components", "cycles", "skeleton_length", "radius_min",
+           "radius_max", "converged", "error")
 #: The first argument of the process that does one mesh.
 CHILD = "--child"
 Row = dict[str, Any]
@@ -42,7 +44,8 @@ def parse_arguments() -> argparse.Namespace:
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path, help="folder of closed triangle meshes: "
                                                   + ", ".join(sorted(MESHES)))
-    parser.add_argument("results", type=Path, help="folder for the skeletons and the table")
+    parser.add_argument("results", type=Path,
+                        help="folder for the table, and the skeletons in the same subfolders")
     parser.add_argument("--formats", nargs="+", choices=FORMATS, default=["json"],
                         help="formats of the skeletons (json)")
     parser.add_argument("--option", action="append", default=[], metavar="NAME=VALUE",
@@ -53,18 +56,19 @@ def parse_arguments() -> argparse.Namespace:
                         help="a mesh that takes longer is given up (600)")
     parser.add_argument("--scheduler", metavar="ADDRESS",
                         help="of a Dask cluster that does the work, such as tcp://host:8786; its "
-                             "workers need mcfskel, trimesh and the same folders")
+                             "workers need mcfskel and the same folders")
     parser.add_argument("--retry", action="store_true", help="do the meshes that failed again")
     arguments = parser.parse_args()
     if not arguments.folder.is_dir():
         parser.error(f"there is no folder '{arguments.folder}'")
     if arguments.workers < 1:
         parser.error("--workers must be at least 1")
-    try:
-        arguments.options = {name: option_value(text) for name, _, text in
-                             (option.partition("=") for option in arguments.option)}
-    except ValueError as error:
-        parser.error(f"--option: {error}")
+    arguments.options = {}
+    for option in arguments.option:
+        name, _, text = option.partition("=")
+        if not (name and text):
+            parser.error(f"--option {option}: expected NAME=VALUE")
+        arguments.options[name] = option_value(text)
     return arguments
 
 
@@ -77,20 +81,21 @@ def option_value(text: str) -> Any:
             return kind(text)
         except ValueError:
             pass
-    if not text:
-        raise ValueError("expected NAME=VALUE")
     return text
 
 
 def do_mesh(mesh: str, target: str, formats: list[str], options: dict[str, Any]) -> Row:
     """Does one mesh; runs in a process of its own."""
     import mcfskel
-    import trimesh
 
-    skeleton = mcfskel.skeletonize(trimesh.load(mesh, force="mesh"), **options)
+    skeleton = mcfskel.skeletonize(mesh, **options)
+    Path(target).parent.mkdir(parents=True, exist_ok=True)
     for kind in formats:
         skeleton.save(f"{target}.{kind}")
-    return {name: skeleton.results[name] for name in COLUMNS if name in skeleton.results}
+    vertices, faces = skeleton.surface
+    return {"mesh_vertices": len(vertices), "mesh_faces": len(faces),
+            "radius_min": float(skeleton.radius.min()), "radius_max": float(skeleton.radius.max())} | {
+        name: skeleton.results[name] for name in COLUMNS if name in skeleton.results}
 
 
 def child(job: str, answer: str) -> None:
@@ -189,38 +194,87 @@ def flush_to_disk(lines: TextIO) -> None:
     os.fsync(lines.fileno())
 
 
-def summary(rows: list[Row]) -> str:
+#: The columns that are printed, and how wide.
+PRINTED = (("mesh_faces", 8), ("skeleton_vertices", 6), ("branches", 8), ("terminals", 5),
+           ("cycles", 6), ("radius_max", 9))
+HEADINGS = {"mesh_faces": "faces", "skeleton_vertices": "nodes", "terminals": "tips",
+            "radius_max": "thickest"}
+
+
+def summary(rows: list[Row], folder: Path) -> str:
     """The table as text."""
-    lines = [f"{'mesh':32} {'status':8} {'seconds':>8} {'nodes':>6} {'branches':>8} {'cycles':>6}"]
+    headings = " ".join(f"{HEADINGS.get(name, name):>{width}}" for name, width in PRINTED)
+    lines = [f"{'mesh':32} {'status':8} {'seconds':>8} {headings}"]
     for row in sorted(rows, key=lambda row: row["mesh"]):
-        numbers = " ".join(f"{row.get(name) or '-':>{width}}" for name, width in
-                           [("skeleton_vertices", 6), ("branches", 8), ("cycles", 6)])
-        line = f"{Path(row['mesh']).name:32.32} {row['status']:8} {row['seconds']:>8} {numbers}"
+        numbers = " ".join(f"{number_text(row.get(name)):>{width}}" for name, width in PRINTED)
+        name = os.path.relpath(row["mesh"], folder)
+        line = f"{name if len(name) <= 32 else '...' + name[-29:]:32} {row['status']:8} " \
+               f"{row['seconds']:>8} {numbers}"
         lines.append(line + (f"  {row['error']}" if row.get("error") else ""))
     return "\n".join(lines)
 
 
+def number_text(value: Any) -> str:
+    """A number, whether just counted or read from the table; - if there is none."""
+    if value is None or value == "":
+        return "-"
+    return f"{float(value):.6g}"
+
+
+def meshes_of(folder: Path, results: Path) -> list[Path]:
+    """The meshes of a folder and its subfolders, but for the results if they lie in it."""
+    found = []
+    for place, folders, files in os.walk(folder.resolve()):
+        folders[:] = sorted(name for name in folders if Path(place, name).resolve() != results)
+        found += [Path(place, name) for name in sorted(files) if Path(name).suffix.lower() in MESHES]
+    return sorted(found)
+
+
+def check_options(options: dict[str, Any]) -> None:
+    """Ends the program if an option does not exist or is of the wrong kind, before any work."""
+    import mcfskel
+
+    try:
+        mcfskel.check_options(**options)
+    except mcfskel.SkeletonError as error:
+        raise SystemExit(f"error: {error}") from None
+
+
+def check_writable(results: Path) -> None:
+    """Ends the program if nothing can be written, before any work."""
+    try:
+        results.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=results):
+            pass
+    except OSError as error:
+        raise SystemExit(f"error: nothing can be written into '{results}': {error.strerror}") from None
+
+
 def main() -> int:
     arguments = parse_arguments()
+    check_writable(arguments.results)
+    results = arguments.results.resolve()
+    folder = arguments.folder.resolve()
+    meshes = [str(mesh) for mesh in meshes_of(folder, results)]
+    if not meshes:
+        print(f"error: no meshes in '{arguments.folder}': files that end with "
+              f"{', '.join(sorted(MESHES))}", file=sys.stderr)
+        return 1
+    check_options(arguments.options)
     from tqdm import tqdm
 
-    arguments.results.mkdir(parents=True, exist_ok=True)
-    table = (arguments.results / "results.csv").resolve()  # where a link leads to
+    table = (results / "results.csv").resolve()  # where a link leads to
     done = {row["mesh"]: row for row in rows_of(table)
             if row["status"] == "ok" or not arguments.retry}
-    meshes = sorted(str(path.resolve()) for path in arguments.folder.iterdir()
-                    if path.suffix.lower() in MESHES)
-    jobs = [(mesh, str(arguments.results.resolve() / Path(mesh).name), arguments.formats,
+    jobs = [(mesh, str(results / Path(mesh).relative_to(folder)), arguments.formats,
              arguments.options, arguments.timeout) for mesh in meshes if mesh not in done]
-    if not meshes:
-        print(f"error: no meshes in '{arguments.folder}'", file=sys.stderr)
-        return 1
 
     write_table(table, done.values())
     rows = (run_on_cluster(jobs, arguments.scheduler) if arguments.scheduler
             else run_here(jobs, arguments.workers))
     with open(table, "a", newline="", encoding="utf-8") as lines, closing(rows), \
-            tqdm(total=len(meshes), initial=len(meshes) - len(jobs), unit="mesh") as bar:
+            tqdm(total=len(meshes), initial=len(meshes) - len(jobs), unit="mesh",
+                 disable=None) as bar:  # no bar but on a terminal
         writer = csv.DictWriter(lines, COLUMNS, extrasaction="ignore")
         for row in rows:
             writer.writerow(row)
@@ -229,7 +283,7 @@ def main() -> int:
             bar.set_postfix_str(Path(row["mesh"]).name, refresh=False)
             bar.update()
     tried = [done[mesh] for mesh in meshes]
-    print(summary(tried))
+    print(summary(tried, folder))
     return 0 if all(row["status"] == "ok" for row in tried) else 1
 
 

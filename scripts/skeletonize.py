@@ -5,11 +5,13 @@
 
 import argparse
 import sys
+import tempfile
 from pathlib import Path
 from typing import Any
 
 DEFAULT_MESH = Path(__file__).resolve().parent.parent / "meshes" / "animal.off"
 FILTER = "generate_curve_skeleton_mcf"
+FORMATS = ("ply", "obj", "swc", "cg", "graphml", "json", "vtp", "glb")
 
 
 class UserError(Exception):
@@ -60,8 +62,9 @@ def parse_arguments(arguments: list[str] | None = None) -> argparse.Namespace:
     results = parser.add_argument_group("the results")
     results.add_argument("--keep-stages", type=int, metavar="K",
                          help="also write every K-th stage of the contraction, NAME_meso_K.ply")
-    results.add_argument("--formats", nargs="+", choices=["ply", "obj"], default=["ply"],
-                         metavar="FORMAT", help="formats of the skeleton: ply, obj (lines)")
+    results.add_argument("--formats", nargs="+", choices=FORMATS, default=["ply"], metavar="FORMAT",
+                         help=f"formats of the skeleton: {', '.join(FORMATS)} (ply); obj has lines, glb "
+                              "an armature in the surface")
     results.add_argument("--no-picture", dest="picture", action="store_false", help="draw nothing")
     results.add_argument("--colour", choices=["radius", "branch"], default="radius",
                          help="what the skeleton's colour means in the picture")
@@ -98,8 +101,15 @@ def run_filter(options: argparse.Namespace) -> tuple[Any, dict[str, float]]:
 
     from host_progress import host_output, terminal
 
+    if options.mesh.is_dir():
+        raise UserError(f"'{options.mesh}' is a folder, not a mesh: examples/skeletonize_folder.py does "
+                        "folders")
     if not options.mesh.is_file():
         raise UserError(f"there is no file '{options.mesh}'")
+    output = options.output.absolute()
+    there = next(folder for folder in [output, *output.parents] if folder.exists())
+    with tempfile.TemporaryFile(dir=there):
+        pass  # what cannot be written is found out before the work
     pymeshlab.load_plugin(str(options.plugin))
     layers = pymeshlab.MeshSet(verbose=True)
     messages: list[str] = []
@@ -107,7 +117,7 @@ def run_filter(options: argparse.Namespace) -> tuple[Any, dict[str, float]]:
     results: dict[str, float] = {}
     parameters = filter_parameters(options)
     with terminal() as stream, tqdm(
-            total=100, file=stream, leave=False, desc="Reading", mininterval=0,
+            total=100, file=stream, leave=False, desc="Reading", mininterval=0, disable=None,
             bar_format="{desc:<32.32} {bar} {percentage:3.0f} % {elapsed}") as bar:
 
         def on_progress(percent: int, what: str) -> None:
@@ -179,11 +189,12 @@ def write_obj(path: Path, nodes: Any, edges: Any) -> None:
 
 def write_results(options: argparse.Namespace, layers: Any) -> list[Path]:
     """Writes every file and returns their names."""
+    import pymeshlab
+
     from picture import draw
     from ply_files import write_skeleton, write_surface
 
     folder, name = options.output, options.mesh.stem
-    folder.mkdir(parents=True, exist_ok=True)
     written = []
 
     skeleton = layer_named(layers, "_skeleton")
@@ -199,6 +210,14 @@ def write_results(options: argparse.Namespace, layers: Any) -> list[Path]:
     if "obj" in options.formats:
         path = folder / f"{name}_skeleton.obj"
         write_obj(path, nodes.tolist(), edges)
+        written.append(path)
+    layers.set_current_mesh(skeleton.id())
+    for kind in sorted(set(options.formats) - {"ply", "obj"}):
+        path = folder / f"{name}_skeleton.{kind}"
+        try:
+            layers.apply_filter("save_skeleton_mcf", file=str(path.resolve()), surface=surface.id())
+        except pymeshlab.PyMeshLabException as error:
+            raise UserError(reason(str(error))) from None
         written.append(path)
     path = folder / f"{name}_surface.ply"
     write_surface(path, vertices, faces, surface_attributes(surface))

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from conftest import MESHES, ROOT, opened
+from conftest import MESHES, ROOT, arrays, opened
 
 SCRIPT = ROOT / "examples" / "skeletonize_folder.py"
 COARSE = ["--option", "target_length=1.2%"]
@@ -62,12 +62,71 @@ def test_a_bad_mesh_costs_the_others_nothing(folder, environment):
         "torus": "ok", "capsule": "ok", "animal450": "ok", "open": "failed"}
     assert "Close Holes" in rows["open"]["error"]
     assert "Close Holes" in done.stdout and "torus.off" in done.stdout
-    assert "4/4" in done.stderr, "the progress bar"
+    assert "%" not in done.stderr and "it/s" not in done.stderr, "no progress bar but on a terminal"
     for name in ["torus", "capsule", "animal450"]:
         graph = json.loads((folder.parent / "out" / f"{name}.off.json").read_text())
         assert len(graph["nodes"]) == int(rows[name]["skeleton_vertices"])
         assert (folder.parent / "out" / f"{name}.off.swc").is_file()
     assert rows["torus"]["cycles"] == "1" and rows["capsule"]["cycles"] == "0"
+    heading, *printed = done.stdout.splitlines()
+    cycles = heading.split().index("cycles")
+    assert {line.split()[0]: line.split()[cycles] for line in printed if " ok " in line} == {
+        "torus.off": "1", "capsule.off": "0", "animal450.off": "0"}
+    vertices, faces = arrays("torus")
+    assert [rows["torus"]["mesh_vertices"], rows["torus"]["mesh_faces"]] == [
+        str(len(vertices)), str(len(faces))]
+    assert (rows["torus"]["terminals"], rows["capsule"]["terminals"]) == ("0", "2")
+    for name in ["torus", "capsule"]:
+        assert 0 < float(rows[name]["radius_min"]) <= float(rows[name]["radius_max"])
+
+
+def test_subfolders_and_names_that_meet(folder, environment):
+    for name in ["a", "b"]:
+        (folder / name).mkdir()
+        (folder / "torus.off").replace(folder / name / "same.off") if name == "a" else (
+            folder / "capsule.off").replace(folder / name / "same.off")
+    for name in ["open", "animal450"]:
+        (folder / f"{name}.off").unlink()
+    out = folder / "out"  # within the folder: its skeletons are no meshes
+    command = [sys.executable, str(SCRIPT), str(folder), str(out), *COARSE, "--formats", "ply", "json"]
+    for _ in range(2):
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=240)
+        assert done.returncode == 0, done.stderr
+    with open(out / "results.csv", newline="") as lines:
+        rows = {row["mesh"]: row for row in csv.DictReader(lines)}
+    assert len(rows) == 2
+    for name, cycles in [("a", "1"), ("b", "0")]:
+        assert rows[str((folder / name / "same.off").resolve())]["cycles"] == cycles
+        graph = json.loads((out / name / "same.off.json").read_text())
+        assert str(graph["graph"]["cycles"]) == cycles
+        assert (out / name / "same.off.ply").is_file()
+
+
+@pytest.mark.parametrize("arguments, words", [
+    (["--option", "foo=1"], "There is no option foo"),
+    (["--option", "w_l=thin"], "w_l='thin' is no number"),
+    (["--option", "w_l"], "expected NAME=VALUE"),
+    (["--formats", "xyz"], "'vtp'"),
+])
+def test_what_cannot_be_is_found_out_at_once(folder, environment, arguments, words):
+    done = run(folder, *arguments, env=environment)
+    assert done.returncode != 0 and words in done.stderr
+    assert not (folder.parent / "out" / "results.csv").exists()
+
+
+def test_a_results_folder_that_cannot_be_is_found_out_at_once(folder, environment):
+    (folder.parent / "out").write_text("a file")
+    done = run(folder, env=environment)
+    assert done.returncode == 1 and "nothing can be written into" in done.stderr
+    assert (folder.parent / "out").read_text() == "a file"
+
+
+def test_offers_every_format_that_the_package_writes(environment):
+    text = subprocess.run([sys.executable, "-c", "import mcfskel._files; print(mcfskel._files.WRITTEN)"],
+                          env=environment, capture_output=True, text=True, check=True).stdout
+    sys.path.insert(0, str(SCRIPT.parent))
+    import skeletonize_folder
+    assert {f".{name}" for name in skeletonize_folder.FORMATS} == set(eval(text))
 
 
 def test_goes_on_where_it_stopped(folder, environment):
@@ -115,18 +174,20 @@ def test_goes_on_after_an_interruption(folder, environment, way, status):
 
 
 def test_a_crash_costs_one_mesh(folder, environment, tmp_path):
-    # A stand-in for the reader that takes the process down on one mesh and hangs on another.
-    (tmp_path / "trimesh.py").write_text(
-        "import importlib.util, os, sys, time\n"
-        "def load(path, **options):\n"
+    # A stand-in for the package that takes the process down on one mesh and hangs on another.
+    (tmp_path / "mcfskel.py").write_text(
+        "import os, sys, time\n"
+        "sys.path = [p for p in sys.path if p != os.path.dirname(__file__)]\n"
+        "del sys.modules['mcfskel']\n"
+        "import mcfskel\n"
+        "skeletonize = mcfskel.skeletonize\n"
+        "def stand_in(path, **options):\n"
         "    if 'capsule' in path:\n"
         "        os.abort()\n"
         "    if 'animal' in path:\n"
         "        time.sleep(300)\n"
-        "    sys.path = [p for p in sys.path if p != os.path.dirname(__file__)]\n"
-        "    del sys.modules['trimesh']\n"
-        "    import trimesh\n"
-        "    return trimesh.load(path, **options)\n")
+        "    return skeletonize(path, **options)\n"
+        "mcfskel.skeletonize = stand_in\n")
     env = environment | {"PYTHONPATH": f"{tmp_path}:{environment['PYTHONPATH']}"}
     done = run(folder, "--timeout", "30", "--workers", "4", env=env)
     assert done.returncode == 1

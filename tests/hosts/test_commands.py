@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """scripts/skeletonize.sh: the files it writes, what is in them, and how it fails."""
 
+import os
+import pty
 import subprocess
 import sys
 from pathlib import Path
@@ -28,7 +30,7 @@ def torus(tmp_path_factory) -> tuple[Path, subprocess.CompletedProcess]:
     """The folder and the output of one run that writes all there is."""
     folder = tmp_path_factory.mktemp("torus")
     run = skeletonize(MESHES / "torus.off", folder / "results", "--target-length", "1.2%",
-                      "--keep-stages", 4, "--formats", "ply", "obj", folder=folder)
+                      "--keep-stages", 4, "--formats", "ply", "obj", "json", "glb", folder=folder)
     assert run.returncode == 0, run.stderr
     return folder / "results", run
 
@@ -37,7 +39,8 @@ class TestResults:
     def test_files(self, torus):
         folder, run = torus
         names = {path.name for path in folder.iterdir()}
-        assert {"torus_skeleton.ply", "torus_skeleton.obj", "torus_surface.ply", "torus_meso_4.ply",
+        assert {"torus_skeleton.ply", "torus_skeleton.obj", "torus_skeleton.json",
+                "torus_skeleton.glb", "torus_surface.ply", "torus_meso_4.ply",
                 "torus.png"} <= names
         assert not [name for name in names if name.endswith(".part")]
         for name in names:
@@ -96,8 +99,8 @@ class TestResults:
         assert 0.1 < (picture.min(axis=2) < 0.97).mean() < 0.95  # the surface, not all of it
         assert 0.002 < (saturation > 0.4).mean() < 0.2  # the skeleton and its colour bar
 
-    def test_progress_goes_to_the_terminal_and_results_to_the_output(self, torus):
-        assert "%" in torus[1].stderr
+    def test_no_progress_bar_in_a_file(self, torus):
+        assert "%" not in torus[1].stderr
         assert "Contracting" not in torus[1].stdout
 
 
@@ -125,6 +128,24 @@ class TestOptions:
         for option in ["--w-l", "--epsilon", "--no-resample", "--keep-stages", "--formats",
                        "--no-picture"]:
             assert option in run.stdout
+
+
+def test_progress_goes_to_the_terminal_and_results_to_the_output(tmp_path):
+    ours, terminal = pty.openpty()
+    run = subprocess.Popen([str(SCRIPT), str(MESHES / "box8.off"), str(tmp_path / "out"), "--no-picture"],
+                           stdout=subprocess.PIPE, stderr=terminal, text=True)
+    os.close(terminal)
+    shown = b""
+    while True:
+        try:
+            shown += os.read(ours, 4096)
+        except OSError:  # the other end was closed
+            break
+    output, _ = run.communicate(timeout=600)
+    os.close(ours)
+    assert run.returncode == 0, shown
+    assert b" % " in shown
+    assert "skeleton:" in output and "%" not in output
 
 
 class TestFailures:
@@ -160,6 +181,10 @@ class TestFailures:
         run = skeletonize(MESHES / "capsule.off", tmp_path, "--w-l", "-1")
         assert run.returncode == 1
         assert "w_l" in run.stderr.strip().splitlines()[-1]
+
+    def test_a_folder_is_no_mesh(self, tmp_path):
+        run = skeletonize(tmp_path, tmp_path / "out")
+        assert run.returncode == 1 and "is a folder" in run.stderr.strip().splitlines()[-1]
 
     def test_folder_that_cannot_be_written(self, tmp_path):
         (tmp_path / "taken").write_text("")
