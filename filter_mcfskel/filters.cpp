@@ -124,6 +124,7 @@ const std::vector<FilterSpec>& catalogue()
 		measureSkeletonFilter(),
 		medialAxisFilter(),
 		medialBallsFilter(),
+		skeletonTubesFilter(),
 		saveStageFilter(),
 		loadStageFilter(),
 		saveSkeletonFilter(),

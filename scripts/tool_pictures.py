@@ -212,6 +212,14 @@ def balls(scene: Scene) -> list[Panel]:
                   [(union, np.tile(PALE * 1.2, (union.face_number(), 1)))], [])]
 
 
+def tubes(scene: Scene) -> list[Panel]:
+    panels = []
+    for title, options in [("constant radius", {"radius": percent(0.8)}), ("local radius", {"local_radius": True})]:
+        mesh = scene.run("generate_skeleton_tubes_mcf", scene.skeleton, **options)
+        panels.append(Panel(title, [], [(mesh, vertex_colours(mesh))], []))
+    return panels
+
+
 def vertex_colours(mesh: pymeshlab.Mesh) -> np.ndarray:
     return mesh.vertex_color_matrix()[mesh.face_matrix()].mean(axis=1)[:, :3]
 
@@ -260,6 +268,7 @@ PICTURES: dict[str, tuple[str, Callable[[Scene], list[Panel]]]] = {
     "measure": ("animal", measure),
     "medial_axis": ("hand", medial_axis),
     "balls": ("animal", balls),
+    "tubes": ("animal", tubes),
     "filters/resample": ("animal450", resample),
     "filters/poles": ("animal", poles),
     "filters/stages": ("hand", stages),

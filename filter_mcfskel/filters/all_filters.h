@@ -24,6 +24,7 @@ FilterSpec compareSkeletonsFilter();
 FilterSpec measureSkeletonFilter();
 FilterSpec medialAxisFilter();
 FilterSpec medialBallsFilter();
+FilterSpec skeletonTubesFilter();
 FilterSpec saveStageFilter();
 FilterSpec loadStageFilter();
 FilterSpec saveSkeletonFilter();

@@ -21,7 +21,8 @@ COMPARE = "compute_skeleton_distance_mcf"
 MEASURE = "compute_skeleton_measures_mcf"
 MEDIAL_AXIS = "generate_medial_axis_mcf"
 BALLS = "generate_medial_balls_mcf"
-ALL = [PARTS, PRUNE, RESAMPLE_SKELETON, COMPARE, MEASURE, BALLS]
+TUBES = "generate_skeleton_tubes_mcf"
+ALL = [PARTS, PRUNE, RESAMPLE_SKELETON, COMPARE, MEASURE, BALLS, TUBES]
 
 COARSE = {"target_length": pymeshlab.PercentageValue(1.2)}
 TIP, JUNCTION, RING = 0, 1, 2
@@ -468,6 +469,44 @@ class TestBalls:
         assert volume(union.vertex_matrix(), union.face_matrix()) == pytest.approx(exact, rel=0.02)
 
 
+class TestTubes:
+    @pytest.mark.parametrize("name, pieces, number", [("y_tube", 3, 6), ("torus", 1, 0)])
+    def test_each_branch_is_a_closed_tube(self, name, pieces, number):
+        layers = skeletonized(name)
+        assert layers.apply_filter(TUBES)["tubes"] == pieces
+        tubes = layers.current_mesh()
+        assert tubes.label() == f"{name}_tubes" and euler(tubes) == number
+        measures = layers.get_topological_measures()
+        assert measures["boundary_edges"] == measures["non_two_manifold_edges"] == 0
+        assert measures["non_two_manifold_vertices"] == 0
+        assert measures["connected_components_number"] == pieces
+        assert volume(tubes.vertex_matrix(), tubes.face_matrix()) > 0, "oriented outwards"
+
+    def test_constant_and_local_radius(self):
+        layers = opened("bent_tube")
+        nodes, edges, radius = known_skeleton("bent_tube")
+        add_curve(layers, nodes, edges, radius, "drawn")
+        drawn = layers.current_mesh_id()
+        length = np.linalg.norm(np.subtract(*nodes[edges].transpose(1, 0, 2)), axis=1).sum()
+        for options, r in [({"radius": pymeshlab.PureValue(0.2 * radius.min())}, 0.2 * radius.min()),
+                           ({"local_radius": True}, radius.mean())]:
+            layers.set_current_mesh(drawn)
+            layers.apply_filter(TUBES, sides=48, **options)
+            tubes = layers.current_mesh()
+            exact = np.pi * r ** 2 * length + 4 / 3 * np.pi * r ** 3
+            assert volume(tubes.vertex_matrix(), tubes.face_matrix()) == pytest.approx(exact, rel=0.03)
+
+    def test_colour_and_quality_are_the_thickness(self):
+        layers = opened("bent_tube")
+        add_curve(layers, [[0, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 1], [1, 2]], [0.1, 0.2, 0.3], "bar")
+        layers.apply_filter(TUBES)
+        tubes = layers.current_mesh()
+        assert set(np.round(tubes.vertex_scalar_array(), 6)) == {0.1, 0.2, 0.3}
+        colours = tubes.vertex_color_matrix()
+        thin, thick = (colours[np.isclose(tubes.vertex_scalar_array(), r)].mean(axis=0) for r in (0.1, 0.3))
+        assert thin[2] - thin[0] > 0.5 and thick[0] - thick[2] > 0.5, "from blue to red"
+
+
 class TestErrors:
     @pytest.mark.parametrize("name", ALL)
     def test_a_surface_is_no_skeleton(self, name):
@@ -481,6 +520,8 @@ class TestErrors:
         (PRUNE, {"spur_prominence": 2}, "spur_prominence"),
         (RESAMPLE_SKELETON, {"longest_edge": percent(0)}, "longest_edge"),
         (BALLS, {"voxel": percent(0)}, "voxel"),
+        (TUBES, {"radius": percent(0)}, "radius"),
+        (TUBES, {"sides": 2}, "sides"),
     ])
     def test_parameters_out_of_range(self, name, options, said):
         layers = opened("bent_tube")

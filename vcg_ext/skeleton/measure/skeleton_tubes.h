@@ -1,0 +1,247 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/**
+ * @file
+ * @brief A skeleton as closed tubes: to be printed, and for programs that draw no lines.
+ */
+
+#ifndef VCG_MCF_SKELETON_TUBES_H
+#define VCG_MCF_SKELETON_TUBES_H
+
+#include <skeleton/core/errors.h>
+#include <skeleton/graph/curve_skeleton.h>
+#include <skeleton/graph/skeleton_branches.h>
+#include <skeleton/mesh/surface_mesh.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/// Tubes as one triangle mesh.
+struct SkeletonTubes
+{
+	std::vector<Point3d> points;
+	std::vector<Triangle> triangles;
+	/// For each point the node of the skeleton that it lies around.
+	std::vector<int> node;
+	/// How many closed tubes and balls there are.
+	int pieces = 0;
+};
+
+namespace detail {
+
+/// A point's circle: centre, and two radii at right angles, the second one a quarter turn after the first.
+struct TubeRing
+{
+	Point3d centre, first, second;
+	int node;
+};
+
+/// Any unit vector at a right angle to a unit vector.
+inline Point3d anyPerpendicular(const Point3d& direction)
+{
+	int axis = 0;
+	for (int k = 1; k < 3; ++k)
+		if (std::abs(direction[k]) < std::abs(direction[axis]))
+			axis = k;
+	Point3d result(0, 0, 0);
+	result[axis] = 1;
+	result -= direction * direction[axis];
+	return result.Normalize();
+}
+
+/// Adds rings joined one after the other; ends closed by an apex each, or the last joined to the first.
+class TubeBuilder
+{
+public:
+	TubeBuilder(SkeletonTubes& tubes, int sides) : tubes(tubes), sides(sides) {}
+
+	void ring(const TubeRing& ring)
+	{
+		for (int j = 0; j < sides; ++j) {
+			const double angle = 2 * M_PI * j / sides;
+			add(ring.centre + ring.first * std::cos(angle) + ring.second * std::sin(angle),
+				ring.node);
+		}
+		if (rings++ > 0)
+			join(last, int(tubes.points.size()) - sides);
+		else
+			first = int(tubes.points.size()) - sides;
+		last = int(tubes.points.size()) - sides;
+	}
+
+	/// Joins the last ring to the first.
+	void closeRing() { join(last, first); }
+
+	/// @param rear the apex before the first ring; @param front the one after the last.
+	void closeEnds(const Point3d& rear, const Point3d& front)
+	{
+		const int before = add(rear, tubes.node[size_t(first)]);
+		const int after = add(front, tubes.node[size_t(last)]);
+		for (int j = 0; j < sides; ++j) {
+			const int next = (j + 1) % sides;
+			tubes.triangles.push_back({before, first + next, first + j});
+			tubes.triangles.push_back({after, last + j, last + next});
+		}
+	}
+
+private:
+	int add(const Point3d& point, int node)
+	{
+		tubes.points.push_back(point);
+		tubes.node.push_back(node);
+		return int(tubes.points.size()) - 1;
+	}
+
+	void join(int back, int front)
+	{
+		for (int j = 0; j < sides; ++j) {
+			const int next = (j + 1) % sides;
+			tubes.triangles.push_back({back + j, back + next, front + next});
+			tubes.triangles.push_back({back + j, front + next, front + j});
+		}
+	}
+
+	SkeletonTubes& tubes;
+	int sides;
+	int rings = 0, first = 0, last = 0;
+};
+
+/// The unit tangent at each point of a chain; where it turns back, that of the segment before.
+inline std::vector<Point3d> chainTangents(const std::vector<Point3d>& points, bool closed)
+{
+	const size_t n = points.size();
+	std::vector<Point3d> segment, tangent(n);
+	for (size_t i = 0; i < n; ++i)
+		segment.push_back((points[(i + 1) % n] - points[i]).Normalize());
+	for (size_t i = 0; i < n; ++i) {
+		const Point3d& before = segment[i > 0 ? i - 1 : closed ? n - 1 : 0];
+		const Point3d& after = segment[i + 1 < n || closed ? i : n - 2];
+		const Point3d sum = before + after;
+		tangent[i] = sum.Norm() > 1e-6 ? Point3d(sum / sum.Norm()) : before;
+	}
+	return tangent;
+}
+
+/// First radii (unit) along a chain without needless twist; on a closed one what is left is spread evenly.
+inline std::vector<Point3d> chainNormals(const std::vector<Point3d>& tangent, bool closed)
+{
+	const auto carried = [](const Point3d& normal, const Point3d& along) {
+		const Point3d flat = normal - along * (normal * along);
+		return flat.Norm() > 1e-6 ? Point3d(flat / flat.Norm()) : anyPerpendicular(along);
+	};
+	std::vector<Point3d> normal {anyPerpendicular(tangent.front())};
+	for (size_t i = 1; i < tangent.size(); ++i)
+		normal.push_back(carried(normal.back(), tangent[i]));
+	if (closed) {
+		const Point3d back = carried(normal.back(), tangent.front());
+		const double twist =
+			std::atan2((back ^ normal.front()) * tangent.front(), back * normal.front());
+		for (size_t i = 1; i < normal.size(); ++i) {
+			const double angle = twist * double(i) / double(normal.size());
+			normal[i] = normal[i] * std::cos(angle) + (tangent[i] ^ normal[i]) * std::sin(angle);
+		}
+	}
+	return normal;
+}
+
+} // namespace detail
+
+/**
+ * A tube around each branch, with round ends, and a ball around each node without edges. Each is a closed
+ * two-manifold of its own, oriented outwards; at junctions they overlap, as programs for printing accept. Where
+ * a curve bends within its own radius a tube passes through itself.
+ * @param radius one for each node, mesh units, above 0.
+ * @param sides  of a tube's section, at least 3.
+ * Complexity: O(N * sides).
+ * @throws InvalidParameter: too few sides; InvalidInput: a radius that is missing or not above 0.
+ */
+inline SkeletonTubes skeletonTubes(
+	const CurveSkeleton& skeleton, const std::vector<double>& radius, int sides = 12)
+{
+	using namespace detail;
+	if (sides < 3)
+		throw InvalidParameter("Parameter sides must be at least 3.");
+	if (radius.size() != skeleton.position.size())
+		throw InvalidInput("Tubes need a radius for each node.");
+	for (size_t v = 0; v < radius.size(); ++v)
+		if (!(radius[v] > 0) || !std::isfinite(radius[v]))
+			throw InvalidInput(
+				"Tubes need a radius above 0; that of node " + std::to_string(v) + " is not.");
+	SkeletonTubes tubes;
+	const int quarter = (sides + 3) / 4; // rings from the middle of a ball to its pole
+	// A chain with round ends; of a single node a ball.
+	const auto addOpen = [&](const std::vector<int>& nodes, const std::vector<Point3d>& points,
+							 const std::vector<Point3d>& tangent) {
+		const std::vector<Point3d> normal = chainNormals(tangent, false);
+		TubeBuilder tube(tubes, sides);
+		const auto ring = [&](size_t i, double latitude) {
+			const double r = radius[size_t(nodes[i])];
+			const Point3d first = normal[i] * (r * std::cos(latitude));
+			tube.ring({points[i] + tangent[i] * (r * std::sin(latitude)), first, tangent[i] ^ first,
+				nodes[i]});
+		};
+		const auto pole = [&](size_t i, double sign) {
+			return Point3d(points[i] + tangent[i] * (sign * radius[size_t(nodes[i])]));
+		};
+		for (int k = quarter - 1; k > 0; --k)
+			ring(0, -M_PI / 2 * k / quarter);
+		for (size_t i = 0; i < nodes.size(); ++i)
+			ring(i, 0);
+		for (int k = 1; k < quarter; ++k)
+			ring(nodes.size() - 1, M_PI / 2 * k / quarter);
+		tube.closeEnds(pole(0, -1), pole(nodes.size() - 1, 1));
+	};
+	const auto addClosed = [&](const std::vector<int>& nodes, const std::vector<Point3d>& points) {
+		const std::vector<Point3d> tangent = chainTangents(points, true);
+		const std::vector<Point3d> normal = chainNormals(tangent, true);
+		TubeBuilder tube(tubes, sides);
+		for (size_t i = 0; i < nodes.size(); ++i) {
+			const Point3d first = normal[i] * radius[size_t(nodes[i])];
+			tube.ring({points[i], first, tangent[i] ^ first, nodes[i]});
+		}
+		tube.closeRing();
+	};
+
+	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
+	std::vector<std::vector<int>> chains;
+	for (size_t v = 0; v < neighbours.size(); ++v)
+		if (neighbours[v].empty())
+			chains.push_back({int(v)});
+	for (const Branch& branch : skeletonBranches(skeleton))
+		chains.push_back(branch.nodes);
+	for (std::vector<int>& chain : chains) {
+		bool closed = chain.size() > 3 && chain.front() == chain.back();
+		if (closed)
+			chain.pop_back();
+		std::vector<int> nodes;
+		std::vector<Point3d> points;
+		for (int v : chain) {
+			const Point3d& p = skeleton.position[size_t(v)];
+			if (!points.empty() && !((p - points.back()).Norm() > 0))
+				continue; // no direction from here to there
+			nodes.push_back(v);
+			points.push_back(p);
+		}
+		while (closed && points.size() > 1 && !((points.back() - points.front()).Norm() > 0)) {
+			points.pop_back();
+			nodes.pop_back();
+		}
+		closed = closed && points.size() >= 3;
+		if (closed)
+			addClosed(nodes, points);
+		else
+			addOpen(nodes, points,
+				points.size() > 1 ? chainTangents(points, false)
+								  : std::vector<Point3d> {Point3d(0, 0, 1)});
+		++tubes.pieces;
+	}
+	return tubes;
+}
+
+} // namespace vcg::tri::mcf
+
+#endif
