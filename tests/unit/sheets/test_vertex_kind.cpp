@@ -87,7 +87,8 @@ TEST(VertexKinds, TheSameAtAnySizeAndForEachBodyAsAlone)
 								  ofBody = vertexKinds(stageOf(body));
 	std::vector<VertexKind> both = ofPlate;
 	both.insert(both.end(), ofBody.begin(), ofBody.end());
-	EXPECT_EQ(vertexKinds(stageOf(shapes::scaled(plate, 1e-4))), ofPlate);
+	for (const double times : {1e-4, 1e-25, 1e25})
+		EXPECT_EQ(vertexKinds(stageOf(shapes::scaled(plate, times))), ofPlate) << times;
 	for (const double times : {1.5, 1e3, 1e6})
 		EXPECT_EQ(vertexKinds(stageOf(shapes::joined(
 					  {plate, shapes::moved(shapes::scaled(body, times), {5 * times, 0, 0})}))),

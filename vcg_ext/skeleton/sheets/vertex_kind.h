@@ -50,8 +50,8 @@ inline double epsilonAt(const Stage& stage, int v)
 /// A piece of a triangle of a stage, in single precision: 32 bytes, since there are many.
 struct Piece
 {
-	Point3f middle; ///< the mean of its corners, from the origin of its PiecesByCell
-	float area;
+	Point3f middle; ///< the mean of its corners, in the coordinates of its PiecesByCell
+	float area;     ///< in these, too
 	Point3f normal; ///< unit length, or zero
 	int face;
 };
@@ -70,18 +70,25 @@ public:
 	};
 
 	Point3d origin;
+	/// A power of two of the size of an epsilon, by which lengths are divided: their squares stay within the
+	/// range of single precision, and no digit changes.
+	double unit;
 	std::vector<Piece> pieces;
 	std::vector<Cell> cells;
+
+	Point3f inside(const Point3d& p) const { return Point3f::Construct((p - origin) / unit); }
 
 	/**
 	 * Each triangle is halved at its longest edge until none is longer than longestPiece, or 16 times;
 	 * less often where that would give millions of pieces, as with an epsilon far below the edges.
-	 * @param box  of the grid; pieces whose middles are outside are left out.
+	 * @param box      of the grid; pieces whose middles are outside are left out.
+	 * @param epsilon  mesh units.
 	 * @throws Cancelled
 	 */
-	PiecesByCell(
-		const Stage& stage, const Box3d& box, const CellGrid& grid, const Progress& progress) :
-			origin(box.Center())
+	PiecesByCell(const Stage& stage, const Box3d& box, const CellGrid& grid, double epsilon,
+		const Progress& progress) :
+			origin(box.Center()),
+			unit(epsilon > 0 ? std::exp2(std::ilogb(epsilon)) : 1)
 	{
 		const SurfaceMesh& mesh = stage.mesh;
 		const int halvings = mostHalvings(stage, progress.part(0, 0.05));
@@ -93,7 +100,7 @@ public:
 				mesh.position[t[0]], mesh.position[t[1]], mesh.position[t[2]]};
 			const Point3d areaVector = mesh.areaVector(f);
 			const double length = areaVector.Norm();
-			Piece whole {{0, 0, 0}, float(length / 2), {0, 0, 0}, f};
+			Piece whole {{0, 0, 0}, float(length / 2 / unit / unit), {0, 0, 0}, f};
 			if (length > 0)
 				whole.normal = Point3f::Construct(areaVector / length);
 			addPieces(
@@ -101,8 +108,8 @@ public:
 		});
 		const PointsByCell sorted(
 			int(unsorted.size()),
-			[&](int i) { return Point3d::Construct(unsorted[size_t(i)].middle) + origin; }, grid,
-			progress.part(0.3, 0.8), tellingKinds);
+			[&](int i) { return Point3d::Construct(unsorted[size_t(i)].middle) * unit + origin; },
+			grid, progress.part(0.3, 0.8), tellingKinds);
 		pieces.reserve(unsorted.size());
 		reportedLoop(int(unsorted.size()), progress.part(0.8, 1), tellingKinds, [&](int i) {
 			const Piece& piece = unsorted[size_t(sorted.id[size_t(i)])];
@@ -170,7 +177,7 @@ private:
 		if (!box.IsIn(middle))
 			return;
 		found.push_back(whole);
-		found.back().middle = Point3f::Construct(middle - origin);
+		found.back().middle = inside(middle);
 	}
 };
 
@@ -230,10 +237,10 @@ public:
 		const Stage& stage, const PiecesByCell& surface, int v, const Point3d& vertexNormal) :
 			mesh(stage.mesh),
 			surface(surface), place(mesh.position[v]), limit(mostThickness * epsilonAt(stage, v)),
-			middle(Point3f::Construct(place - surface.origin)),
-			normal(Point3f::Construct(vertexNormal)), height(float(limit * roomForRounding))
+			middle(surface.inside(place)), normal(Point3f::Construct(vertexNormal)),
+			height(float(limit * roomForRounding / surface.unit))
 	{
-		const double reach = wallReach * epsilonAt(stage, v) * roomForRounding;
+		const double reach = wallReach * epsilonAt(stage, v) * roomForRounding / surface.unit;
 		squaredReach = float(reach * reach);
 	}
 
@@ -286,7 +293,9 @@ private:
 inline bool hasAreaWithin(const PiecesByCell& surface, const std::vector<int>& cells,
 	const Point3d& centre, double radius, double enough)
 {
-	const Point3f middle = Point3f::Construct(centre - surface.origin);
+	const Point3f middle = surface.inside(centre);
+	radius /= surface.unit;
+	enough /= surface.unit * surface.unit;
 	const float squaredRadius = float(radius * radius);
 	double area = 0;
 	for (int c : cells) {
@@ -473,7 +482,7 @@ inline std::vector<VertexKind> vertexKinds(
 		const detail::PointsByCell sorted(
 			count, [&](int i) { return mesh.position[some.vertices[size_t(i)]]; }, grid,
 			part.part(0, 0.1), detail::tellingKinds);
-		const detail::PiecesByCell surface(stage, box, grid, part.part(0.1, 0.4));
+		const detail::PiecesByCell surface(stage, box, grid, some.epsilon, part.part(0.1, 0.4));
 		const auto cells = [&](int begin, int end) {
 			detail::CellsAround around(surface.cells, sorted.cell[begin]);
 			std::vector<int> near, closed;
