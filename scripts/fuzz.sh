@@ -17,11 +17,13 @@ set -euo pipefail
 
 usage() {
 	cat <<'END'
-usage: scripts/fuzz.sh [COUNT] [SEED]
+usage: scripts/fuzz.sh [COUNT] [SEED] [OPTION...]
        scripts/fuzz.sh --readers MINUTES [TARGET...]
 
   COUNT    hostile meshes to run whole jobs on (default: 300)
   SEED     of the generator: the same seed gives the same meshes (default: 1)
+  OPTION   of scripts/fuzz/hostile.py, such as --seconds 3600 --workers 1 for as many of COUNT as can be
+           had in that time on one core
 
   --readers MINUTES [TARGET...]
            fuzzes the readers of files instead, each for so many minutes, two at a time; TARGET names
@@ -51,9 +53,17 @@ case "${1:-}" in
 	exec "$ROOT/scripts/fuzz/readers.sh" "$@"
 	;;
 esac
-count="${1:-300}" seed="${2:-1}"
-{ [ $# -le 2 ] && is_number "$count" && is_number "$seed"; } || wrong_use
+count=300 seed=1
+if [ $# -gt 0 ] && is_number "$1"; then
+	count="$1"
+	shift
+fi
+if [ $# -gt 0 ] && is_number "$1"; then
+	seed="$1"
+	shift
+fi
+[[ $# -eq 0 || "$1" == --* ]] || wrong_use
 python="$(python_env)"
 MCFSKEL_PLUGIN="$(build_host pymeshlab)"
 export MCFSKEL_PLUGIN
-exec "$python" "$ROOT/scripts/fuzz/hostile.py" "$count" "$seed"
+exec "$python" "$ROOT/scripts/fuzz/hostile.py" "$count" "$seed" "$@"

@@ -35,7 +35,7 @@ HERE = Path(__file__).resolve().parent
 
 SECONDS = 20.0
 MEGABYTES = 2048
-# A process that sleeps uses no time of a core: it is stuck after this many seconds by the clock.
+# A process that sleeps uses no time of a core: it is stuck after this many seconds by the clock without any.
 WALL_SECONDS = 300.0
 # A worker is replaced after so many meshes, or when it holds so much.
 MESHES_PER_WORKER = 40
@@ -128,8 +128,8 @@ class Worker:
     def _watch(self, ends: list[dict[str, Any]]) -> tuple[tuple[str, str] | None, str | None]:
         """Collects answers until the mesh is done; else says what happened, and in which step."""
         step, running = None, False
-        begin_cpu = begin_wall = 0.0
-        last = time.monotonic()
+        begin_cpu = worked = 0.0
+        last = busy = time.monotonic()
         while True:
             messages = self.lines(0.25)
             if messages is None:
@@ -144,7 +144,8 @@ class Worker:
                 last = time.monotonic()
                 if "begin" in message:
                     step, running = message["begin"], True
-                    begin_cpu, begin_wall = self.cpu_seconds(), time.monotonic()
+                    begin_cpu = worked = self.cpu_seconds()
+                    busy = last
                 elif "judging" in message:
                     running = False
                 elif "end" in message:
@@ -160,8 +161,9 @@ class Worker:
                 self.process.stderr.read()
             except (BlockingIOError, ValueError):
                 pass
-            if running and (self.cpu_seconds() - begin_cpu > self.seconds
-                            or time.monotonic() - begin_wall > WALL_SECONDS):
+            if running and (used := self.cpu_seconds()) > worked:
+                worked, busy = used, time.monotonic()
+            if running and (worked - begin_cpu > self.seconds or time.monotonic() - busy > WALL_SECONDS):
                 return ("hang", f"more than {self.seconds:g} s"), step
             if not running and time.monotonic() - last > WALL_SECONDS:
                 return ("wrong", "the judge did not come to an end"), step
