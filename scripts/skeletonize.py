@@ -146,6 +146,8 @@ def reason(text: str) -> str:
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     if len(lines) > 1 and lines[0].startswith("Failed to apply filter"):
         lines = [line.removeprefix("Details: ") for line in lines[1:]]
+    if lines and lines[0].startswith("Unknown format"):
+        return "its name does not end like a mesh's: .off, .ply, .obj, .stl, .glb, .gltf, .dae, .3ds, .x3d, ..."
     return " ".join(lines)
 
 
@@ -191,10 +193,12 @@ def write_results(options: argparse.Namespace, layers: Any) -> list[Path]:
     """Writes every file and returns their names."""
     import pymeshlab
 
+    from host_progress import host_output
     from picture import draw
     from ply_files import write_skeleton, write_surface
 
     folder, name = options.output, options.mesh.stem
+    folder.mkdir(parents=True, exist_ok=True)
     written = []
 
     skeleton = layer_named(layers, "_skeleton")
@@ -214,10 +218,19 @@ def write_results(options: argparse.Namespace, layers: Any) -> list[Path]:
     layers.set_current_mesh(skeleton.id())
     for kind in sorted(set(options.formats) - {"ply", "obj"}):
         path = folder / f"{name}_skeleton.{kind}"
-        try:
-            layers.apply_filter("save_skeleton_mcf", file=str(path.resolve()), surface=surface.id())
-        except pymeshlab.PyMeshLabException as error:
-            raise UserError(reason(str(error))) from None
+        messages: list[str] = []
+        failure: Exception | None = None
+        with host_output(lambda percent, what: None, messages.append):
+            try:
+                layers.apply_filter("save_skeleton_mcf", file=str(path.resolve()),
+                                    surface=surface.id())
+            except pymeshlab.PyMeshLabException as error:
+                failure = error
+        if failure is not None:
+            raise UserError(reason(str(failure)))
+        for message in messages:
+            if "Warning:" in message:  # a cycle was cut, say
+                print(message[message.index("Warning:"):], file=sys.stderr)
         written.append(path)
     path = folder / f"{name}_surface.ply"
     write_surface(path, vertices, faces, surface_attributes(surface))

@@ -120,7 +120,10 @@ def open_mesh(path: str) -> pymeshlab.MeshSet:
     try:
         _guarded(lambda: layers.load_new_mesh(os.path.abspath(path)), {"path": path})
     except SkeletonError as error:
-        raise SkeletonError(f"'{path}' cannot be read: {error}") from None
+        text = str(error)
+        if text.startswith("Unknown format"):
+            text = "its name does not end like a mesh's: .off, .ply, .obj, .stl, .glb, .gltf, .dae, ..."
+        raise SkeletonError(f"'{path}' cannot be read: {text}") from None
     finally:
         os.chdir(folder)  # where a failed reading in pymeshlab leaves it is the file's folder
     if layers.mesh_number() > 1:

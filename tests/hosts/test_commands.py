@@ -182,6 +182,11 @@ class TestFailures:
         assert run.returncode == 1
         assert "w_l" in run.stderr.strip().splitlines()[-1]
 
+    def test_a_name_that_ends_otherwise(self, tmp_path):
+        (tmp_path / "mesh").write_text((MESHES / "box8.off").read_text())
+        run = skeletonize(tmp_path / "mesh", tmp_path / "out")
+        assert run.returncode == 1 and ".off, .ply" in run.stderr.strip().splitlines()[-1]
+
     def test_a_folder_is_no_mesh(self, tmp_path):
         run = skeletonize(tmp_path, tmp_path / "out")
         assert run.returncode == 1 and "is a folder" in run.stderr.strip().splitlines()[-1]

@@ -4,6 +4,8 @@
 
 import json
 import multiprocessing
+import subprocess
+import sys
 
 import numpy as np
 import pymeshlab
@@ -311,7 +313,7 @@ class TestCollapse:
         stage = layers.apply_filter(STEP, steps=100)
         results = layers.apply_filter(COLLAPSE)
         assert stage["converged"] == 1
-        assert set(results) == CURVE_NUMBERS
+        assert set(results) == CURVE_NUMBERS | {"converged"}
         curve = layers.current_mesh()
         assert curve.label() == "torus_skeleton"
         assert (curve.vertex_number(), curve.edge_number(), curve.face_number()) == (
@@ -354,6 +356,23 @@ def letter():
     results = layers.apply_filter(REFINE)
     assert np.array_equal(layer(layers, "letter_p_skeleton").vertex_matrix(), before)
     return layers, results
+
+
+    def test_a_stage_that_has_not_converged_says_so(self, plugin):
+        """In the result and in the log; one that has says nothing."""
+        script = ("import pymeshlab, sys\n"
+                  "pymeshlab.load_plugin(sys.argv[1])\n"
+                  "layers = pymeshlab.MeshSet(verbose=True)\n"
+                  "layers.load_new_mesh(sys.argv[2])\n"
+                  f"layers.apply_filter('{STEP}', steps=int(sys.argv[3]))\n"
+                  f"print('CONVERGED', layers.apply_filter('{COLLAPSE}')['converged'])\n")
+        for steps, converged in [(2, 0), (100, 1)]:
+            run = subprocess.run([sys.executable, "-c", script, str(plugin),
+                                  str(MESHES / "torus.off"), str(steps)],
+                                 capture_output=True, text=True, check=True)
+            output = run.stdout + run.stderr
+            assert f"CONVERGED {converged}" in output
+            assert ("has not converged after 2 iterations" in output) == (not converged)
 
 
 class TestRefine:

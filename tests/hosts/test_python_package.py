@@ -368,6 +368,7 @@ ERRORS = {
     "'none.off'": "There is no file 'none.off'",
     "'.'": "is a folder",
     "'text.off'": "'text.off' cannot be read",
+    "'text.xyzw'": "does not end like a mesh's: .off, .ply",
     "'mesh.off', mesh.faces": "faces must not be given",
 }
 FILES = {
@@ -390,6 +391,7 @@ def test_errors_are_one_sentence_with_the_cure(run, tmp_path):
         if content is not None:
             (tmp_path / name).write_text(content)
     (tmp_path / "text.off").write_text("not a mesh")
+    (tmp_path / "text.xyzw").write_text("not a mesh")
     calls = [f"mcfskel.skeletonize({arguments})" for arguments in ERRORS]
     calls += [f"mcfskel.load({name!r})" for name in FILES]
     answer = run(f"""
