@@ -56,7 +56,9 @@ def save(skeleton: Skeleton, path: Path, options: dict[str, Any]) -> None:
     if suffix == ".glb" and (skeleton.surface is None or not len(skeleton.correspondence)):
         raise SkeletonError(f"'{path}': .glb holds the surface, which a skeleton from a file does not "
                             "know.")
-    options = filter_options("save()", options, layers.filter_parameter_values("save_skeleton_mcf"))
+    known = layers.filter_parameter_values("save_skeleton_mcf")
+    options = filter_options("save()", options, {name: default for name, default in known.items()
+                                                 if name not in ("file", "surface")})
     options["file"] = str(path)
     if len(skeleton.correspondence):
         if suffix == ".glb":

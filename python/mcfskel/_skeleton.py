@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 import pymeshlab
 
-from . import _branches, _convert, _files, _picture, _plot
+from . import _branches, _convert, _files, _measures, _picture, _plot
 from ._run import (INT_MAX, Length, SkeletonError, SkeletonWarning, apply, filter_options,
                    open_mesh)
 
@@ -117,6 +117,20 @@ class Skeleton:
         """The length of each edge, (E,)."""
         ends = self.nodes[self.edges]
         return np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
+
+    def branch_measures(self) -> dict[str, npt.NDArray[Any]]:
+        """What is tabulated of centrelines: for each of ``branches`` a value in each column.
+
+        Columns: first and last (nodes); length and chord, mesh units; tortuosity, length / chord - 1,
+        infinite where a branch ends where it begins; curvature, the angle by which the branch turns
+        over its length, radians a mesh unit (of an unrefined curve much of it is roughness);
+        radius_min, radius_mean (over the length), radius_max; angle_first and angle_last, degrees, the
+        smallest angle to another branch at that junction, each taken towards the point where it leaves
+        the junction's ball, NaN at other ends; strahler, the order after Strahler (1957) with the
+        thickest end of a branch as the root, 0 in a component with cycles. For a table:
+        ``pandas.DataFrame(skeleton.branch_measures())``.
+        """
+        return _measures.branch_measures(self)
 
     def to_networkx(self, *, arrays: bool = False) -> networkx.Graph:
         """The skeleton as a graph, sides of sheets included; the results are the graph's attributes.

@@ -4,6 +4,7 @@
 
 import filecmp
 import json
+import math
 import os
 import re
 import shutil
@@ -237,6 +238,48 @@ def test_vtk_reads_vtp(run):
     assert answer["branches"] and answer["points"] and answer["radius"] and answer["node"]
     assert answer["groups"] == list(range(answer["count"])) and answer["again"]
     assert answer["names"] == ["Blanking", "CenterlineIds", "GroupIds", "TractIds"]
+
+
+def test_branch_measures_of_known_curves(run):
+    """A half circle, a helix, a Y with right angles, and a tree whose orders Strahler's rule gives."""
+    answer = run("""
+        import mcfskel
+        def skeleton(nodes, edges, radius=None):
+            nodes, edges = np.array(nodes, float), np.sort(np.array(edges), axis=1)
+            radius = np.full(len(nodes), 0.1) if radius is None else np.array(radius, float)
+            return mcfskel.Skeleton(nodes, edges, radius, np.empty(0, int))
+        def chain(points, closed=False):
+            n = len(points)
+            return skeleton(points, [(i, (i + 1) % n) for i in range(n if closed else n - 1)])
+        t = np.linspace(0, np.pi, 400)
+        half = chain(3 * np.column_stack([np.cos(t), np.sin(t), 0 * t])).branch_measures()
+        ring = chain(3 * np.column_stack([np.cos(2 * t), np.sin(2 * t), 0 * t])[:-1], True)
+        u = np.linspace(0, 6 * np.pi, 3000)
+        helix = chain(np.column_stack([2 * np.cos(u), 2 * np.sin(u), 0.5 * u])).branch_measures()
+        # Bent at once behind the junction, within its ball: the angle is that outside.
+        y = skeleton([[0, 0, 0], [.05, .05, 0], [1, 0, 0], [0, 1, 0], [-1, 0, 0]],
+                     [(0, 1), (1, 2), (0, 3), (0, 4)], [.5, .1, .2, .3, .4]).branch_measures()
+        #     0 - 1 - 2 - 3   side branches 4 at 1, 5 at 2, and 6, 7 on 5: orders by hand
+        tree = skeleton(np.random.default_rng(1).random((8, 3)),
+                        [(0, 1), (1, 2), (2, 3), (1, 4), (2, 5), (5, 6), (5, 7)], [9] + 7 * [1])
+        orders = {f"{a}-{b}": o for a, b, o in zip(*(tree.branch_measures()[k].tolist()
+                                                     for k in ("first", "last", "strahler")))}
+        answer = {"half": {k: float(v[0]) for k, v in half.items()},
+                  "ring": {k: float(v[0]) for k, v in ring.branch_measures().items()},
+                  "helix": float(helix["curvature"][0]),
+                  "y": {k: v.tolist() for k, v in y.items()}, "orders": orders}
+    """)
+    half, ring, y = answer["half"], answer["ring"], answer["y"]
+    assert half["length"] == pytest.approx(3 * math.pi, rel=1e-4)
+    assert half["chord"] == pytest.approx(6)
+    assert half["tortuosity"] == pytest.approx(math.pi / 2 - 1, rel=1e-3)
+    assert half["curvature"] == pytest.approx(1 / 3, rel=0.005)
+    assert ring["curvature"] == pytest.approx(1 / 3, rel=1e-4) and ring["tortuosity"] == math.inf
+    assert answer["helix"] == pytest.approx(2 / (2 ** 2 + 0.5 ** 2), rel=0.002)
+    assert y["angle_first"] == pytest.approx([90, 90, 90]) and all(map(math.isnan, y["angle_last"]))
+    assert y["radius_min"][1:] == [0.3, 0.4] and y["radius_max"] == [0.5] * 3
+    assert y["radius_mean"][1] == pytest.approx(0.4)
+    assert answer["orders"] == {"0-1": 2, "1-2": 2, "2-3": 1, "1-4": 1, "2-5": 2, "5-6": 1, "5-7": 1}
 
 
 def test_nothing_optional_is_imported_before_it_is_used(run):
