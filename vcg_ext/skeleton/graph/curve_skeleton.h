@@ -95,6 +95,35 @@ inline SkeletonStatistics statistics(const CurveSkeleton& skeleton)
 	return s;
 }
 
+/**
+ * The component of the surface that each node belongs to; -1 for parts of the graph into which
+ * nothing has merged.
+ */
+inline std::vector<int> componentOfNodes(
+	const CurveSkeleton& curve, const std::vector<int>& component)
+{
+	const std::vector<std::vector<int>> neighbours = curve.neighbours();
+	std::vector<int> ofNode(curve.position.size(), -1);
+	std::vector<int> stack;
+	for (size_t s = 0; s < curve.node.size(); ++s) {
+		const int seed = curve.node[s];
+		if (seed < 0 || ofNode[seed] >= 0)
+			continue;
+		ofNode[seed] = component[s];
+		stack.push_back(seed);
+		while (!stack.empty()) {
+			const int v = stack.back();
+			stack.pop_back();
+			for (int w : neighbours[v])
+				if (ofNode[w] < 0) {
+					ofNode[w] = component[s];
+					stack.push_back(w);
+				}
+		}
+	}
+	return ofNode;
+}
+
 } // namespace vcg::tri::mcf
 
 #endif

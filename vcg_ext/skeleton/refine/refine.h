@@ -189,35 +189,6 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 	return withoutBluntEnds(skeleton, clearances, parameters.tipGain);
 }
 
-/**
- * The component of the surface that each node belongs to; -1 for parts of the graph into which
- * nothing has merged.
- */
-inline std::vector<int> componentOfNodes(
-	const CurveSkeleton& curve, const std::vector<int>& component)
-{
-	const std::vector<std::vector<int>> neighbours = curve.neighbours();
-	std::vector<int> ofNode(curve.position.size(), -1);
-	std::vector<int> stack;
-	for (size_t s = 0; s < curve.node.size(); ++s) {
-		const int seed = curve.node[s];
-		if (seed < 0 || ofNode[seed] >= 0)
-			continue;
-		ofNode[seed] = component[s];
-		stack.push_back(seed);
-		while (!stack.empty()) {
-			const int v = stack.back();
-			stack.pop_back();
-			for (int w : neighbours[v])
-				if (ofNode[w] < 0) {
-					ofNode[w] = component[s];
-					stack.push_back(w);
-				}
-		}
-	}
-	return ofNode;
-}
-
 /// From a node downhill along the graph, to one that is nearer to the point than its neighbours.
 inline int nearestAlong(const CurveSkeleton& skeleton,
 	const std::vector<std::vector<int>>& neighbours, int node, const Point3d& point)
@@ -304,35 +275,24 @@ inline void addTo(RefineReport& report, Defect defect)
 }
 
 /**
- * Refines the skeleton of one component and checks the result. What fails is tried again with closest
- * points of which none is missed: where the shape is thinner than the samples of its surface are apart,
- * the fast ones take the wrong wall.
+ * Refines the skeleton of one component and checks the result.
  * @param refined  the unrefined curve; the refined one if there is no defect, else unchanged.
  */
-inline Defect refineChecked(CurveSkeleton& refined, ClosestSurface& surface,
+inline Defect refineChecked(CurveSkeleton& refined, const ClosestSurface& surface,
 	const SurfaceComponent& component, const RefineParameters& parameters, const Progress& progress)
 {
-	const CurveSkeleton unrefined = refined;
 	const InsideCheck inside(surface, component);
-	const auto attempt = [&](double from, double to) {
-		try {
-			CurveSkeleton curve =
-				refineComponent(unrefined, surface, component, parameters, progress.part(from, to));
-			const Defect defect =
-				defectOf(curve, unrefined, parameters.spacing, inside, progress.part(to, to));
-			if (defect == Defect::None)
-				refined = std::move(curve);
-			return defect;
-		}
-		catch (const SolverError&) {
-			return Defect::NotFinite;
-		}
-	};
-	constexpr double usual = 0.9; // of the time: few shapes need the second attempt
-	if (attempt(0, usual) == Defect::None)
-		return Defect::None;
-	surface.makeExact();
-	return attempt(usual, 1);
+	try {
+		CurveSkeleton curve = refineComponent(refined, surface, component, parameters, progress);
+		const Defect defect =
+			defectOf(curve, refined, parameters.spacing, inside, progress.part(1, 1));
+		if (defect == Defect::None)
+			refined = std::move(curve);
+		return defect;
+	}
+	catch (const SolverError&) {
+		return Defect::NotFinite;
+	}
 }
 
 } // namespace refining
@@ -380,7 +340,7 @@ inline Refinement refineChecked(const CurveSkeleton& curve, const SurfaceMesh& s
 	int components = 0;
 	const std::vector<int> component =
 		connectedComponents(surface, &components, progress.part(0, 0.01));
-	const std::vector<int> componentOfNode = refining::componentOfNodes(curve, component);
+	const std::vector<int> componentOfNode = componentOfNodes(curve, component);
 	const ComponentVertices vertices(component, components, progress.part(0.01, 0.01));
 	std::vector<std::vector<int>> nodes(components), edges(components);
 	for (size_t v = 0; v < componentOfNode.size(); ++v)
@@ -424,7 +384,8 @@ inline Refinement refineChecked(const CurveSkeleton& curve, const SurfaceMesh& s
 			part.edges.push_back({number[curve.edges[e][0]], number[curve.edges[e][1]]});
 		const Progress ofComponent =
 			progress.part(0.03 + 0.97 * c / components, 0.03 + 0.97 * (c + 1) / components);
-		ClosestSurface closest(unit, vertices.ids[c], sampleSpacing, ofComponent.part(0, 0.1));
+		const ClosestSurface closest(
+			unit, vertices.ids[c], sampleSpacing, ofComponent.part(0, 0.1));
 		const refining::SurfaceComponent own = {unit, vertices.ids[c], vertices.place};
 		const refining::Defect defect =
 			refining::refineChecked(part, closest, own, parameters, ofComponent.part(0.1, 0.95));

@@ -81,8 +81,6 @@ public:
 	/// The same from what closestFrom() has found.
 	Hit closest(const Point3d& query, const Hit& first) const
 	{
-		if (alwaysExact)
-			return exactFrom(query, first);
 		Nearest nearest {query, -1, first.distance};
 		tree.search(nearest);
 		if (nearest.slot < 0)
@@ -92,7 +90,7 @@ public:
 	}
 	Hit closest(const Point3d& query) const
 	{
-		return alwaysExact ? closestExactly(query) : closestNearSample(query);
+		return closestFrom(query, faceOfSample[tree.nearest(query)]);
 	}
 
 	/**
@@ -101,7 +99,9 @@ public:
 	 */
 	Hit closestExactly(const Point3d& query) const
 	{
-		return exactFrom(query, closestNearSample(query));
+		NearTriangles near {*this, query, closest(query)};
+		tree.search(near);
+		return near.best;
 	}
 
 	/// A lower bound of the distance to the surface, on whichever side: as far as no sample is, less what
@@ -110,9 +110,6 @@ public:
 	{
 		return std::max(tree.distance(query) - covering, 0.0);
 	}
-
-	/// From now on closest() is closestExactly(), whatever asks for it.
-	void makeExact() { alwaysExact = true; }
 
 	/// The places of the vertices among those given at the beginning, in an order in which neighbours are
 	/// near each other. @throws Cancelled
@@ -266,7 +263,6 @@ private:
 	std::vector<int> faceOfSample;
 	/// No point of a triangle is farther than this from the nearest of the triangle's own samples.
 	double covering = 0;
-	bool alwaysExact = false;
 	PointTree tree;
 	Box3d box;
 
@@ -316,18 +312,6 @@ private:
 				faceOfSample.push_back(face);
 			}
 		}
-	}
-
-	Hit closestNearSample(const Point3d& query) const
-	{
-		return closestFrom(query, faceOfSample[tree.nearest(query)]);
-	}
-
-	Hit exactFrom(const Point3d& query, const Hit& first) const
-	{
-		NearTriangles near {*this, query, first};
-		tree.search(near);
-		return near.best;
 	}
 
 	double signedDistance(const Point3d& query, const Hit& hit) const
