@@ -55,6 +55,10 @@ def parse_arguments(arguments: list[str] | None = None) -> argparse.Namespace:
     flow.add_argument("--resample-iterations", type=int, metavar="N", help="rounds of it (5)")
     flow.add_argument("--no-denoise", dest="denoise", action="store_const", const=False,
                       help="resample without smoothing the noise first")
+    flow.add_argument("--no-adaptive", dest="adaptive", action="store_const", const=False,
+                      help="the same lengths everywhere, however thin the shape is")
+    flow.add_argument("--relative-length", type=float, metavar="K",
+                      help="longest edge in local thicknesses (0.6)")
     flow.add_argument("--no-refine", dest="refine", action="store_const", const=False,
                       help="leave the curve as the paper has it")
     flow.add_argument("--pole-method", choices=["voronoi", "balls"], help="how poles are found")
@@ -84,7 +88,7 @@ def filter_parameters(options: argparse.Namespace) -> dict[str, Any]:
     kinds = {"percent": pymeshlab.PercentageValue, "units": pymeshlab.PureValue}
     parameters = {}
     for name in ["w_l", "w_h", "w_m", "epsilon", "split_angle", "resample", "target_length",
-                 "resample_iterations", "denoise", "refine", "pole_method", "max_iterations",
+                 "resample_iterations", "denoise", "adaptive", "relative_length", "refine", "pole_method", "max_iterations",
                  "keep_stages"]:
         value = getattr(options, name)
         if isinstance(value, tuple):

@@ -62,6 +62,7 @@ Results run(FilterRun& run)
 {
 	mcf::Parameters parameters;
 	readFlow(run.parameters, parameters);
+	readAdaptive(run.parameters, parameters);
 	readSheets(run.parameters, parameters);
 	const int steps = run.parameters.integer("steps");
 	if (steps < 1)
@@ -105,6 +106,8 @@ FilterSpec contractionStepFilter()
 	std::vector<ParameterSpec> parameters = weightParameters();
 	parameters.push_back(epsilonParameter());
 	parameters.push_back(splitAngleParameter());
+	for (const ParameterSpec& adaptive : adaptiveParameters())
+		parameters.push_back(adaptive);
 	parameters.push_back({ParameterKind::Integer, "steps", 1, "Steps",
 		"Iterations to make, at least 1; each leaves a layer of its own, NAME_meso_K."});
 	parameters.push_back(fixSelectedParameter());

@@ -53,6 +53,23 @@ ParameterSpec denoiseParameter()
 		"as they are."};
 }
 
+std::vector<ParameterSpec> adaptiveParameters()
+{
+	const mcf::Parameters defaults;
+	return {
+		{ParameterKind::Boolean, "adaptive", double(defaults.adaptive),
+			"Follow the local thickness",
+			"Where the shape is thinner than the lengths that are fractions of its diagonal can "
+			"resolve, as twigs on a trunk, all of them (edges, epsilon, spacing, tips) are fractions of "
+			"the local thickness instead. Without, lengths are the same everywhere, as in the paper."},
+		ParameterSpec {ParameterKind::Real, "relative_length", defaults.relativeLength,
+			"Edge length in local thicknesses",
+			"With 'adaptive': no edge is longer than this part of the local thickness, the radius of "
+			"the largest ball inside. 0.6 gives about ten vertices around a tube; sane are 0.4 to 1."}
+			.asAdvanced(),
+	};
+}
+
 ParameterSpec poleMethodParameter()
 {
 	return {ParameterKind::Choice, "pole_method", double(mcf::Parameters().poleMethod),
@@ -113,6 +130,12 @@ void readResampling(const ParameterValues& values, mcf::Parameters& parameters)
 	parameters.targetLength = values.fraction("target_length");
 	parameters.resampleIterations = values.integer("resample_iterations");
 	parameters.denoise = values.flag("denoise");
+}
+
+void readAdaptive(const ParameterValues& values, mcf::Parameters& parameters)
+{
+	parameters.adaptive = values.flag("adaptive");
+	parameters.relativeLength = values.real("relative_length");
 }
 
 double readEpsilon(const ParameterValues& values)

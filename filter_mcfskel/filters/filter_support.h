@@ -29,6 +29,8 @@ QString helpPage(const QString& whatItDoes);
 ParameterSpec targetLengthParameter();
 ParameterSpec resampleIterationsParameter();
 ParameterSpec denoiseParameter();
+/// adaptive and relative_length.
+std::vector<ParameterSpec> adaptiveParameters();
 ParameterSpec poleMethodParameter();
 std::vector<ParameterSpec> weightParameters();
 ParameterSpec epsilonParameter();
@@ -38,6 +40,7 @@ ParameterSpec fixSelectedParameter();
 // From values to the pipeline's parameters; each reads the ones of its filters.
 
 void readResampling(const ParameterValues& values, vcg::tri::mcf::Parameters& parameters);
+void readAdaptive(const ParameterValues& values, vcg::tri::mcf::Parameters& parameters);
 /// epsilon, as a fraction of the diagonal; 0 stands for the default, which a script that serves
 /// meshes of any size cannot know in mesh units.
 double readEpsilon(const ParameterValues& values);

@@ -42,6 +42,7 @@ Results run(FilterRun& run)
 	parameters.refine = run.parameters.flag("refine");
 	readSheets(run.parameters, parameters);
 	readResampling(run.parameters, parameters);
+	readAdaptive(run.parameters, parameters);
 	readFlow(run.parameters, parameters);
 	parameters.poleMethod = readPoleMethod(run.parameters);
 	parameters.maxIterations = run.parameters.integer("max_iterations");
@@ -122,6 +123,8 @@ FilterSpec fullSkeletonizeFilter()
 		resampleIterationsParameter().asAdvanced(),
 		denoiseParameter(),
 	};
+	for (const ParameterSpec& adaptive : adaptiveParameters())
+		parameters.push_back(adaptive);
 	for (const ParameterSpec& weight : weightParameters())
 		parameters.push_back(weight);
 	parameters.push_back(epsilonParameter());

@@ -23,6 +23,8 @@ Results run(FilterRun& run)
 	mcf::RefineParameters parameters;
 	parameters.spurProminence = run.parameters.real("spur_prominence");
 	parameters.smoothing = run.parameters.real("smoothing");
+	parameters.adaptive = run.parameters.flag("adaptive");
+	parameters.relativeLength = run.parameters.real("relative_length");
 	parameters.check();
 	mcf::Refinement refinement = mcf::refineChecked(
 		curve.skeleton, *surface.surface.mesh, parameters, run.progress.part(0.2, 0.95));
@@ -41,6 +43,7 @@ Results run(FilterRun& run)
 FilterSpec refineSkeletonFilter()
 {
 	const mcf::RefineParameters defaults;
+	const std::vector<ParameterSpec> adaptive = adaptiveParameters();
 	return {"generate_refined_skeleton_mcf", menuName("Refine Skeleton"),
 		helpPage(
 			"Makes the current skeleton a better one of its surface, as a new layer NAME_refined: "
@@ -61,7 +64,8 @@ FilterSpec refineSkeletonFilter()
 				"A terminal branch whose end ball sticks out of the ball at its junction by less than "
 				"this part of the latter's radius is a spur, 0 to 1, and so is one that ends where a "
 				"shorter one does. More removes small features, 0 none."}
-				.asAdvanced()},
+				.asAdvanced(),
+			adaptive[0], adaptive[1]},
 		run};
 }
 

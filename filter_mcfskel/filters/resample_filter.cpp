@@ -19,6 +19,7 @@ Results run(FilterRun& run)
 {
 	mcf::Parameters parameters;
 	readResampling(run.parameters, parameters);
+	readAdaptive(run.parameters, parameters);
 	parameters.check();
 	const SurfaceLayer surface = readSurface(run.layer(), run.progress.part(0, 0.1));
 	logNotes(run, surface);
@@ -42,15 +43,18 @@ Results run(FilterRun& run)
 
 FilterSpec resampleFilter()
 {
+	std::vector<ParameterSpec> parameters = {
+		targetLengthParameter(), resampleIterationsParameter(), denoiseParameter()};
+	for (const ParameterSpec& adaptive : adaptiveParameters())
+		parameters.push_back(adaptive);
 	return {"meshing_isotropic_resampling_mcf", menuName("Resample"),
 		helpPage(
-			"Covers the surface with triangles of even size, as a new layer: the skeleton is only as "
+			"Covers the surface with triangles of even size, smaller where it is thin, as a new layer: the skeleton is only as "
 			"good as the sampling that it is computed from. Splits long edges, collapses short ones, "
 			"flips edges towards six neighbours for each vertex, evens the vertices out along the "
 			"surface and puts them back onto it; the topology stays.<br><br>"
 			"First stage of the skeletonization. Needs a closed two-manifold triangle mesh."),
-		FilterCategory::Remeshing, MeshModel::MM_FACENUMBER,
-		{targetLengthParameter(), resampleIterationsParameter(), denoiseParameter()}, run};
+		FilterCategory::Remeshing, MeshModel::MM_FACENUMBER, parameters, run};
 }
 
 } // namespace mcfskel

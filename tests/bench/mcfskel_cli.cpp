@@ -35,6 +35,8 @@ const char* const usage =
 	"  --target-length PCT       edge length of the resampling, in % of the diagonal\n"
 	"  --resample-iterations N   rounds of the resampling\n"
 	"  --no-denoise              resample without smoothing the noise first\n"
+	"  --no-adaptive             the same lengths everywhere, however thin the shape is\n"
+	"  --relative-length K       longest edge in local thicknesses\n"
 	"  --resample-only           stop after the resampling\n"
 	"  --pole-method METHOD      voronoi or balls\n"
 	"  --w-l W  --w-h W  --w-m W weights of Eq. 6, in the paper's units\n"
@@ -81,6 +83,7 @@ Options parse(int argc, char** argv)
 		{"--progress-gaps", [&] { options.progressGaps = true; }},
 		{"--resample-only", [&] { options.resampleOnly = true; }},
 		{"--no-denoise", [&] { p.denoise = false; }},
+		{"--no-adaptive", [&] { p.adaptive = false; }},
 		{"--no-refine", [&] { p.refine = false; }},
 		{"--keep-sheets", [&] { p.keepSheets = true; }},
 		{"--verbose", [&] { options.verbose = true; }},
@@ -92,6 +95,7 @@ Options parse(int argc, char** argv)
 		{"--stage", [&](Text t) { options.stage = t; }},
 		{"--target-length", [&](Text t) { p.targetLength = std::stod(t) / 100; }},
 		{"--resample-iterations", [&](Text t) { p.resampleIterations = std::stoi(t); }},
+		{"--relative-length", [&](Text t) { p.relativeLength = std::stod(t); }},
 		{"--pole-method", [&](Text t) { p.poleMethod = poleMethod(t); }},
 		{"--w-l", [&](Text t) { p.wL = std::stod(t); }},
 		{"--w-h", [&](Text t) { p.wH = std::stod(t); }},

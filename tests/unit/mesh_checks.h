@@ -81,7 +81,8 @@ inline std::string stageError(const Stage& stage)
 	if (stage.mesh.vertexCount() != int(n))
 		return "a mesh that is not compact";
 	if (stage.pole.size() != n || stage.poleRadius.size() != n || stage.fixed.size() != n
-		|| stage.held.size() != n || stage.sheet.size() != n || stage.component.size() != n)
+		|| stage.held.size() != n || stage.sheet.size() != n || stage.component.size() != n
+		|| !(stage.epsilonLimit.empty() || stage.epsilonLimit.size() == n))
 		return "an array of a wrong size";
 	for (const Point3d& p : stage.mesh.position)
 		if (!(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])))
@@ -143,8 +144,8 @@ inline bool sameBits(const Stage& a, const Stage& b)
 	return a.mesh.position == b.mesh.position && a.mesh.triangles() == b.mesh.triangles()
 		&& a.pole == b.pole && a.poleRadius == b.poleRadius && a.fixed == b.fixed
 		&& a.held == b.held && a.sheet == b.sheet && a.component == b.component && a.node == b.node
-		&& a.area == b.area && a.volume == b.volume && a.iteration == b.iteration
-		&& a.converged == b.converged;
+		&& a.epsilonLimit == b.epsilonLimit && a.area == b.area && a.volume == b.volume
+		&& a.iteration == b.iteration && a.converged == b.converged;
 }
 
 inline bool sameBits(const CurveSkeleton& a, const CurveSkeleton& b)

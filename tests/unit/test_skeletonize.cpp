@@ -332,3 +332,70 @@ TEST(TransferredNodes, AreThoseOfTheNearestVertex)
 			EXPECT_EQ(found[v], to.position[v][0] > 0);
 		}
 }
+
+namespace {
+
+/// A thick tube along the x axis with a thin one at its end, whose last ball is at x = 2.
+shapes::Soup trunkWithTwig(double trunk, double twig)
+{
+	std::vector<std::pair<double, double>> profile = {{-2, 0}};
+	for (int i = 1; i <= 12; ++i)
+		profile.emplace_back(
+			-2 + trunk - trunk * std::cos(i * M_PI / 24), trunk * std::sin(i * M_PI / 24));
+	for (double x = -2 + trunk + 0.06; x < 0; x += 0.06)
+		profile.emplace_back(x, trunk);
+	for (int i = 1; trunk * std::cos(i * M_PI / 64) > twig; ++i)
+		profile.emplace_back(trunk * std::sin(i * M_PI / 64), trunk * std::cos(i * M_PI / 64));
+	for (double x = trunk + 2 * twig; x < 2; x += 2 * twig)
+		profile.emplace_back(x, twig);
+	for (int i = 0; i < 6; ++i)
+		profile.emplace_back(2 + twig * std::sin(i * M_PI / 12), twig * std::cos(i * M_PI / 12));
+	profile.emplace_back(2 + twig, 0);
+	return shapes::revolved(profile, 20);
+}
+
+} // namespace
+
+TEST(Skeletonize, ATwigOfATenthOfAPercentIsFollowedToItsEndInItsMiddle)
+{
+	constexpr double trunk = 0.3, twig = 0.004; // of a diagonal of some 4.1
+	const shapes::Soup soup = trunkWithTwig(trunk, twig);
+	const Skeletonization result = skeletonize(soup.points, soup.triangles);
+	EXPECT_EQ(result.refined, 1);
+	const CurveSkeleton& curve = result.curve;
+	const SkeletonStatistics counts = statistics(curve);
+	EXPECT_EQ(counts.components, 1);
+	EXPECT_EQ(counts.terminals, 2);
+	EXPECT_EQ(counts.cycles, 0);
+	double last = -2;
+	for (const Point3d& p : curve.position) {
+		last = std::max(last, p[0]);
+		const double aside = std::hypot(p[1], p[2]);
+		EXPECT_LT(aside, p[0] > trunk ? twig / 2 : trunk / 10);
+	}
+	EXPECT_NEAR(last, 2, twig); // the centre of the last ball
+}
+
+TEST(Skeletonize, LengthsThatDoNotFollowTheThicknessAreThoseOfTheThickPart)
+{
+	const shapes::Soup soup = trunkWithTwig(0.3, 0.004);
+	Parameters uniform;
+	uniform.adaptive = false;
+	const Skeletonization plain = skeletonize(soup.points, soup.triangles, uniform);
+	EXPECT_TRUE(plain.stage->epsilonLimit.empty());
+	const Skeletonization result = skeletonize(soup.points, soup.triangles);
+	EXPECT_FALSE(result.stage->epsilonLimit.empty());
+	EXPECT_GT(result.surface->vertexCount(), plain.surface->vertexCount());
+}
+
+TEST(Skeletonize, OnAShapeOfOneScaleAdaptingChangesNothing)
+{
+	const shapes::Soup soup = shapes::torus(1, 0.3, 60, 20);
+	Parameters uniform;
+	uniform.adaptive = false;
+	const Skeletonization plain = skeletonize(soup.points, soup.triangles, uniform);
+	const Skeletonization result = skeletonize(soup.points, soup.triangles);
+	EXPECT_EQ(result.curve.position, plain.curve.position);
+	EXPECT_EQ(result.curve.edges, plain.curve.edges);
+	EXPECT_TRUE(result.stage->epsilonLimit.empty());
+}

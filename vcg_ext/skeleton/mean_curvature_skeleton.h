@@ -80,6 +80,10 @@ public:
 		int resample_iterations = 5;
 		/// Measure the noise of the surface, and smooth it before the resampling.
 		bool denoise = true;
+		/// Lengths follow the local thickness where that is small; without, they are the same everywhere.
+		bool adaptive = true;
+		/// With `adaptive`, the longest edge in local thicknesses, in (0, 2]. Recommended: 0.4 to 1.
+		double relative_length = mcf::Parameters().relativeLength;
 		/// Smoothness weight w_L (Eq. 6), > 0, in the paper's units as the next two. Recommended: 0.5 to 4.
 		double w_l = 1;
 		/// Velocity weight w_H, > 0. A larger one makes smaller steps. Recommended: 10 to 50.
@@ -218,8 +222,11 @@ public:
 		Require(curve.has_value(),
 			"Refine() comes after Collapse(), and is for curves without sheets.");
 		Require(held.empty(), "Refine() would move the skeleton off the vertices that are held.");
-		mcf::Refinement refined =
-			mcf::refineChecked(*curve, *contracted, mcf::RefineParameters(), progress);
+		mcf::RefineParameters refinement;
+		refinement.adaptive = parameters.adaptive;
+		refinement.relativeLength = parameters.relativeLength;
+		mcf::Refinement refined = mcf::refineChecked(*curve, *contracted, refinement, progress,
+			parameters.poleMethod == mcf::PoleMethod::Balls ? poles.get() : nullptr);
 		curve = std::move(refined.skeleton);
 		if (const std::string text = refined.report.text(); params.on_note && !text.empty())
 			params.on_note(text);
@@ -340,6 +347,8 @@ private:
 		result.targetLength = params.target_length;
 		result.resampleIterations = params.resample_iterations;
 		result.denoise = params.denoise;
+		result.adaptive = params.adaptive;
+		result.relativeLength = params.relative_length;
 		result.wL = params.w_l;
 		result.wH = params.w_h;
 		result.wM = params.w_m;

@@ -178,8 +178,11 @@ inline Skeletonization skeletonize(const SurfaceInput& input, const Parameters& 
 	else if (parameters.refine && !held.empty())
 		note("The skeleton is not refined: that would move it off the vertices that are held.");
 	else if (parameters.refine) {
-		Refinement refined =
-			refineChecked(result.curve, surface, refinement, progress.part(0.9, 0.99));
+		RefineParameters scaled = refinement;
+		scaled.adaptive = parameters.adaptive && refinement.adaptive;
+		scaled.relativeLength = parameters.relativeLength;
+		Refinement refined = refineChecked(result.curve, surface, scaled, progress.part(0.9, 0.99),
+			parameters.poleMethod == PoleMethod::Balls ? result.poles.get() : nullptr);
 		result.curve = std::move(refined.skeleton);
 		result.refined = refined.report.fraction();
 		if (const std::string text = refined.report.text(); !text.empty())

@@ -104,6 +104,11 @@ TEST(CheckStage, NamesTheVertexThatIsWrongAndHowManyAre)
 		s.sheet[7] = 1;
 		s.poleRadius[7] = -1;
 	});
+	for (double limit : {0.0, -1e-3, 0.2, std::nan("")})
+		atVertex(3, 1, [&](Stage& s) {
+			s.epsilonLimit.assign(s.pole.size(), 0.01);
+			s.epsilonLimit[3] = limit;
+		});
 	atVertex(0, 1, [](Stage& s) { s.component[0] = -1; });
 	atVertex(1, 1, [](Stage& s) { s.component[1] = 2; });
 }
@@ -204,6 +209,7 @@ TEST(CheckStage, RefusesMeshesThatAreNoClosedManifold)
 			s.pole.resize(n, Point3d(0, 0, 0));
 			s.poleRadius.resize(n, -1);
 			s.component.resize(n, 0);
+			s.epsilonLimit.clear();
 			for (auto* flags : {&s.fixed, &s.held, &s.sheet})
 				flags->resize(n, 0);
 		});
@@ -250,6 +256,8 @@ TEST(CheckStage, RefusesMeshesThatAreNoClosedManifold)
 		takePlace(s.held);
 		takePlace(s.sheet);
 		takePlace(s.component);
+		if (!s.epsilonLimit.empty())
+			takePlace(s.epsilonLimit);
 		for (int& node : s.node)
 			node = node == b ? a : node == last ? b : node;
 		s.mesh = SurfaceMesh(points, triangles);

@@ -143,6 +143,17 @@ TEST(StagePly, KeepsWhatIsHeldAndWhatIsASheet)
 	EXPECT_EQ(difference(readStage(fileOf(stage)).stage, stage), "");
 }
 
+TEST(StagePly, KeepsHowSmallEpsilonMustBeWhereTheShapeIsThin)
+{
+	Stage stage = startOf(shapes::torus(1, 0.3, 24, 10).mesh());
+	ASSERT_TRUE(stage.epsilonLimit.empty());
+	EXPECT_TRUE(readStage(fileOf(stage)).stage.epsilonLimit.empty());
+	for (size_t v = 0; v < stage.pole.size(); ++v)
+		stage.epsilonLimit.push_back(v % 2 ? 0.1 : 0.001 * (1 + double(v % 7)));
+	EXPECT_EQ(readStage(fileOf(stage)).stage.epsilonLimit, stage.epsilonLimit);
+	EXPECT_EQ(difference(readStage(fileOf(stage)).stage, stage), "");
+}
+
 TEST(StagePly, KeepsTheWayBackToTheSurfaceLayer)
 {
 	const std::vector<int> slots = {0, -1, 2, 239};

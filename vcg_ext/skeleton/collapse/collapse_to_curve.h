@@ -113,16 +113,24 @@ inline void contractAllFaces(GluedComplex& complex, const Progress& progress)
 		throw SolverError("The stage could not be collapsed to curves.");
 }
 
+/// The smaller length at two nodes, one of them of the stage, as Stage::epsilonAt().
+inline double lengthAt(const Stage& stage, int A, int B, double ofDiagonal)
+{
+	const double own = stage.epsilonAt(A, ofDiagonal);
+	return B < stage.mesh.vertexSlots() ? std::min(own, stage.epsilonAt(B, ofDiagonal)) : own;
+}
+
 /// Merges nodes that are closer than makes sense; each component keeps an edge.
 /// @param stays  1 for nodes that have to stay; empty if there are none.
 inline void contractShortCurveEdges(GluedComplex& complex, const Stage& stage, double shortestEdge,
 	const std::vector<char>& stays = {})
 {
 	const auto mayMerge = [&](int A) { return stays.empty() || !stays[A]; };
-	const auto contractOneAt = [&](int A, double limit) {
+	const auto contractOneAt = [&](int A) {
 		for (int B : complex.curveNeighbours(A)) {
 			const bool lastEdge =
 				complex.curveNeighbours(A).size() == 1 && complex.curveNeighbours(B).size() == 1;
+			const double limit = lengthAt(stage, A, B, shortestEdge);
 			if (!lastEdge && mayMerge(A) && mayMerge(B)
 				&& complex.squaredLength(A, B) < limit * limit && complex.contractCurveEdge(B, A))
 				return true;
@@ -130,8 +138,7 @@ inline void contractShortCurveEdges(GluedComplex& complex, const Stage& stage, d
 		return false;
 	};
 	for (int A = 0; A < stage.mesh.vertexSlots(); ++A) {
-		const double limit = shortestEdge * stage.diagonal[stage.component[A]];
-		while (complex.find(A) == A && contractOneAt(A, limit)) {
+		while (complex.find(A) == A && contractOneAt(A)) {
 		}
 	}
 }
@@ -154,7 +161,7 @@ inline void straightenZigzag(GluedComplex& complex, const Stage& stage, double s
 			const Point3d middle =
 				(complex.position(*ends.begin()) + complex.position(*ends.rbegin())) / 2;
 			Point3d move = (middle - complex.position(A)) / 2;
-			const double most = farthest * shortestEdge * stage.diagonal[stage.component[A]];
+			const double most = farthest * stage.epsilonAt(A, shortestEdge);
 			const double length = move.Norm();
 			if (length > most)
 				move *= most / length;
@@ -176,8 +183,8 @@ inline void straightenZigzag(GluedComplex& complex, const Stage& stage, double s
  * component for each component of the stage and as many cycles as its genus (see GluedComplex), no
  * double edge and no edge of zero length but for a body that is a point in floating point.
  *
- * @param shortestEdge edges shorter than this fraction of the component's diagonal are contracted
- *        at the end, where no cycle vanishes by it.
+ * @param shortestEdge edges shorter than this fraction of the component's diagonal, or than
+ *        Stage::epsilonLimit where that is smaller, are contracted at the end, where no cycle vanishes by it.
  * @throws SolverError, Cancelled. Complexity: O(V log V).
  */
 inline CurveSkeleton collapseToCurve(

@@ -51,6 +51,11 @@ struct Parameters
 	bool resample = true;
 	/// Edge length of the resampling, fraction of the diagonal; 0: chosen by defaultTargetLength().
 	double targetLength = 0;
+	/// Lengths follow the local thickness where that is small: see sizingField(). Without, they are the
+	/// same everywhere, as in the paper.
+	bool adaptive = true;
+	/// With `adaptive`, the longest edge of the resampling in local thicknesses; in (0, 2].
+	double relativeLength = 0.6;
 	/// Rounds of the resampling; >= 0.
 	int resampleIterations = 5;
 	/// Measure the noise of the surface and smooth it before the resampling: see noise.h.
@@ -71,6 +76,7 @@ struct Parameters
 		require(sheetThreshold >= 0 && sheetThreshold <= 1, "sheet_threshold", "between 0 and 1");
 		require(targetLength >= 0 && targetLength <= 0.5, "target_length",
 			"between 0 and 50 % of the diagonal");
+		require(relativeLength > 0 && relativeLength <= 2, "relative_length", "between 0 and 2");
 		require(resampleIterations >= 0, "resample_iterations", "at least 0");
 		require(poleMethod != PoleMethod::Voronoi || hasQhull, "pole_method",
 			"'balls': this program is built without Qhull, which finds the poles of 'voronoi'");

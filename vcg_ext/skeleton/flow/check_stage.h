@@ -120,7 +120,8 @@ private:
 		require(stage.mesh.position.size() == vertices() && stage.pole.size() == vertices()
 				&& stage.poleRadius.size() == vertices() && stage.fixed.size() == vertices()
 				&& stage.held.size() == vertices() && stage.sheet.size() == vertices()
-				&& stage.component.size() == vertices(),
+				&& stage.component.size() == vertices()
+				&& (stage.epsilonLimit.empty() || stage.epsilonLimit.size() == vertices()),
 			"what it knows is not of as many vertices as it has.");
 		require(stage.initialArea.size() == components() && stage.area.size() == components(),
 			"it has not as many areas as components.");
@@ -178,6 +179,11 @@ private:
 		// Once it has arrived, a sheet's vertex is put where its pole is.
 		each("of a sheet, but without a pole.",
 			[&](size_t v) { return !stage.sheet[v] || stage.poleRadius[v] >= 0; });
+		each("'mcfskel_epsilon_limit' is not between 1e-6 and 0.1.", [&](size_t v) {
+			return stage.epsilonLimit.empty()
+				|| (stage.epsilonLimit[v] >= Stage::minEpsilonLimit
+					&& stage.epsilonLimit[v] <= Parameters::maxEpsilon);
+		});
 		each("'mcfskel_component' does not exist.", [&](size_t v) {
 			return stage.component[v] >= 0 && size_t(stage.component[v]) < components();
 		});

@@ -56,8 +56,7 @@ inline int fixDegenerateVertices(Stage& stage, const std::vector<int>& candidate
 	int count = 0;
 	for (int v : candidates)
 		if (stage.mesh.isVertex(v) && !stage.fixed[v]
-			&& neighbourhoodEuler(stage.mesh, v, epsilon * stage.diagonal[stage.component[v]])
-				!= 1) {
+			&& neighbourhoodEuler(stage.mesh, v, stage.epsilonAt(v, epsilon)) != 1) {
 			stage.fixed[v] = 1;
 			++count;
 		}

@@ -19,6 +19,7 @@
 #include <skeleton/mesh/components_at_rest.h>
 #include <skeleton/mesh/measured_surface.h>
 #include <skeleton/poles/poles.h>
+#include <skeleton/poles/sizing_field.h>
 #include <skeleton/resample/progressive_coarsening.h>
 
 #include <algorithm>
@@ -68,7 +69,35 @@ struct FlowSurface
 	std::vector<double> diagonal, area;
 	/// 1 for the components that rest, see componentsAtRest().
 	std::vector<char> rests;
+	/// As Stage::epsilonLimit, for each vertex of `mesh`.
+	std::vector<double> epsilonLimit;
 };
+
+/**
+ * Stage::epsilonLimit for each vertex of a surface: epsilonOfField of the sizing field, at most
+ * Parameters::maxEpsilon.
+ * @param poles of all vertices.
+ * @return empty where epsilon is small enough everywhere, and without parameters.adaptive.
+ * @throws Cancelled. Complexity: as sizingField().
+ */
+inline std::vector<double> epsilonLimits(const MeasuredSurface& surface, const PoleSet& poles,
+	const Parameters& parameters, const Progress& progress = Progress())
+{
+	std::vector<double> limits;
+	if (!parameters.adaptive)
+		return limits;
+	std::vector<double> bound;
+	for (double diagonal : surface.diagonals())
+		bound.push_back(parameters.epsilon / epsilonOfField * diagonal);
+	const SizingField field =
+		sizingField(surface, poles, parameters.relativeLength, bound, progress);
+	limits.reserve(field.size());
+	for (size_t v = 0; v < field.size(); ++v)
+		limits.push_back(
+			std::clamp(epsilonOfField * field[v] / surface.diagonal(surface.component()[v]),
+				Stage::minEpsilonLimit, Parameters::maxEpsilon));
+	return limits;
+}
 
 /**
  * Merges edges shorter than two epsilon, see coarsen(), and halves those of coarse components that
@@ -77,11 +106,13 @@ struct FlowSurface
  * @param epsilon  as in Parameters, of the diagonal of each component.
  * @param polesOfSurface (progress): gives the poles of all vertices of the surface, a PoleSet; called
  *                 once if a component may be coarse.
+ * @param epsilonLimit bounds epsilon at each vertex of the surface, see epsilonLimits(); may be empty.
  * @throws Cancelled. Complexity: O(V + F), and O(s log s) for s halved edges.
  */
 template <class PolesOfSurface>
 FlowSurface surfaceForFlow(const SurfaceMesh& surface, double epsilon,
-	PolesOfSurface&& polesOfSurface, const Progress& progress = Progress())
+	PolesOfSurface&& polesOfSurface, const Progress& progress = Progress(),
+	const std::vector<double>& epsilonLimit = {})
 {
 	FlowSurface result;
 	Numbering number = breadthFirstOrder(surface, {}, progress.part(0, 0.1));
@@ -126,10 +157,24 @@ FlowSurface surfaceForFlow(const SurfaceMesh& surface, double epsilon,
 	std::vector<double> length;
 	for (double diagonal : result.diagonal)
 		length.push_back(coarseningOfEpsilon * epsilon * diagonal);
-	std::vector<int> mergedInto = coarsen(
-		mesh, [&](int v) { return length[number.component[v]]; }, progress.part(0.3, 0.9));
+	std::vector<double>& limit = result.epsilonLimit;
+	if (!epsilonLimit.empty()) {
+		// The vertices in the middle of halved edges follow those of the surface.
+		limit = detail::copiedArray(epsilonLimit, progress.part(0.3, 0.3), "Ordering the surface");
+		limit.resize(number.vertex.size(), Parameters::maxEpsilon);
+		limit = renumbered(limit, number.vertex, mesh.vertexSlots());
+	}
+	const auto lengthAt = [&](int v) {
+		const int c = number.component[v];
+		return limit.empty()
+			? length[c]
+			: coarseningOfEpsilon * std::min(epsilon, limit[v]) * result.diagonal[c];
+	};
+	std::vector<int> mergedInto = coarsen(mesh, lengthAt, progress.part(0.3, 0.9));
 	const std::vector<int> place = mesh.compact(progress.part(0.9, 0.93));
 	result.component = renumbered(number.component, place, mesh.vertexSlots());
+	if (!limit.empty())
+		limit = renumbered(limit, place, mesh.vertexSlots());
 	result.survivor.assign(mesh.vertexSlots(), -1);
 	result.inFiner.resize(result.finer ? mesh.vertexSlots() : 0);
 	const char* const what = "Ordering the surface";
@@ -159,7 +204,7 @@ FlowSurface surfaceForFlow(const SurfaceMesh& surface, double epsilon,
  * halved edges have theirs against those of the finer surface.
  *
  * @param surface    compact, closed; see checkedSurface().
- * @param parameters epsilon and poleMethod are used.
+ * @param parameters epsilon, poleMethod, adaptive and relativeLength are used.
  * @param poles      of all vertices of the surface where they are known already; null: they are
  *                   computed. Those in the middle of halved edges are always computed.
  * @throws SolverError, Cancelled, InvalidParameter. Complexity: O(V log V), dominated by the poles.
@@ -177,10 +222,19 @@ inline Stage firstStage(const SurfaceMesh& surface, const Parameters& parameters
 		}
 		return *poles;
 	};
-	FlowSurface start =
-		surfaceForFlow(surface, parameters.epsilon, polesOfSurface, progress.part(0, polesFrom));
+	std::vector<double> limits;
+	if (parameters.adaptive) {
+		const Progress begin = progress.part(0, 0);
+		const MeasuredSurface measured(surface, begin);
+		limits = poles ? epsilonLimits(measured, *poles, parameters, begin)
+					   : epsilonLimits(measured, medialPoles(surface, parameters.poleMethod, begin),
+						   parameters, begin);
+	}
+	FlowSurface start = surfaceForFlow(
+		surface, parameters.epsilon, polesOfSurface, progress.part(0, polesFrom), limits);
 	Stage stage;
 	stage.component = std::move(start.component);
+	stage.epsilonLimit = std::move(start.epsilonLimit);
 	stage.node = std::move(start.node);
 	stage.diagonal = std::move(start.diagonal);
 	const size_t count = start.survivor.size();

@@ -81,6 +81,8 @@ inline void stepInFrames(
 	renumber(stage.held);
 	renumber(stage.sheet);
 	renumber(stage.component);
+	if (!stage.epsilonLimit.empty())
+		renumber(stage.epsilonLimit);
 
 	const Extent extent = frames.extent(stage);
 	constexpr double settled = 1e-4;

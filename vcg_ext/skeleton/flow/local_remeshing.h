@@ -45,6 +45,9 @@ inline void mergeVertexState(Stage& stage, int removed, int survivor)
 		stage.pole[survivor] = stage.pole[removed];
 		stage.poleRadius[survivor] = stage.poleRadius[removed];
 	}
+	if (!stage.epsilonLimit.empty())
+		stage.epsilonLimit[survivor] =
+			std::min(stage.epsilonLimit[survivor], stage.epsilonLimit[removed]);
 	stage.fixed[survivor] |= stage.fixed[removed];
 	stage.held[survivor] |= stage.held[removed];
 	stage.sheet[survivor] |= stage.sheet[removed];
@@ -144,7 +147,7 @@ private:
 } // namespace detail
 
 /**
- * Collapses edges shorter than epsilon, shortest first, wherever the link condition allows, until
+ * Collapses edges shorter than epsilon at either end, shortest first, wherever the link condition allows, until
  * none is left. The merged vertex goes to the middle, or to the fixed end if one end is fixed; an
  * edge between two fixed vertices stays.
  *
@@ -164,9 +167,16 @@ inline std::vector<int> collapseShortEdges(
 	std::vector<double> squaredLimit; // by component
 	for (double diagonal : stage.diagonal)
 		squaredLimit.push_back(epsilon * diagonal * (epsilon * diagonal));
+	const bool isLocal = !stage.epsilonLimit.empty();
+	const auto squaredLimitOf = [&](int a, int b) {
+		if (!isLocal)
+			return squaredLimit[stage.component[a]];
+		const double least = std::min(stage.epsilonAt(a, epsilon), stage.epsilonAt(b, epsilon));
+		return least * least;
+	};
 	const auto mayCollapse = [&](const Entry& e) {
 		const int a = mesh.origin(e.second), b = mesh.target(e.second);
-		return e.first < squaredLimit[stage.component[a]] && !(stage.fixed[a] && stage.fixed[b]);
+		return e.first < squaredLimitOf(a, b) && !(stage.fixed[a] && stage.fixed[b]);
 	};
 	// The edges of a round, sorted at once; what a collapse makes short is few, and waits beside them.
 	std::vector<Entry> sorted;
@@ -197,13 +207,13 @@ inline std::vector<int> collapseShortEdges(
 			const Point3d merged = stage.fixed[a] ? mesh.position[a]
 				: stage.fixed[b]                  ? mesh.position[b]
 								 : Point3d((mesh.position[a] + mesh.position[b]) / 2.0);
-			const double limit = squaredLimit[stage.component[b]];
 			const bool isFixed = stage.fixed[a] || stage.fixed[b];
+			const int lower = !isLocal || stage.epsilonLimit[b] < stage.epsilonLimit[a] ? b : a;
 			const bool isCollapsed = mesh.collapseIfPossible(h, [&](int e) {
 				const int c = mesh.target(e);
 				changed[c] = 1;
 				const double newSquaredLength = SquaredDistance(merged, mesh.position[c]);
-				if (newSquaredLength < limit && !(isFixed && stage.fixed[c]))
+				if (newSquaredLength < squaredLimitOf(lower, c) && !(isFixed && stage.fixed[c]))
 					fresh.emplace(newSquaredLength, std::min(e, mesh.twin(e)));
 			});
 			if (!isCollapsed) {
@@ -229,7 +239,7 @@ inline std::vector<int> collapseShortEdges(
 		if (std::min({squaredLengths[0], squaredLengths[1], squaredLengths[2]}) >= limit)
 			continue;
 		for (int k = 0; k < 3; ++k)
-			if (squaredLengths[k] < limit && mesh.isEdge(3 * f + k))
+			if (squaredLengths[k] < limit && mesh.isEdge(3 * f + k)) // mayCollapse() looks closer
 				if (const Entry e(squaredLengths[k], 3 * f + k); mayCollapse(e))
 					sorted.push_back(e);
 	}
@@ -309,7 +319,8 @@ inline void splitWideAngles(Stage& stage, const Parameters& parameters, MergeFor
 		const int a = mesh.origin(h), b = mesh.target(h);
 		if (!moves[stage.component[a]])
 			continue;
-		const double limit = parameters.epsilon * stage.diagonal[stage.component[a]];
+		const double limit = std::min(
+			stage.epsilonAt(a, parameters.epsilon), stage.epsilonAt(b, parameters.epsilon));
 		const Point3d along = mesh.position[b] - mesh.position[a];
 		const double squaredLength = along.SquaredNorm();
 		const int apex = cosine < twinCosine ? mesh.apex(h) : mesh.apex(mesh.twin(h));
@@ -328,6 +339,9 @@ inline void splitWideAngles(Stage& stage, const Parameters& parameters, MergeFor
 		stage.poleRadius.push_back(
 			sheet ? stage.poleRadius[a] * (1 - t) + stage.poleRadius[b] * t : -1);
 		stage.sheet.push_back(sheet);
+		if (!stage.epsilonLimit.empty())
+			stage.epsilonLimit.push_back(
+				stage.epsilonLimit[a] * (1 - t) + stage.epsilonLimit[b] * t);
 		stage.fixed.push_back(held);
 		stage.held.push_back(held);
 		stage.component.push_back(stage.component[a]);

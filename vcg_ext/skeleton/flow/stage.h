@@ -44,6 +44,11 @@ struct Stage
 	std::vector<char> sheet;
 	/// Connected component of each vertex.
 	std::vector<int> component;
+	/// Upper bound of epsilon at each vertex, fraction of its component's diagonal, where the shape is thin:
+	/// see epsilonLimits(). Empty: none anywhere.
+	std::vector<double> epsilonLimit;
+	/// No limit is smaller: what the grid of the frames resolves.
+	static constexpr double minEpsilonLimit = 1e-6;
 
 	/// Diagonal of each component of the surface, see MeasuredSurface: its unit of length.
 	std::vector<double> diagonal;
@@ -77,6 +82,14 @@ struct Stage
 	{
 		frames = std::make_shared<const std::vector<PrincipalFrame>>(
 			PrincipalFrame::ofPoints(points, component, diagonal.size(), progress));
+	}
+
+	/// The length epsilon at a vertex, in the units of `diagonal`.
+	/// @param ofDiagonal as in Parameters.
+	double epsilonAt(int v, double ofDiagonal) const
+	{
+		return (epsilonLimit.empty() ? ofDiagonal : std::min(ofDiagonal, epsilonLimit[v]))
+			* diagonal[component[v]];
 	}
 
 	double areaFraction() const { return sum(area) / sum(initialArea); }

@@ -44,7 +44,9 @@ inline Stage startOfFlow(const SurfaceMesh& surface, const PoleSet& poles,
 	if (held.empty() && !parameters.keepSheets)
 		return firstStage(surface, parameters, &poles, progress);
 	const Progress begin = progress.part(0, 0);
-	Stage stage = initialStage({surface, begin}, poles, begin);
+	const MeasuredSurface measured(surface, begin);
+	Stage stage = initialStage(measured, poles, begin);
+	stage.epsilonLimit = epsilonLimits(measured, poles, parameters, begin);
 	if (parameters.keepSheets) {
 		markSheets(stage, sheetness(surface, poles, progress.part(0, 0.4)),
 			parameters.sheetThreshold, progress.part(0.4, 0.5));

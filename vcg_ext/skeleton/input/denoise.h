@@ -125,11 +125,12 @@ private:
  * sigma = 1.4826 median_i |((I - M)^2 v)_i . n_i| / |row i of (I - M)^2|, the median being blind to
  * features, n the normal averaged three times. A clean but coarse surface shows its curvature
  * instead: compare with the edge length. @pre mesh is compact.
+ * @param still 1 for vertices that are not asked, see measureNoise(); may be empty.
  * Of a large component some 12000 vertices are looked at, spread evenly over its numbering.
  * @throws Cancelled. Complexity: O(V).
  */
-inline std::vector<double> noiseLevel(
-	const MeasuredSurface& surface, const Progress& progress = Progress())
+inline std::vector<double> noiseLevel(const MeasuredSurface& surface,
+	const Progress& progress = Progress(), const std::vector<char>& still = {})
 {
 	constexpr int enough = 12000, normalRounds = 3;
 	const SurfaceMesh& mesh = surface.mesh();
@@ -146,7 +147,7 @@ inline std::vector<double> noiseLevel(
 	detail::reportedLoop(
 		mesh.vertexSlots(), progress.part(0.8, 1), detail::measuringNoise, [&](int v) {
 			const int c = surface.component()[v];
-			if (seen[c]++ % (1 + size[c] / enough) != 0)
+			if (seen[c]++ % (1 + size[c] / enough) != 0 || (!still.empty() && still[v]))
 				return;
 			const double length = normal[v].Norm();
 			if (!(length > 0))
@@ -171,11 +172,12 @@ inline std::vector<double> noiseLevel(
  * filter, v <- v + lambda (M v - v), then the same with mu < -lambda (Taubin 1995; lambda 0.5,
  * pass band 0.1).
  * @param rounds for each component, in the order of connectedComponents(); 0 leaves it alone.
+ * @param still  1 for vertices that stay where they are; may be empty.
  * @pre mesh is compact.
  * @throws Cancelled. Complexity: O(V) a round.
  */
 inline SurfaceMesh smoothed(const MeasuredSurface& surface, const std::vector<int>& rounds,
-	const Progress& progress = Progress())
+	const Progress& progress = Progress(), const std::vector<char>& still = {})
 {
 	constexpr double lambda = 0.5, passBand = 0.1;
 	constexpr double mu = 1 / (passBand - 1 / lambda);
@@ -188,7 +190,7 @@ inline SurfaceMesh smoothed(const MeasuredSurface& surface, const std::vector<in
 		const std::vector<Point3d> mean = rings.of(mesh.position, ofHalf.part(0, 0.8));
 		const double factor = half % 2 == 0 ? lambda : mu;
 		detail::reportedLoop(mesh.vertexSlots(), ofHalf.part(0.8, 1), what, [&](int v) {
-			if (half / 2 < rounds[surface.component()[v]])
+			if (half / 2 < rounds[surface.component()[v]] && (still.empty() || !still[v]))
 				mesh.position[v] += (mean[v] - mesh.position[v]) * factor;
 		});
 	}
@@ -212,16 +214,18 @@ struct NoiseReport
  * mean edge (clean surfaces show up to 0.04 % or 4 %), 10 rounds up to 0.15 %, 40 above. So treated,
  * models with 0.1 to 0.5 % of noise give the clean model's branches. Where the mean edge is longer
  * than 3 % of the diagonal, noise cannot be told from shape, and nothing is done.
+ * @param still 1 for vertices that are not asked: those of parts so thin that their facets would count
+ *              as noise; may be empty.
  * @pre mesh is compact. @throws Cancelled. Complexity: O(V).
  */
-inline NoiseReport measureNoise(
-	const MeasuredSurface& surface, const Progress& progress = Progress())
+inline NoiseReport measureNoise(const MeasuredSurface& surface,
+	const Progress& progress = Progress(), const std::vector<char>& still = {})
 {
 	constexpr double least = 3e-4, leastOfEdge = 0.05, strong = 1.5e-3;
 	constexpr double coarsestEdge = 0.03;
 	constexpr int fewRounds = 10, manyRounds = 40;
 	const SurfaceMesh& mesh = surface.mesh();
-	const std::vector<double> sigma = noiseLevel(surface, progress.part(0, 0.9));
+	const std::vector<double> sigma = noiseLevel(surface, progress.part(0, 0.9), still);
 	const int components = surface.components();
 	std::vector<double> edgeSum(components, 0);
 	std::vector<int> edgeCount(components, 0);

@@ -87,6 +87,8 @@ inline void writeStagePly(
 	vertex.add("mcfskel_fixed", PlyType::UInt8, stage.fixed);
 	vertex.add("mcfskel_held", PlyType::UInt8, stage.held);
 	vertex.add("mcfskel_sheet", PlyType::UInt8, stage.sheet);
+	if (!stage.epsilonLimit.empty())
+		vertex.add("mcfskel_epsilon_limit", PlyType::Double, stage.epsilonLimit);
 	vertex.add("mcfskel_component", PlyType::Int32, stage.component);
 
 	progress.report(0.3, what);
@@ -184,6 +186,8 @@ inline void readVertices(const PlyTable& table, int components, Stage& stage)
 	const std::vector<char> none(table.rows(), 0);
 	stage.held = table.has("mcfskel_held") ? flags("mcfskel_held") : none;
 	stage.sheet = table.has("mcfskel_sheet") ? flags("mcfskel_sheet") : none;
+	if (table.has("mcfskel_epsilon_limit"))
+		stage.epsilonLimit = table.anyReals("mcfskel_epsilon_limit");
 	stage.component = table.integers("mcfskel_component", 0, components - 1);
 }
 

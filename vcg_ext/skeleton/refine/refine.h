@@ -7,6 +7,7 @@
 #ifndef VCG_MCF_REFINE_H
 #define VCG_MCF_REFINE_H
 
+#include "local_scale.h"
 #include "refine_centre.h"
 #include "refine_check.h"
 #include "refine_features.h"
@@ -22,8 +23,11 @@
 #include <skeleton/graph/skeleton_radius.h>
 #include <skeleton/mesh/component_meshes.h>
 #include <skeleton/mesh/components.h>
+#include <skeleton/mesh/measured_surface.h>
 #include <skeleton/mesh/principal_frame.h>
 #include <skeleton/mesh/surface_mesh.h>
+#include <skeleton/poles/poles.h>
+#include <skeleton/poles/sizing_field.h>
 #include <skeleton/spatial/closest_surface.h>
 
 #include <algorithm>
@@ -71,6 +75,10 @@ struct RefineParameters
 	/// On the way into such a feature the balls reach further by at least this part of the way; in
 	/// (0, 1]. The corners of boxes have 0.42 to 0.56, limbs of even thickness 1.
 	double featureGain = 0.56;
+	/// Lengths follow the local thickness where that is small, see LocalScale.
+	bool adaptive = true;
+	/// @see Parameters::relativeLength
+	double relativeLength = 0.6;
 
 	/// @throws InvalidParameter naming the first parameter that is out of its range.
 	void check() const
@@ -86,6 +94,7 @@ struct RefineParameters
 		require(tipGain > 0 && tipGain <= 1, "tip_gain", "in (0, 1]");
 		require(featureHeight >= 0 && std::isfinite(featureHeight), "feature_height", "at least 0");
 		require(featureGain > 0 && featureGain <= 1, "feature_gain", "in (0, 1]");
+		require(relativeLength > 0 && relativeLength <= 2, "relative_length", "between 0 and 2");
 		require(tipRadius > 0 && std::isfinite(tipRadius), "tip_radius", "greater than 0");
 	}
 
@@ -104,7 +113,8 @@ namespace refining {
  * where the curve grows out of CurveBounds: that it cannot be the result is for the caller to find.
  */
 inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurface& surface,
-	const SurfaceComponent& component, const RefineParameters& parameters, const Progress& progress)
+	const SurfaceComponent& component, const LocalScale& scale, const RefineParameters& parameters,
+	const Progress& progress)
 {
 	const char* what = "Refining the skeleton";
 	constexpr double stiffer = 10, referenceSpacing = 0.005;
@@ -116,8 +126,8 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 	constexpr double leastCorner = 0.04;
 	const FeatureRule features = {parameters.featureGain, leastWay, leastProtrusion,
 		parameters.featureHeight, leastProminence, leastRise, leastLobe, leastCorner,
-		parameters.spacing};
-	const TipRule tips = {parameters.spacing, parameters.tipGain, parameters.tipRadius};
+		parameters.spacing, scale};
+	const TipRule tips = {parameters.spacing, parameters.tipGain, parameters.tipRadius, scale};
 	const int total = parameters.stiffRounds + parameters.rounds + parameters.lastRounds + 2;
 	int done = 0;
 	const auto centreRounds = [&](int rounds, double weight, bool ascend) {
@@ -128,11 +138,11 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 					progress.part(double(done) / total, double(done) / total));
 			else
 				followContacts(contacts, skeleton, surface);
-			centre(skeleton, contacts, surface, weight);
+			centre(skeleton, contacts, surface, weight, scale);
 			progress.report(double(++done) / total, what);
 		}
 	};
-	const CurveBounds bounds(skeleton, parameters.spacing);
+	const CurveBounds bounds(skeleton, parameters.spacing * scale.least(component.vertices));
 	KnownClearances clearances(surface);
 	const auto tidy = [&](double spurProminence, double tipDistinctness) {
 		measureBranchEnds(skeleton, clearances);
@@ -144,7 +154,7 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 			skeleton = withoutCornerEnds(skeleton, clearances, tipDistinctness);
 		}
 		skeleton = withWholeJunctions(std::move(skeleton), parameters.junctionProminence);
-		skeleton = evenlySampled(skeleton, surface, parameters.spacing);
+		skeleton = evenlySampled(skeleton, surface, parameters.spacing, scale);
 		moveInside(skeleton, surface); // long edges of a coarse shape's curve may have left it
 		progress.report(double(done) / total, what);
 	};
@@ -262,6 +272,37 @@ struct Refinement
 
 namespace refining {
 
+/**
+ * The scale of each vertex, see LocalScale.
+ * @param poles of all vertices; null: they are computed.
+ * @return empty where it is 1 everywhere. @throws Cancelled
+ */
+inline std::vector<double> scaleOfVertices(const SurfaceMesh& surface,
+	const std::vector<int>& component, int components, const std::vector<PrincipalFrame>& frame,
+	const RefineParameters& parameters, const PoleSet* poles, const Progress& progress)
+{
+	constexpr double neutralSpacing = 0.005; // of the diagonal, where the field is neutralLength
+	std::vector<double> scale;
+	if (!parameters.adaptive)
+		return scale;
+	const MeasuredSurface measured(surface, component, components, progress);
+	PoleSet found;
+	if (!poles) {
+		found = medialPoles(surface, PoleMethod::Balls, progress);
+		poles = &found;
+	}
+	const double neutral = neutralLength * parameters.spacing / neutralSpacing;
+	std::vector<double> bound;
+	for (const PrincipalFrame& own : frame)
+		bound.push_back(neutral * own.size());
+	const SizingField field =
+		sizingField(measured, *poles, parameters.relativeLength, bound, progress);
+	scale.reserve(field.size());
+	for (size_t v = 0; v < field.size(); ++v)
+		scale.push_back(std::min(1.0, field[v] / bound[component[v]]));
+	return scale;
+}
+
 inline void addTo(RefineReport& report, Defect defect)
 {
 	++report.components;
@@ -279,13 +320,15 @@ inline void addTo(RefineReport& report, Defect defect)
  * @param refined  the unrefined curve; the refined one if there is no defect, else unchanged.
  */
 inline Defect refineChecked(CurveSkeleton& refined, const ClosestSurface& surface,
-	const SurfaceComponent& component, const RefineParameters& parameters, const Progress& progress)
+	const SurfaceComponent& component, const LocalScale& scale, const RefineParameters& parameters,
+	const Progress& progress)
 {
 	const InsideCheck inside(surface, component);
 	try {
-		CurveSkeleton curve = refineComponent(refined, surface, component, parameters, progress);
-		const Defect defect =
-			defectOf(curve, refined, parameters.spacing, inside, progress.part(1, 1));
+		CurveSkeleton curve =
+			refineComponent(refined, surface, component, scale, parameters, progress);
+		const Defect defect = defectOf(curve, refined,
+			parameters.spacing * scale.least(component.vertices), inside, progress.part(1, 1));
 		if (defect == Defect::None)
 			refined = std::move(curve);
 		return defect;
@@ -314,6 +357,7 @@ inline Defect refineChecked(CurveSkeleton& refined, const ClosestSurface& surfac
  * @param surface     closed triangle mesh of any number of components, compact.
  * @param parameters  see RefineParameters.
  * @param progress    window for reports; cancelling leaves nothing behind.
+ * @param poles       of all vertices of the surface, by shrinking balls, where they are known already.
  * @return the refined skeleton, mesh units, nodes of the first component first, and the report.
  * @throws InvalidParameter, InvalidInput if the correspondence does not fit the surface or the
  *         curve or the curve has nodes that are not finite, Cancelled.
@@ -321,7 +365,8 @@ inline Defect refineChecked(CurveSkeleton& refined, const ClosestSurface& surfac
  * Source: ours; see Tagliasacchi et al., "Mean Curvature Skeletons", SGP 2012, for the curve.
  */
 inline Refinement refineChecked(const CurveSkeleton& curve, const SurfaceMesh& surface,
-	const RefineParameters& parameters = RefineParameters(), const Progress& progress = Progress())
+	const RefineParameters& parameters = RefineParameters(), const Progress& progress = Progress(),
+	const PoleSet* poles = nullptr)
 {
 	parameters.check();
 	if (int(curve.node.size()) != surface.vertexSlots())
@@ -370,6 +415,11 @@ inline Refinement refineChecked(const CurveSkeleton& curve, const SurfaceMesh& s
 	std::vector<std::pair<int, int>>
 		kept; // nodes of the result that are as they were, and what they were
 	constexpr double sampleSpacing = 0.01;
+	const refining::LocalScale everywhere;
+	const refining::LocalScale scale(unit,
+		refining::scaleOfVertices(
+			surface, component, components, frame, parameters, poles, progress.part(0.03, 0.03)));
+	const auto isThin = [&](int c) { return scale.least(vertices.ids[c]) < 1; };
 	for (int c = 0; c < components; ++c) {
 		if (nodes[c].empty())
 			continue;
@@ -387,8 +437,8 @@ inline Refinement refineChecked(const CurveSkeleton& curve, const SurfaceMesh& s
 		const ClosestSurface closest(
 			unit, vertices.ids[c], sampleSpacing, ofComponent.part(0, 0.1));
 		const refining::SurfaceComponent own = {unit, vertices.ids[c], vertices.place};
-		const refining::Defect defect =
-			refining::refineChecked(part, closest, own, parameters, ofComponent.part(0.1, 0.95));
+		const refining::Defect defect = refining::refineChecked(part, closest, own,
+			isThin(c) ? scale : everywhere, parameters, ofComponent.part(0.1, 0.95));
 		refining::addTo(report, defect);
 		const bool isRefined = defect == refining::Defect::None;
 		if (!isRefined) {

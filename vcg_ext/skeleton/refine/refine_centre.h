@@ -7,6 +7,7 @@
 #ifndef VCG_MCF_REFINE_CENTRE_H
 #define VCG_MCF_REFINE_CENTRE_H
 
+#include "local_scale.h"
 #include "refine_graph.h"
 
 #include <skeleton/core/errors.h>
@@ -237,10 +238,11 @@ inline void keepEdgesInside(
  * No node moves by more than half its distance from the surface, and no edge leaves the surface:
  * the nodes of one that would stay where they are.
  * @param kappa for nodes at the skeleton's own spacing whose distance r_k from the surface is R.
+ * @param scale where it is smaller than 1, so are that spacing and R.
  * @pre radius holds distances from the surface, or lower bounds. @post lower bounds.
  */
 inline void centre(CurveSkeleton& skeleton, const std::vector<Contact>& contacts,
-	const ClosestSurface& surface, double kappa)
+	const ClosestSurface& surface, double kappa, const LocalScale& scale = LocalScale())
 {
 	constexpr double tipWeight = 1e3, weightWithoutBall = 1e-6;
 	constexpr double referenceRadius = 0.033, thinnest = 0.03, thickest = 3;
@@ -275,7 +277,8 @@ inline void centre(CurveSkeleton& skeleton, const std::vector<Contact>& contacts
 			continue;
 		// A bend is judged by the thickness where it is: within a large ball, small ones mean nothing.
 		// Unless the branch only crosses that ball, the bend may be the end's in a corner.
-		const double relative = std::clamp(distance[v] / referenceRadius, thinnest,
+		const double reference = referenceRadius * scale.atFace(contacts[v].hit.face);
+		const double relative = std::clamp(distance[v] / reference, thinnest,
 			share[v] < 1 ? std::numeric_limits<double>::infinity() : thickest);
 		const double stiffness = kappa * relative * relative;
 		const int stencil[3] = {neighbours[v][0], v, neighbours[v][1]};

@@ -155,7 +155,7 @@ struct FeatureBranch
  * @param towards  a node next to the feature.
  */
 inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const ClosestSurface& surface,
-	const Point3d& start, int towards, double spacing)
+	const Point3d& start, int towards, double spacing, const LocalScale& scale)
 {
 	constexpr int mostSteps = 400;
 	// Of the next direction; the slope is 1 where the way leads straight away from the surface.
@@ -173,7 +173,8 @@ inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const ClosestSur
 			slope = medialSlope(hit.point, ball);
 			const bool isFirst = i == 0;
 			x = movedAside(x, ball, direction,
-				isFirst ? std::numeric_limits<double>::infinity() : spacing / 2);
+				isFirst ? std::numeric_limits<double>::infinity()
+						: spacing / 2 * scale.atFace(hit.face));
 			hit = surface.closest(x, hit.face);
 			if (hit.distance <= 0 || !surface.isInside(x, hit))
 				return branch;
@@ -196,7 +197,7 @@ inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const ClosestSur
 		const Point3d there = skeleton.position[towards] - x;
 		direction = slope + there * (pull / std::max(there.Norm(), 1e-12)) + direction * keeping;
 		direction /= std::max(direction.Norm(), 1e-12);
-		x += direction * std::min(spacing, hit.distance / 2);
+		x += direction * std::min(spacing * scale.atFace(hit.face), hit.distance / 2);
 	}
 	return branch;
 }
@@ -297,7 +298,7 @@ inline FeatureBranch branchInto(const Peak& peak, const CurveSkeleton& skeleton,
 		for (double down = rule.leastRise; branch.joint < 0 && down < peak.height; down *= 2)
 			branch = traceBranch(skeleton, surface,
 				middleOfTip(component, heights, peak.vertex, peak.height - down, progress), node,
-				rule.spacing);
+				rule.spacing, rule.scale);
 		return branch;
 	};
 	const auto shortcut = [&](const FeatureBranch& branch) {

@@ -7,9 +7,12 @@
 #ifndef VCG_MCF_REFINE_GRAPH_H
 #define VCG_MCF_REFINE_GRAPH_H
 
-#include <skeleton/spatial/closest_surface.h>
+#include "local_scale.h"
+
 #include <skeleton/graph/prune.h>
 #include <skeleton/graph/skeleton_branches.h>
+#include <skeleton/poles/sizing_field.h>
+#include <skeleton/spatial/closest_surface.h>
 
 #include <algorithm>
 #include <cmath>
@@ -325,14 +328,70 @@ inline BallChain evenPoints(const BallChain& line, int segments)
 	return even;
 }
 
-/// A polyline with its nodes kept and its edges cut to pieces of about `spacing`.
-inline BallChain withShortEdges(const BallChain& line, double spacing)
+/// How far apart nodes are to be at each point of a polyline: `spacing`, less where the scale is smaller and,
+/// growing by at most 0.3 of the way, near there.
+inline std::vector<double> spacingsAlong(
+	const BallChain& line, const ClosestSurface& surface, double spacing, const LocalScale& scale)
+{
+	std::vector<double> spacings(line.points.size(), spacing);
+	if (scale.isUniform())
+		return spacings;
+	for (size_t i = 0; i < spacings.size(); ++i)
+		spacings[i] *= scale.at(line.points[i], surface);
+	const auto boundBy = [&](size_t i, size_t near) {
+		spacings[i] = std::min(spacings[i],
+			spacings[near]
+				+ vcg::tri::mcf::detail::sizingSlope * Distance(line.points[i], line.points[near]));
+	};
+	for (size_t i = 1; i < spacings.size(); ++i)
+		boundBy(i, i - 1);
+	for (size_t i = spacings.size() - 1; i > 0; --i)
+		boundBy(i - 1, i);
+	return spacings;
+}
+
+/**
+ * Points of a polyline, both ends included, whose distances follow spacings that are given at its points:
+ * at equal steps of the integral of 1 / spacing.
+ * @param least fewest segments, >= 1.
+ */
+inline BallChain gradedPoints(const BallChain& line, const std::vector<double>& spacings, int least)
+{
+	std::vector<double> along(line.points.size(), 0), steps(line.points.size(), 0);
+	for (size_t i = 1; i < along.size(); ++i) {
+		const double length = Distance(line.points[i - 1], line.points[i]);
+		along[i] = along[i - 1] + length;
+		steps[i] = steps[i - 1] + length * 2 / (spacings[i - 1] + spacings[i]);
+	}
+	const int segments = std::max(least, int(std::lround(steps.back())));
+	BallChain graded = {{line.points.front()}, {line.radii.front()}};
+	size_t i = 1;
+	for (int k = 1; k < segments; ++k) {
+		const double s = steps.back() * k / segments;
+		while (i + 1 < steps.size() && steps[i] < s)
+			++i;
+		const double whole = steps[i] - steps[i - 1];
+		const double t = whole > 0 ? (s - steps[i - 1]) / whole : 0;
+		const double length = along[i] - along[i - 1];
+		graded.points.push_back(line.points[i - 1] + (line.points[i] - line.points[i - 1]) * t);
+		// The distance from the surface cannot change faster than the place.
+		graded.radii.push_back(
+			std::max(line.radii[i - 1] - t * length, line.radii[i] - (1 - t) * length));
+	}
+	graded.points.push_back(line.points.back());
+	graded.radii.push_back(line.radii.back());
+	return graded;
+}
+
+/// A polyline with its nodes kept and its edges cut to pieces of about the spacings at its points.
+inline BallChain withShortEdges(const BallChain& line, const std::vector<double>& spacings)
 {
 	BallChain finer = {{line.points.front()}, {line.radii.front()}};
 	for (size_t i = 1; i < line.points.size(); ++i) {
 		const BallChain edge = {
 			{line.points[i - 1], line.points[i]}, {line.radii[i - 1], line.radii[i]}};
 		const double length = Distance(line.points[i - 1], line.points[i]);
+		const double spacing = (spacings[i - 1] + spacings[i]) / 2;
 		const BallChain pieces = evenPoints(edge, std::max(1, int(std::lround(length / spacing))));
 		finer.points.insert(finer.points.end(), pieces.points.begin() + 1, pieces.points.end());
 		finer.radii.insert(finer.radii.end(), pieces.radii.begin() + 1, pieces.radii.end());
@@ -359,13 +418,13 @@ inline bool isInside(BallChain& chain, const ClosestSurface& surface)
 }
 
 /**
- * Samples each branch evenly, about `spacing` apart. Junctions and tips keep their places, what had
+ * Samples each branch evenly, about `spacing` apart, less where the scale is smaller. Junctions and tips keep their places, what had
  * merged into a node goes to the one nearest along the branch. Where a chord would leave the
  * surface, the branch keeps its nodes and only its long edges are cut.
  * @pre radius holds the distances from the surface, or lower bounds. @post lower bounds.
  */
-inline CurveSkeleton evenlySampled(
-	const CurveSkeleton& skeleton, const ClosestSurface& surface, double spacing)
+inline CurveSkeleton evenlySampled(const CurveSkeleton& skeleton, const ClosestSurface& surface,
+	double spacing, const LocalScale& scale = LocalScale())
 {
 	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
 	const std::vector<Branch> branches = skeletonBranches(skeleton);
@@ -395,9 +454,12 @@ inline CurveSkeleton evenlySampled(
 			line.radii.push_back(skeleton.radius[v]);
 		}
 		const double length = branchLength(skeleton, branch);
-		BallChain chain = evenPoints(line, std::max(least, int(std::lround(length / spacing))));
+		const std::vector<double> spacings = spacingsAlong(line, surface, spacing, scale);
+		BallChain chain = scale.isUniform()
+			? evenPoints(line, std::max(least, int(std::lround(length / spacing))))
+			: gradedPoints(line, spacings, least);
 		if (!isInside(chain, surface)) {
-			const BallChain kept = withShortEdges(line, spacing);
+			const BallChain kept = withShortEdges(line, spacings);
 			if (int(kept.points.size()) > least)
 				chain = kept;
 		}

@@ -7,13 +7,15 @@
 #ifndef VCG_MCF_REFINE_PEAKS_H
 #define VCG_MCF_REFINE_PEAKS_H
 
-#include <skeleton/graph/curve_skeleton.h>
-#include <skeleton/core/reported_arrays.h>
+#include "local_scale.h"
+
 #include <skeleton/core/parallel.h>
 #include <skeleton/core/progress.h>
+#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/ticker.h>
+#include <skeleton/graph/curve_skeleton.h>
 #include <skeleton/graph/skeleton_branches.h>
 #include <skeleton/mesh/surface_mesh.h>
-#include <skeleton/core/ticker.h>
 
 #include <algorithm>
 #include <limits>
@@ -42,6 +44,8 @@ struct FeatureRule
 	double leastCorner;
 	/// Longest step of a branch, in diagonals.
 	double spacing;
+	/// Of the spacing.
+	const LocalScale& scale;
 };
 
 /// A component of a surface; its vertices are numbered by their place in it.

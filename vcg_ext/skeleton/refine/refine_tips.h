@@ -7,6 +7,7 @@
 #ifndef VCG_MCF_REFINE_TIPS_H
 #define VCG_MCF_REFINE_TIPS_H
 
+#include "local_scale.h"
 #include "refine_centre.h"
 #include "refine_graph.h"
 
@@ -28,6 +29,8 @@ struct TipRule
 	double leastGain;
 	/// ... and end in a ball no smaller than this, in diagonals.
 	double leastRadius;
+	/// Of both lengths.
+	const LocalScale& scale;
 };
 
 /// The direction in which a branch ends: from the node about one radius before the tip.
@@ -72,10 +75,11 @@ inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, c
 		const Point3d start = direction;
 		double left = farthest * skeleton.radius[v];
 		int tip = v;
+		double scale = rule.scale.at(skeleton.position[v], surface);
 		while (left > 0) {
 			const Point3d x = skeleton.position[tip];
 			const double r = skeleton.radius[tip];
-			const double step = std::min(rule.spacing, r / 4);
+			const double step = std::min(rule.spacing * scale, r / 4);
 			Point3d y = x + direction * step;
 			const ClosestSurface::Hit hit = surface.closest(y);
 			if (hit.distance <= 0 || !surface.isInside(y, hit))
@@ -86,7 +90,8 @@ inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, c
 			const double s = Distance(x, y);
 			const double reached = std::max(surface.clearance(y), 0.0);
 			const Point3d front = y + (y - x) * (reached / s);
-			if (reached < rule.leastRadius || s + reached - r < rule.leastGain * s
+			scale = rule.scale.atFace(hit.face);
+			if (reached < rule.leastRadius * scale || s + reached - r < rule.leastGain * s
 				|| holdingNode(skeleton, front) >= 0 || !isSegmentInside(surface, x, r, y, reached))
 				break;
 			left -= s;

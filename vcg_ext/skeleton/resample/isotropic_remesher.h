@@ -34,8 +34,9 @@ public:
 	/// @see TrackedMesh::TrackedMesh()
 	/// @param mostVertices beyond which splitLongEdges() gives up.
 	IsotropicRemesher(const SurfaceMesh& surface, const std::vector<int>& componentOfVertex,
-		const std::vector<double>& targetLength, size_t mostVertices, const Progress& progress) :
-			tracked(surface, componentOfVertex, targetLength, progress),
+		const std::vector<double>& targetLength, size_t mostVertices, const Progress& progress,
+		const std::vector<double>& localLength = {}) :
+			tracked(surface, componentOfVertex, targetLength, localLength, progress),
 			mesh(tracked.mesh), mostVertices(mostVertices)
 	{
 	}
@@ -70,7 +71,7 @@ public:
 	void splitLongEdges(const Progress& progress)
 	{
 		const char* const what = "Splitting long edges";
-		LongEdgeQueue queue(mesh, [&](int v) { return longestEdge * tracked.lengthAt(v); });
+		LongEdgeQueue queue(mesh, [&](int h) { return longestEdge * tracked.lengthOf(h); });
 		reportedLoop(mesh.halfEdgeSlots(), progress.part(0, 0.1), what, [&](int h) {
 			if (mesh.isHalfEdge(h) && queue.isTooLong(h) && mesh.isEdge(h))
 				queue.push(h);
@@ -103,7 +104,7 @@ public:
 			ticker.tick();
 			if (!mesh.isHalfEdge(h))
 				continue;
-			const double target = tracked.lengthAt(mesh.origin(h));
+			const double target = tracked.lengthOf(h);
 			const double shortest = shortestEdge * target, longest = longestEdge * target;
 			if (mesh.squaredLength(h) >= shortest * shortest || !mesh.isEdge(h))
 				continue;

@@ -21,16 +21,17 @@ namespace vcg::tri::mcf::detail {
  * O(1). Splits and flips rename edges; whoever makes them pushes the edges with new names again,
  * and stale entries are passed over.
  */
-template <class LimitAt>
+template <class LimitOf>
 class LongEdgeQueue
 {
 public:
-	/// @param limitAt double(vertex): the greatest length that is not too long, mesh units.
-	LongEdgeQueue(const SurfaceMesh& mesh, LimitAt limitAt) : mesh(mesh), limitAt(limitAt) {}
+	/// @param limitOf double(half-edge): the greatest length that is not too long, mesh units; the same
+	///                for both half-edges of an edge.
+	LongEdgeQueue(const SurfaceMesh& mesh, LimitOf limitOf) : mesh(mesh), limitOf(limitOf) {}
 
 	bool isTooLong(int h) const
 	{
-		const double limit = limitAt(mesh.origin(h));
+		const double limit = limitOf(h);
 		return mesh.squaredLength(h) > limit * limit;
 	}
 
@@ -73,13 +74,13 @@ public:
 
 private:
 	const SurfaceMesh& mesh;
-	LimitAt limitAt;
+	LimitOf limitOf;
 	std::vector<std::vector<int>> buckets; ///< the first one starts at the limit
 
 	/// @pre isTooLong(h)
 	int bucketOf(int h) const
 	{
-		const double limit = limitAt(mesh.origin(h));
+		const double limit = limitOf(h);
 		return int(std::log(mesh.squaredLength(h) / (limit * limit)) / (2 * std::log(1.1)));
 	}
 };

@@ -40,7 +40,8 @@ void coarseningPass(SurfaceMesh& mesh, double fraction, Shortest&& lengthAt, All
 			progress.report(double(h) / count, what);
 		if (!mesh.isHalfEdge(h))
 			continue;
-		const double shortest = fraction * lengthAt(mesh.origin(h));
+		const double shortest =
+			fraction * std::min(lengthAt(mesh.origin(h)), lengthAt(mesh.target(h)));
 		if (mesh.squaredLength(h) >= shortest * shortest || !allowed(h))
 			continue;
 		const double longest = longestOfStage * shortest;

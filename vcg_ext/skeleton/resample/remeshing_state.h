@@ -17,6 +17,7 @@
 #include <skeleton/mesh/closest_point_walk.h>
 #include <skeleton/mesh/surface_mesh.h>
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -44,19 +45,28 @@ public:
 	 * @param surface           may have holes in its numbering; must outlive this object.
 	 * @param componentOfVertex connected component of each vertex slot.
 	 * @param targetLength      of each component, mesh units: lengths that matter are parts of it.
+	 * @param localLength       of each vertex slot, at most that of its component, where lengths are not
+	 *                          the same everywhere; else empty.
 	 * @throws Cancelled
 	 */
 	TrackedMesh(const SurfaceMesh& surface, const std::vector<int>& componentOfVertex,
-		const std::vector<double>& targetLength, const Progress& progress) :
+		const std::vector<double>& targetLength, const std::vector<double>& localLength,
+		const Progress& progress) :
 			mesh(surface.copied(progress)),
 			surface(surface),
 			surfaceCreases(
-				surface, [&](int v) { return shortestCrease * targetLength[componentOfVertex[v]]; },
+				surface,
+				[&](int v) {
+					return shortestCrease
+						* (localLength.empty() ? targetLength[componentOfVertex[v]]
+											   : localLength[v]);
+				},
 				progress),
 			surfaceRoles(surfaceCreases.roles(surface, progress.part(1, 1))),
 			creases(surfaceCreases), role(surfaceRoles),
 			component(copiedArray(componentOfVertex, progress.part(1, 1), tracking)),
-			length(targetLength),
+			length(targetLength), surfaceLength(localLength),
+			own(copiedArray(localLength, progress.part(1, 1), tracking)),
 			track(filledArray(size_t(surface.vertexSlots()), -1, progress.part(1, 1), tracking))
 	{
 		const Progress end = progress.part(1, 1);
@@ -74,7 +84,13 @@ public:
 	SurfaceMesh mesh;
 
 	const std::vector<int>& componentOfVertex() const { return component; }
-	double lengthAt(int v) const { return length[component[v]]; }
+	double lengthAt(int v) const { return own.empty() ? length[component[v]] : own[v]; }
+	/// The target of an edge: the smaller one of its ends.
+	double lengthOf(int h) const
+	{
+		return own.empty() ? length[component[mesh.origin(h)]]
+						   : std::min(own[mesh.origin(h)], own[mesh.target(h)]);
+	}
 	CreaseRole roleOf(int v) const { return role.empty() ? CreaseRole::Smooth : role[v]; }
 	bool isCrease(int h) const { return creases.isCrease(h); }
 
@@ -132,6 +148,8 @@ public:
 			for (const int side : {h, mesh.twin(h)})
 				patch.push_back(patch[side / 3]);
 		component.push_back(component[a]);
+		if (!own.empty())
+			own.push_back((own[a] + own[b]) / 2);
 		if (!role.empty())
 			role.push_back(isCrease(h) ? CreaseRole::Crease : CreaseRole::Smooth);
 		track.push_back(
@@ -144,11 +162,13 @@ public:
 	{
 		if (roleOf(v) == CreaseRole::Crease) {
 			mesh.position[v] = trackCrease(surface, surfaceCreases, surfaceRoles, point, track[v]);
+			measureLength(v);
 			return;
 		}
 		int face = track[v] / 3;
 		mesh.position[v] = trackSurface(surface, point, face);
 		track[v] = 3 * face;
+		measureLength(v);
 	}
 
 	/// From now on each triangle there is stands for a patch, of which splits make parts.
@@ -188,6 +208,8 @@ public:
 		Numbering number = breadthFirstOrder(mesh, seeds, progress.part(0.1, 0.4));
 		component = std::move(number.component);
 		track = renumbered(track, number.vertex, mesh.vertexCount());
+		if (!own.empty())
+			own = renumbered(own, number.vertex, mesh.vertexCount());
 		if (!role.empty())
 			role = renumbered(role, number.vertex, mesh.vertexCount());
 		creases.beforeRenumber(mesh, number.face);
@@ -201,6 +223,8 @@ public:
 		const std::vector<int> newVertex = mesh.compact();
 		keepAlive(component, newVertex);
 		keepAlive(track, newVertex);
+		if (!own.empty())
+			keepAlive(own, newVertex);
 		keepAlive(role, newVertex);
 	}
 
@@ -228,12 +252,35 @@ private:
 	const std::vector<CreaseRole> surfaceRoles;
 
 	CreaseEdges creases;
-	std::vector<CreaseRole> role;   ///< of each vertex; empty if there are no creases
-	std::vector<int> component;     ///< of each vertex
-	std::vector<double> length;     ///< of each component
+	std::vector<CreaseRole> role;      ///< of each vertex; empty if there are no creases
+	std::vector<int> component;        ///< of each vertex
+	std::vector<double> length;        ///< of each component
+	std::vector<double> surfaceLength; ///< target length at each vertex of `surface`; may be empty
+	std::vector<double> own;        ///< the target length at each vertex; empty if `length` tells
 	std::vector<int> track;         ///< of each vertex a half-edge of `surface`
 	std::vector<int> patch;         ///< of each face its patch; empty if there are none
 	std::vector<char> isInputPatch; ///< of each patch whether it is a triangle of `surface`
+
+	/// The target length where v is on the surface: linear within the triangle that it is tracked on.
+	void measureLength(int v)
+	{
+		if (own.empty())
+			return;
+		const Triangle t = surface.triangle(track[v] / 3);
+		const double at[3] = {surfaceLength[t[0]], surfaceLength[t[1]], surfaceLength[t[2]]};
+		if (at[0] == at[1] && at[1] == at[2]) {
+			own[v] = at[0];
+			return;
+		}
+		const Point3d &a = surface.position[t[0]], &p = mesh.position[v];
+		const Point3d ab = surface.position[t[1]] - a, ac = surface.position[t[2]] - a;
+		const Point3d normal = ab ^ ac;
+		const double squared = normal.SquaredNorm();
+		const double y = squared > 0 ? ((p - a) ^ ac) * normal / squared : 1.0 / 3;
+		const double z = squared > 0 ? (ab ^ (p - a)) * normal / squared : 1.0 / 3;
+		const auto [least, most] = std::minmax({at[0], at[1], at[2]});
+		own[v] = std::clamp(at[0] + y * (at[1] - at[0]) + z * (at[2] - at[0]), least, most);
+	}
 
 	/// What `ofVertex` says about each vertex that remains, in the order that there was.
 	template <class T>

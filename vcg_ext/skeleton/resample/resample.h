@@ -20,6 +20,7 @@
 #include <skeleton/mesh/measured_surface.h>
 #include <skeleton/mesh/principal_frame.h>
 #include <skeleton/mesh/surface_mesh.h>
+#include <skeleton/poles/sizing_field.h>
 
 #include <algorithm>
 #include <cmath>
@@ -28,22 +29,50 @@
 
 namespace vcg::tri::mcf {
 
+/**
+ * How many vertices an even mesh of a surface needs whose edges are L long, L the smaller of the length of
+ * the component and the field: V = integral dA / (L^2 sqrt(3) / 2).
+ * @param field @see sizingField(); may be empty. Complexity: O(F) with a field.
+ */
+inline double expectedVertices(const MeasuredSurface& surface,
+	const std::vector<double>& lengthOfComponent, const SizingField& field)
+{
+	const double areaOfVertex = std::sqrt(3.0) / 2; // for edges of length 1
+	double expected = 0;
+	for (int c = 0; c < surface.components(); ++c)
+		expected += surface.area(c) / (areaOfVertex * lengthOfComponent[c] * lengthOfComponent[c]);
+	if (field.empty())
+		return expected;
+	// What the field adds to that.
+	const SurfaceMesh& mesh = surface.mesh();
+	for (int f = 0; f < mesh.faceSlots(); ++f) {
+		if (!mesh.isFace(f))
+			continue;
+		const Triangle t = mesh.triangle(f);
+		const double length = lengthOfComponent[surface.component()[t[0]]];
+		double added = 0; // the mean over the corners
+		for (int v : t)
+			if (field[v] < length)
+				added += (1 / (field[v] * field[v]) - 1 / (length * length)) / 3;
+		expected += mesh.areaVector(f).Norm() / 2 * added / areaOfVertex;
+	}
+	return expected;
+}
+
 namespace detail {
 
 /// resample() of all components.
 inline SurfaceMesh resampleAll(const MeasuredSurface& surface,
-	const std::vector<double>& targetLengthOfComponent, int iterations, const Progress& progress)
+	const std::vector<double>& targetLengthOfComponent, const SizingField& field, int iterations,
+	const Progress& progress)
 {
 	constexpr double mostVertices = 2e7, mostOfExpected = 4, fewestAllowed = 3e6;
 	const std::vector<int>& component = surface.component();
 	const int components = surface.components();
 	std::vector<double> targetLength;
-	double expected = 0; // vertices
-	for (int c = 0; c < components; ++c) {
-		const double length = targetLengthOfComponent[c];
-		targetLength.push_back(surface.frame(c).lengthOnGrid(length));
-		expected += 2 * surface.area(c) / (std::sqrt(3.0) * length * length);
-	}
+	for (int c = 0; c < components; ++c)
+		targetLength.push_back(surface.frame(c).lengthOnGrid(targetLengthOfComponent[c]));
+	const double expected = expectedVertices(surface, targetLengthOfComponent, field);
 	if (!(expected <= mostVertices))
 		throw InvalidParameter("Parameter target_length is too small: the surface would need "
 			+ std::to_string(std::llround(expected / 1e6)) + " million vertices.");
@@ -58,15 +87,25 @@ inline SurfaceMesh resampleAll(const MeasuredSurface& surface,
 		[&](int v) { return onGrid(component[v], surface.mesh().position[v]); },
 		progress.part(0, 0.01));
 	const Numbering number = breadthFirstOrder(surface.mesh(), seeds, progress.part(0.01, 0.06));
+	std::vector<double> localLength; // on the grid
+	if (!field.empty()) {
+		std::vector<double> ofInput;
+		ofInput.reserve(field.size());
+		for (size_t v = 0; v < field.size(); ++v)
+			ofInput.push_back(std::min(
+				targetLength[component[v]], surface.frame(component[v]).lengthOnGrid(field[v])));
+		localLength = renumbered(ofInput, number.vertex, surface.mesh().vertexCount());
+	}
+	const auto lengthAt = [&](int v) {
+		return localLength.empty() ? targetLength[number.component[v]] : localLength[v];
+	};
 	SurfaceMesh reference = surface.mesh().renumbered(
 		number.vertex, number.face, number.firstCorner, progress.part(0.06, 0.1));
 	detail::reportedLoop(reference.vertexSlots(), progress.part(0.1, 0.12), what,
 		[&](int v) { reference.position[v] = onGrid(number.component[v], reference.position[v]); });
-	removeThinTriangles(
-		reference, [&](int v) { return targetLength[number.component[v]]; },
-		progress.part(0.12, 0.13));
-	detail::IsotropicRemesher remesher(
-		reference, number.component, targetLength, size_t(limit), progress.part(0.13, 0.15));
+	removeThinTriangles(reference, lengthAt, progress.part(0.12, 0.13));
+	detail::IsotropicRemesher remesher(reference, number.component, targetLength, size_t(limit),
+		progress.part(0.13, 0.15), localLength);
 	remesher.coarsen(progress.part(0.15, 0.4));
 	remesher.refine(progress.part(0.4, 0.5));
 	for (int i = 0; i < iterations; ++i) {
@@ -95,8 +134,8 @@ inline SurfaceMesh resampleAll(const MeasuredSurface& surface,
 
 /// resample() where components rest: the others are resampled as a surface of their own.
 inline SurfaceMesh resampleMoving(const MeasuredSurface& surface,
-	const std::vector<double>& targetLengthOfComponent, const std::vector<char>& rests,
-	int iterations, const Progress& progress)
+	const std::vector<double>& targetLengthOfComponent, const SizingField& field,
+	const std::vector<char>& rests, int iterations, const Progress& progress)
 {
 	const char* const what = "Ordering the surface";
 	const Progress begin = progress.part(0, 0), end = progress.part(1, 1);
@@ -120,16 +159,20 @@ inline SurfaceMesh resampleMoving(const MeasuredSurface& surface,
 	if (!length.empty()) {
 		std::vector<int> number(size_t(mesh.vertexSlots()), -1);
 		std::vector<Point3d> points;
+		SizingField fieldOfMoving;
 		reportedLoop(mesh.vertexSlots(), begin, what, [&](int v) {
 			if (mesh.isVertex(v) && !rests[surface.component()[v]]) {
 				number[v] = int(points.size());
 				points.push_back(mesh.position[v]);
+				if (!field.empty())
+					fieldOfMoving.push_back(field[v]);
 			}
 		});
 		std::vector<Triangle> triangles;
 		trianglesOf(mesh, number, triangles, begin);
 		const SurfaceMesh others(std::move(points), triangles, begin);
-		moving = resampleAll(MeasuredSurface(others, begin), length, iterations, progress);
+		moving = resampleAll(
+			MeasuredSurface(others, begin), length, fieldOfMoving, iterations, progress);
 		componentOfMoving = connectedComponents(moving, nullptr, end);
 	}
 	// Each component's vertices follow those of the one before it, so that their order stays.
@@ -186,6 +229,8 @@ inline SurfaceMesh resampleMoving(const MeasuredSurface& surface,
  * @param iterations              rounds, >= 0; 0 gives the input back, without holes in its
  *                                numbering. Five is plenty.
  * @param progress                window for reports; cancelling leaves nothing behind.
+ * @param field                   where it is smaller than L it takes the place of L, see sizingField();
+ *                                each edge goes by the smaller length of its ends. Empty: L everywhere.
  * @return a compact mesh; most edges are between 4/5 L and 4/3 L.
  * @throws InvalidParameter if there is not one positive length for each component, or if so small
  *         a length would need more than 20 million vertices, or, on a surface that is narrower than the
@@ -197,7 +242,7 @@ inline SurfaceMesh resampleMoving(const MeasuredSurface& surface,
  */
 inline SurfaceMesh resample(const MeasuredSurface& surface,
 	const std::vector<double>& targetLengthOfComponent, int iterations,
-	const Progress& progress = Progress())
+	const Progress& progress = Progress(), const SizingField& field = {})
 {
 	const int components = surface.components();
 	if (int(targetLengthOfComponent.size()) != components)
@@ -214,8 +259,9 @@ inline SurfaceMesh resample(const MeasuredSurface& surface,
 	}
 	const std::vector<char> rests = componentsAtRest(surface, progress.part(0, 0));
 	if (std::find(rests.begin(), rests.end(), 1) == rests.end())
-		return detail::resampleAll(surface, targetLengthOfComponent, iterations, progress);
-	return detail::resampleMoving(surface, targetLengthOfComponent, rests, iterations, progress);
+		return detail::resampleAll(surface, targetLengthOfComponent, field, iterations, progress);
+	return detail::resampleMoving(
+		surface, targetLengthOfComponent, field, rests, iterations, progress);
 }
 
 } // namespace vcg::tri::mcf

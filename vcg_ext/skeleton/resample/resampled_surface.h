@@ -16,9 +16,14 @@
 #include <skeleton/input/denoise.h>
 #include <skeleton/mesh/measured_surface.h>
 #include <skeleton/mesh/surface_mesh.h>
+#include <skeleton/poles/poles.h>
+#include <skeleton/poles/sizing_field.h>
 #include <skeleton/spatial/transferred_nodes.h>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
+#include <vector>
 
 namespace vcg::tri::mcf {
 
@@ -29,9 +34,75 @@ struct ResampledSurface
 	NoiseReport noise;
 };
 
+/// Of the vertices of a surface those where it is so thin that the sizing field, see sizingField(), is below
+/// the neutral length: 1. Empty if there are none. @throws Cancelled. Complexity: as medialPoles().
+inline std::vector<char> thinParts(const MeasuredSurface& surface, const Parameters& parameters,
+	const Progress& progress = Progress())
+{
+	std::vector<double> bound;
+	for (double diagonal : surface.diagonals())
+		bound.push_back(neutralLength * diagonal);
+	const SizingField field =
+		sizingField(surface, medialPoles(surface.mesh(), PoleMethod::Balls, progress.part(0, 0.8)),
+			parameters.relativeLength, bound, progress.part(0.8, 1));
+	std::vector<char> thin;
+	for (double length : field)
+		thin.push_back(std::isfinite(length));
+	return thin;
+}
+
+/// An adaptive mesh has at most this many vertices, or as many as its surface needs without the field.
+constexpr double maxVertices = 1e6;
+
+/**
+ * The sizing field to resample a surface with. Where its mesh would have more than maxVertices, the
+ * field is no smaller than what leaves it with so many; what is too thin for that is said.
+ * @param length of each component, see defaultTargetLength().
+ * @throws Cancelled. Complexity: as medialPoles().
+ */
+inline SizingField fieldOfResampling(const MeasuredSurface& surface,
+	const std::vector<double>& length, const Parameters& parameters,
+	const Progress& progress = Progress(), const NoteCallback& onNote = {})
+{
+	SizingField field =
+		sizingField(surface, medialPoles(surface.mesh(), PoleMethod::Balls, progress.part(0, 0.8)),
+			parameters.relativeLength, length, progress.part(0.8, 1));
+	if (field.empty())
+		return field;
+	const double expected = expectedVertices(surface, length, field);
+	const double most =
+		std::max(maxVertices, 1.01 * expectedVertices(surface, length, SizingField()));
+	if (expected > most) {
+		constexpr int halvings = 40;
+		double low = *std::min_element(field.begin(), field.end());
+		double high = *std::max_element(length.begin(), length.end());
+		const auto atLeast = [&](double least) {
+			SizingField raised = field;
+			for (double& at : raised)
+				at = std::max(at, least);
+			return raised;
+		};
+		for (int i = 0; i < halvings; ++i) {
+			const double middle = std::sqrt(low * high);
+			(expectedVertices(surface, length, atLeast(middle)) > most ? low : high) = middle;
+		}
+		field = atLeast(high);
+		if (onNote)
+			onNote(detail::sentence(3, "To resolve all of the shape would take ", expected / 1e6,
+				" million vertices: parts with a radius below ", high / parameters.relativeLength,
+				" mesh units may be left out or simplified."));
+	}
+	else if (onNote)
+		onNote(detail::sentence(3, "Parts of the shape are thin: edges are down to ",
+			*std::min_element(field.begin(), field.end()), " mesh units long there, about ",
+			std::llround(expected), " vertices in all."));
+	return field;
+}
+
 /**
  * Smooths the noise of a surface where there is any, if parameters.denoise is set, and resamples it,
- * with the edge length of defaultTargetLength().
+ * with the edge length of defaultTargetLength() or, with parameters.adaptive, less where the shape is thin,
+ * see sizingField(). What is thin is not smoothed: its facets cannot be told from noise.
  * @param mesh   closed two-manifold, compact.
  * @param onNote receives what was found and done; may be empty.
  * @throws InvalidParameter, Cancelled. Complexity: as resample().
@@ -42,7 +113,13 @@ inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Paramete
 	parameters.check();
 	const MeasuredSurface surface(mesh, progress.part(0, 0.05));
 	ResampledSurface result;
-	result.noise = measureNoise(surface, progress.part(0.05, 0.15));
+	result.noise = measureNoise(surface, progress.part(0.05, 0.1));
+	std::vector<char> still; // what the noise is not to be measured and smoothed on
+	if (parameters.adaptive && result.noise.isNoisy()) {
+		still = thinParts(surface, parameters, progress.part(0.1, 0.15));
+		if (!still.empty())
+			result.noise = measureNoise(surface, progress.part(0.15, 0.15), still);
+	}
 	const bool isNoisy = result.noise.isNoisy();
 	const bool smooth = parameters.denoise && isNoisy;
 	if (onNote && isNoisy)
@@ -51,12 +128,18 @@ inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Paramete
 			+ (smooth ? "smoothing it in " + std::to_string(result.noise.mostRounds()) + " rounds."
 					  : "it may show in the skeleton; 'denoise' would smooth it."));
 	const auto resampled = [&](const MeasuredSurface& calm) {
-		return resample(calm, defaultTargetLength(calm, parameters), parameters.resampleIterations,
-			progress.part(smooth ? 0.35 : 0.15, 1));
+		const double from = smooth ? 0.35 : 0.15;
+		const std::vector<double> length = defaultTargetLength(calm, parameters);
+		const SizingField field = parameters.adaptive && parameters.resampleIterations > 0
+			? fieldOfResampling(calm, length, parameters, progress.part(from, from + 0.15), onNote)
+			: SizingField();
+		return resample(
+			calm, length, parameters.resampleIterations, progress.part(from + 0.15, 1), field);
 	};
 	if (smooth)
-		result.mesh = resampled({smoothed(surface, result.noise.rounds, progress.part(0.15, 0.3)),
-			progress.part(0.3, 0.35)});
+		result.mesh =
+			resampled({smoothed(surface, result.noise.rounds, progress.part(0.15, 0.3), still),
+				progress.part(0.3, 0.35)});
 	else
 		result.mesh = resampled(surface);
 	if (onNote)

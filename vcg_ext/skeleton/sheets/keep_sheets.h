@@ -239,6 +239,8 @@ inline Stage stageOfComponent(const Stage& stage, int c, const SurfaceMesh& own,
 	part.fixed = picked(stage.fixed, ids);
 	part.held = picked(stage.held, ids);
 	part.sheet = picked(stage.sheet, ids);
+	if (!stage.epsilonLimit.empty())
+		part.epsilonLimit = picked(stage.epsilonLimit, ids);
 	part.component.assign(ids.size(), 0);
 	part.diagonal = {stage.diagonal[size_t(c)]};
 	part.initialArea = {stage.initialArea[size_t(c)]};

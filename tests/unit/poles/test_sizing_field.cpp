@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "shapes.h"
+
+#include <skeleton/poles/poles.h>
+#include <skeleton/poles/sizing_field.h>
+#include <skeleton/resample/resample.h>
+#include <skeleton/resample/target_length.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+using namespace vcg::tri::mcf;
+
+namespace {
+
+constexpr double relative = 0.6;
+
+/// A thick tube that narrows to a tube a twentieth as wide, about the x axis, with round ends.
+shapes::Soup bottle(double wide = 0.5, double narrow = 0.025)
+{
+	std::vector<std::pair<double, double>> profile = {{-2, 0}};
+	const auto add = [&](double x, double r) { profile.emplace_back(x, r); };
+	for (int i = 1; i <= 8; ++i)
+		add(-1.5 - wide * std::cos(i * M_PI / 16), wide * std::sin(i * M_PI / 16));
+	for (double x = -1.3; x < 0; x += 0.1)
+		add(x, wide);
+	for (int i = 1; i <= 8; ++i) // a quarter of a ball, down to the neck
+		add(wide * std::sin(i * M_PI / 18), wide * std::cos(i * M_PI / 18));
+	for (double x = 0.55; x < 2; x += 0.02)
+		add(x, narrow);
+	for (int i = 0; i < 8; ++i)
+		add(2 + narrow * std::sin(i * M_PI / 16), narrow * std::cos(i * M_PI / 16));
+	add(2 + narrow, 0);
+	return shapes::revolved(profile, 24);
+}
+
+SizingField fieldOf(const SurfaceMesh& mesh, double bound)
+{
+	const MeasuredSurface surface(mesh);
+	return sizingField(surface, medialPoles(mesh, PoleMethod::Balls), relative,
+		std::vector<double>(size_t(surface.components()), bound));
+}
+
+} // namespace
+
+TEST(SizingField, IsTheGivenPartOfTheRadiusOfATube)
+{
+	const SurfaceMesh mesh = bottle().mesh();
+	const SizingField field = fieldOf(mesh, 0.1);
+	ASSERT_EQ(int(field.size()), mesh.vertexSlots());
+	int seen = 0;
+	for (int v = 0; v < mesh.vertexSlots(); ++v)
+		if (mesh.position[v][0] > 0.7 && mesh.position[v][0] < 1.9) {
+			EXPECT_NEAR(field[v], relative * 0.025, 0.15 * relative * 0.025);
+			++seen;
+		}
+	EXPECT_GT(seen, 1000);
+}
+
+TEST(SizingField, IsInfiniteWhereTheShapeIsThick)
+{
+	const SurfaceMesh mesh = bottle().mesh();
+	const SizingField field = fieldOf(mesh, 0.1);
+	for (int v = 0; v < mesh.vertexSlots(); ++v)
+		if (mesh.position[v][0] < -0.3)
+			EXPECT_TRUE(std::isinf(field[v]));
+}
+
+TEST(SizingField, GrowsByAtMostThreeTenthsOfTheWay)
+{
+	const SurfaceMesh mesh = bottle().mesh();
+	constexpr double bound = 0.1;
+	const SizingField field = fieldOf(mesh, bound);
+	for (int h = 0; h < mesh.halfEdgeSlots(); ++h) {
+		const double length = std::sqrt(mesh.squaredLength(h));
+		const double here = field[mesh.origin(h)];
+		EXPECT_LE(std::min(field[mesh.target(h)], bound), here + 0.3 * length * (1 + 1e-12));
+	}
+}
+
+TEST(SizingField, SharpEdgesAreNotThin)
+{
+	// The balls next to the edges and corners of a box shrink to nothing, but the box is thick.
+	shapes::Soup box = shapes::box(1, 1, 2);
+	for (int i = 0; i < 5; ++i)
+		box = shapes::subdivided(box);
+	EXPECT_TRUE(fieldOf(box.mesh(), 0.1).empty());
+}
+
+TEST(SizingField, AShapeOfOneScaleHasNone)
+{
+	const SurfaceMesh torus = shapes::torus(1, 0.3, 90, 30).mesh();
+	EXPECT_TRUE(fieldOf(torus, 0.02).empty());
+}
+
+TEST(SizingField, ScalesWithTheShape)
+{
+	const SizingField one = fieldOf(bottle().mesh(), 0.1);
+	const SizingField other = fieldOf(shapes::scaled(bottle(), 1e3).mesh(), 0.1 * 1e3);
+	ASSERT_EQ(one.size(), other.size());
+	for (size_t v = 0; v < one.size(); ++v)
+		if (std::isfinite(one[v]))
+			EXPECT_NEAR(other[v] / one[v], 1e3, 1e-3);
+}
+
+TEST(SizingField, AdaptiveResamplingGivesAThinTubeItsVerticesAround)
+{
+	const SurfaceMesh mesh = bottle().mesh();
+	const MeasuredSurface surface(mesh);
+	const std::vector<double> length = {0.08};
+	const SizingField field = fieldOf(mesh, length[0]);
+	const SurfaceMesh fine = resample(surface, length, 5, Progress(), field);
+	double thin = 0, thick = 0;
+	int thinEdges = 0, thickEdges = 0, around = 0;
+	for (int h = 0; h < fine.halfEdgeSlots(); ++h) {
+		const double x = fine.position[fine.origin(h)][0], y = fine.position[fine.target(h)][0];
+		if (std::min(x, y) > 0.8 && std::max(x, y) < 1.8) {
+			thin += std::sqrt(fine.squaredLength(h));
+			++thinEdges;
+		}
+		else if (std::max(x, y) < -0.5) {
+			thick += std::sqrt(fine.squaredLength(h));
+			++thickEdges;
+		}
+		around += x < 1.3 && y >= 1.3;
+	}
+	ASSERT_GT(thinEdges, 0);
+	ASSERT_GT(thickEdges, 0);
+	EXPECT_NEAR(thin / thinEdges, relative * 0.025, 0.25 * relative * 0.025);
+	EXPECT_NEAR(thick / thickEdges, 0.08, 0.02);
+	// About twice as many edges cross a plane as there are vertices around.
+	EXPECT_GE(around, 14);
+	const double expected = expectedVertices(surface, length, field);
+	EXPECT_NEAR(fine.vertexCount() / expected, 1, 0.4);
+}
+
+TEST(SizingField, ResamplingWithAFieldThatBindsNowhereIsThatWithout)
+{
+	const SurfaceMesh mesh = shapes::torus().mesh();
+	const MeasuredSurface surface(mesh);
+	const SizingField field(size_t(mesh.vertexSlots()), 1.0);
+	const SurfaceMesh one = resample(surface, {0.1}, 3);
+	const SurfaceMesh other = resample(surface, {0.1}, 3, Progress(), field);
+	ASSERT_EQ(one.vertexSlots(), other.vertexSlots());
+	for (int v = 0; v < one.vertexSlots(); ++v)
+		EXPECT_EQ(one.position[v], other.position[v]);
+}
