@@ -174,7 +174,7 @@ private:
  * The local thickness at a vertex is the radius of the maximal inner balls around; balls that only sharp
  * edges, corners and bumps of the surface hold do not count, see detail::isThin() and
  * detail::OppositeSides, unless the shape is as thin next to them. A component is left alone that is nowhere
- * thinner than `bound`: no edge as long as that is longer than the thickness.
+ * thinner than its lengths would be anyway, the smaller of `bound` and neutralLength of its diagonal.
  *
  * @param poles          of all vertices.
  * @param relativeLength longest edge in local thicknesses, > 0. An even mesh has 2 pi / relativeLength
@@ -191,10 +191,13 @@ inline SizingField sizingField(const MeasuredSurface& surface, const PoleSet& po
 	const SurfaceMesh& mesh = surface.mesh();
 	const std::vector<int>& component = surface.component();
 	using Entry = std::pair<double, int>; // length, vertex
+	std::vector<double> thin;             // of each component, the lengths that count as small
+	for (int c = 0; c < surface.components(); ++c)
+		thin.push_back(std::min(bound[c], neutralLength * surface.diagonal(c)));
 	const std::vector<double> radius = detail::medianRadii(
 		mesh, poles,
 		[&](int v) {
-			return poles.has(v) && relativeLength * poles.radius[v] < bound[component[v]];
+			return poles.has(v) && relativeLength * poles.radius[v] < thin[component[v]];
 		},
 		progress.part(0, 0.4));
 	std::vector<Entry> seeds;
@@ -202,7 +205,7 @@ inline SizingField sizingField(const MeasuredSurface& surface, const PoleSet& po
 	std::vector<char> seen(size_t(mesh.vertexSlots()), 0);
 	detail::reportedLoop(mesh.vertexSlots(), progress.part(0.4, 0.6), detail::sizing, [&](int v) {
 		const double length = relativeLength * radius[v];
-		if (poles.has(v) && length > 0 && length < bound[component[v]]
+		if (poles.has(v) && length > 0 && length < thin[component[v]]
 			&& detail::isThin(mesh, radius, v, around, seen))
 			seeds.emplace_back(length, v);
 	});
@@ -219,7 +222,7 @@ inline SizingField sizingField(const MeasuredSurface& surface, const PoleSet& po
 		least[component[v]] = std::min(least[component[v]], length);
 	forget([&](const Entry& seed) {
 		const int c = component[seed.second];
-		return least[c] >= relativeLength * bound[c];
+		return least[c] >= relativeLength * thin[c];
 	});
 	if (seeds.empty())
 		return field;

@@ -64,6 +64,9 @@ private:
 	std::vector<double> ofVertex;
 };
 
+/// The scale of shapes of one scale.
+inline const LocalScale sameEverywhere;
+
 } // namespace vcg::tri::mcf::refining
 
 #endif

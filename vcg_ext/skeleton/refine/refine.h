@@ -415,7 +415,6 @@ inline Refinement refineChecked(const CurveSkeleton& curve, const SurfaceMesh& s
 	std::vector<std::pair<int, int>>
 		kept; // nodes of the result that are as they were, and what they were
 	constexpr double sampleSpacing = 0.01;
-	const refining::LocalScale everywhere;
 	const refining::LocalScale scale(unit,
 		refining::scaleOfVertices(
 			surface, component, components, frame, parameters, poles, progress.part(0.03, 0.03)));
@@ -438,7 +437,7 @@ inline Refinement refineChecked(const CurveSkeleton& curve, const SurfaceMesh& s
 			unit, vertices.ids[c], sampleSpacing, ofComponent.part(0, 0.1));
 		const refining::SurfaceComponent own = {unit, vertices.ids[c], vertices.place};
 		const refining::Defect defect = refining::refineChecked(part, closest, own,
-			isThin(c) ? scale : everywhere, parameters, ofComponent.part(0.1, 0.95));
+			isThin(c) ? scale : refining::sameEverywhere, parameters, ofComponent.part(0.1, 0.95));
 		refining::addTo(report, defect);
 		const bool isRefined = defect == refining::Defect::None;
 		if (!isRefined) {

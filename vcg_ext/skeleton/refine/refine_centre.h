@@ -242,7 +242,7 @@ inline void keepEdgesInside(
  * @pre radius holds distances from the surface, or lower bounds. @post lower bounds.
  */
 inline void centre(CurveSkeleton& skeleton, const std::vector<Contact>& contacts,
-	const ClosestSurface& surface, double kappa, const LocalScale& scale = LocalScale())
+	const ClosestSurface& surface, double kappa, const LocalScale& scale = sameEverywhere)
 {
 	constexpr double tipWeight = 1e3, weightWithoutBall = 1e-6;
 	constexpr double referenceRadius = 0.033, thinnest = 0.03, thickest = 3;

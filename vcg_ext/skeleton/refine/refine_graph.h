@@ -424,7 +424,7 @@ inline bool isInside(BallChain& chain, const ClosestSurface& surface)
  * @pre radius holds the distances from the surface, or lower bounds. @post lower bounds.
  */
 inline CurveSkeleton evenlySampled(const CurveSkeleton& skeleton, const ClosestSurface& surface,
-	double spacing, const LocalScale& scale = LocalScale())
+	double spacing, const LocalScale& scale = sameEverywhere)
 {
 	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
 	const std::vector<Branch> branches = skeletonBranches(skeleton);

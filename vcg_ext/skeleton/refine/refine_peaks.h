@@ -45,7 +45,7 @@ struct FeatureRule
 	/// Longest step of a branch, in diagonals.
 	double spacing;
 	/// Of the spacing.
-	const LocalScale& scale;
+	const LocalScale& scale = sameEverywhere;
 };
 
 /// A component of a surface; its vertices are numbered by their place in it.

@@ -30,7 +30,7 @@ struct TipRule
 	/// ... and end in a ball no smaller than this, in diagonals.
 	double leastRadius;
 	/// Of both lengths.
-	const LocalScale& scale;
+	const LocalScale& scale = sameEverywhere;
 };
 
 /// The direction in which a branch ends: from the node about one radius before the tip.
