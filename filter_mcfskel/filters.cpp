@@ -89,6 +89,7 @@ const char* cureInMeshLab(vcg::tri::mcf::Defect defect)
 		return " 'Remove Isolated pieces (wrt Diameter)' does the latter, with a diameter above that of "
 			   "the flat part.";
 	case Defect::Other:
+	case Defect::OpenSheet:
 	case Defect::Empty: break;
 	}
 	return "";
@@ -111,6 +112,7 @@ void ParameterValues::setLength(const ParameterSpec& spec, Scalarm length, doubl
 const std::vector<FilterSpec>& catalogue()
 {
 	static const std::vector<FilterSpec> filters = {
+		makeSolidFilter(),
 		resampleFilter(),
 		medialPolesFilter(),
 		contractionStepFilter(),

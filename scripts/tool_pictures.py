@@ -233,6 +233,21 @@ def resample(scene: Scene) -> list[Panel]:
         ("surface", scene.layers.mesh(0)), ("target_length 3.5 %", coarse), ("target_length 1.6 %", fine)]]
 
 
+def solid(scene: Scene) -> list[Panel]:
+    whole = scene.layers.mesh(0)
+    points, faces = whole.vertex_matrix(), whole.face_matrix()
+    random = np.random.default_rng(3)
+    left = faces[random.random(len(faces)) > 0.1]
+    middle = points[left].mean(axis=1)
+    centre = middle[np.argmax(middle @ [0.3, 0.5, 1.0])]
+    left = left[np.linalg.norm(middle - centre, axis=1) > 0.12 * np.linalg.norm(np.ptp(points, axis=0))]
+    scene.layers.add_mesh(pymeshlab.Mesh(points, left), "broken")
+    broken = scene.layers.current_mesh()
+    made = scene.run("generate_solid_mcf", broken)
+    return [Panel(title, [], [], [], triangles=[mesh]) for title, mesh in [
+        ("what is there", broken), ("Make Solid", made)]]
+
+
 def poles(scene: Scene) -> list[Panel]:
     mesh = scene.surface
     radius = mesh.vertex_custom_scalar_attribute_array("mcfskel_pole_radius")
@@ -270,6 +285,7 @@ PICTURES: dict[str, tuple[str, Callable[[Scene], list[Panel]]]] = {
     "balls": ("animal", balls),
     "tubes": ("animal", tubes),
     "filters/resample": ("animal450", resample),
+    "filters/solid": ("animal450", solid),
     "filters/poles": ("animal", poles),
     "filters/stages": ("hand", stages),
     "filters/curve": ("animal", curve),

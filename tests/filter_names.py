@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The python names of the filters."""
 
+SOLID = "generate_solid_mcf"
 RESAMPLE = "meshing_isotropic_resampling_mcf"
 POLES = "compute_medial_poles_mcf"
 STEP = "generate_meso_skeleton_mcf"

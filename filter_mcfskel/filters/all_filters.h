@@ -11,6 +11,7 @@
 
 namespace mcfskel {
 
+FilterSpec makeSolidFilter();
 FilterSpec resampleFilter();
 FilterSpec medialPolesFilter();
 FilterSpec contractionStepFilter();

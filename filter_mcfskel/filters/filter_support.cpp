@@ -172,6 +172,15 @@ Results stageResults(const mcf::Stage& stage)
 	};
 }
 
+Results repairResults(const mcf::SolidReport& report)
+{
+	return {
+		{"repaired", int(report.outcome)},
+		{"distance_mean", 100 * report.distanceMean},
+		{"distance_max", 100 * report.distanceMax},
+	};
+}
+
 Results curveResults(const mcf::CurveSkeleton& skeleton)
 {
 	const mcf::SkeletonStatistics s = mcf::statistics(skeleton);

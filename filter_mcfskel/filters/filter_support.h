@@ -50,6 +50,9 @@ vcg::tri::mcf::PoleMethod readPoleMethod(const ParameterValues& values);
 // Reports, for Python and for the log.
 
 Results stageResults(const vcg::tri::mcf::Stage& stage);
+/// `repaired` (0: as it was, 1: mended, 2: wrapped), and the distances of the solid from the input in percent of
+/// the diagonal.
+Results repairResults(const vcg::tri::mcf::SolidReport& report);
 Results curveResults(const vcg::tri::mcf::CurveSkeleton& skeleton);
 QString stageLine(const vcg::tri::mcf::StageFigures& figures);
 

@@ -16,6 +16,7 @@
 #include "../host/host_api.h"
 #include "stage_fields.h"
 
+#include <skeleton/solid.h>
 #include <skeleton/state.h>
 
 #include <QString>
@@ -90,6 +91,23 @@ QString baseName(const MeshModel& layer);
  */
 SurfaceLayer readSurface(
 	const MeshModel& layer, const vcg::tri::mcf::Progress& progress = vcg::tri::mcf::Progress());
+
+/// A surface layer as that of a solid: what it had to be made into may have other vertices.
+struct SolidLayer
+{
+	/// `vertexOfSlot` names the closest vertex where the layer's own is not one of the solid's.
+	SurfaceLayer surface;
+	vcg::tri::mcf::SolidReport report;
+
+	bool isRepaired() const { return report.outcome != vcg::tri::mcf::SolidReport::Sound; }
+};
+
+/**
+ * As readSurface(), with what does not bound a solid repaired: see solidSurface().
+ * @throws InvalidInput as readSurface() where `repair` does not allow for more; SolverError, Cancelled.
+ */
+SolidLayer readSolid(const MeshModel& layer, vcg::tri::mcf::Repair repair,
+	const vcg::tri::mcf::Progress& progress = vcg::tri::mcf::Progress());
 
 /**
  * The selected vertices of a layer.

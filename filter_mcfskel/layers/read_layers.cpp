@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 namespace mcfskel {
 
@@ -66,7 +67,7 @@ QString baseName(QString name)
 	static const QRegularExpression copyNumber("\\(\\d+\\)$");
 	static const QRegularExpression fileType("\\.[A-Za-z0-9]{1,5}$");
 	static const QRegularExpression appended(
-		"_(resampled|meso_\\d+|skeleton|refined|poles|pruned|smoothed|medial|balls)$");
+		"_(solid|resampled|meso_\\d+|skeleton|refined|poles|pruned|smoothed|medial|balls)$");
 	name.remove(copyNumber);
 	name.remove(fileType);
 	name.remove(appended);
@@ -78,7 +79,19 @@ QString baseName(const MeshModel& layer)
 	return baseName(layer.label());
 }
 
-SurfaceLayer readSurface(const MeshModel& layer, const mcf::Progress& progress)
+namespace {
+
+/// The triangles of a layer, deleted ones left out, rounded by SurfaceRounding.
+struct LayerTriangles
+{
+	std::vector<vcg::Point3d> points;
+	std::vector<mcf::Triangle> triangles;
+	std::vector<int> pointOfSlot; ///< -1: deleted
+};
+
+/// The surface that a layer's state holds, if it has one.
+/// @throws InvalidInput if the layer is no surface.
+std::optional<SurfaceLayer> surfaceInState(const MeshModel& layer)
 {
 	requireOwnAttributes(layer);
 	const std::string label = "'" + layer.label().toStdString() + "'";
@@ -89,49 +102,78 @@ SurfaceLayer readSurface(const MeshModel& layer, const mcf::Progress& progress)
 		if (state->surface.mesh)
 			return state->surface;
 	}
-	const CMeshO& mesh = layer.cm;
-	if (mesh.fn == 0 && mesh.en > 0)
+	if (layer.cm.fn == 0 && layer.cm.en > 0)
 		throw mcf::InvalidInput("The current layer " + label
 			+ " is a curve, edges without faces: make the surface layer current.");
+	return std::nullopt;
+}
 
+LayerTriangles readTriangles(const MeshModel& layer, const mcf::Progress& progress)
+{
+	const CMeshO& mesh = layer.cm;
 	const char* const what = "Reading the layer";
-	const int slotCount = int(mesh.vert.size());
-	std::vector<int> pointOfSlot;
-	pointOfSlot.reserve(mesh.vert.size());
-	std::vector<vcg::Point3d> points;
-	points.reserve(size_t(mesh.vn));
+	LayerTriangles read;
+	read.pointOfSlot.reserve(mesh.vert.size());
+	read.points.reserve(size_t(mesh.vn));
 	vcg::Box3d box;
-	mcf::detail::reportedLoop(slotCount, progress.part(0, 0.1), what, [&](int slot) {
+	mcf::detail::reportedLoop(int(mesh.vert.size()), progress.part(0, 0.5), what, [&](int slot) {
 		const CVertexO& v = mesh.vert[size_t(slot)];
-		pointOfSlot.push_back(v.IsD() ? -1 : int(points.size()));
+		read.pointOfSlot.push_back(v.IsD() ? -1 : int(read.points.size()));
 		if (v.IsD())
 			return;
-		points.push_back(toDouble(v.cP()));
-		box.Add(points.back());
+		read.points.push_back(toDouble(v.cP()));
+		box.Add(read.points.back());
 	});
 	const mcf::SurfaceRounding rounded(box);
-	mcf::detail::reportedLoop(int(points.size()), progress.part(0.1, 0.1), what,
-		[&](int i) { points[size_t(i)] = rounded(points[size_t(i)]); });
-	std::vector<mcf::Triangle> triangles;
-	triangles.reserve(size_t(mesh.fn));
-	mcf::detail::reportedLoop(int(mesh.face.size()), progress.part(0.1, 0.2), what, [&](int i) {
+	mcf::detail::reportedLoop(int(read.points.size()), progress.part(0.5, 0.5), what,
+		[&](int i) { read.points[size_t(i)] = rounded(read.points[size_t(i)]); });
+	read.triangles.reserve(size_t(mesh.fn));
+	mcf::detail::reportedLoop(int(mesh.face.size()), progress.part(0.5, 1), what, [&](int i) {
 		const CFaceO& f = mesh.face[size_t(i)];
 		if (f.IsD())
 			return;
 		mcf::Triangle triangle;
 		for (int k = 0; k < 3; ++k)
-			triangle[size_t(k)] = pointOfSlot[vcg::tri::Index(mesh, f.cV(k))];
-		triangles.push_back(triangle);
+			triangle[size_t(k)] = read.pointOfSlot[vcg::tri::Index(mesh, f.cV(k))];
+		read.triangles.push_back(triangle);
 	});
-	mcf::CheckedSurface checked = mcf::checkedSurface(points, triangles, progress.part(0.2, 1));
+	return read;
+}
+
+SurfaceLayer surfaceLayer(mcf::CheckedSurface&& checked, const std::vector<int>& pointOfSlot,
+	const mcf::Progress& progress)
+{
 	auto vertexOfSlot = std::make_shared<std::vector<int>>();
 	vertexOfSlot->reserve(pointOfSlot.size());
-	mcf::detail::reportedLoop(slotCount, progress.part(1, 1), what, [&](int slot) {
-		const int point = pointOfSlot[size_t(slot)];
-		vertexOfSlot->push_back(point < 0 ? -1 : checked.vertexOfInput[size_t(point)]);
-	});
+	mcf::detail::reportedLoop(
+		int(pointOfSlot.size()), progress, "Reading the layer", [&](int slot) {
+			const int point = pointOfSlot[size_t(slot)];
+			vertexOfSlot->push_back(point < 0 ? -1 : checked.vertexOfInput[size_t(point)]);
+		});
 	return {std::make_shared<const mcf::SurfaceMesh>(std::move(checked.mesh)), vertexOfSlot,
 		std::move(checked.notes)};
+}
+
+} // namespace
+
+SurfaceLayer readSurface(const MeshModel& layer, const mcf::Progress& progress)
+{
+	if (std::optional<SurfaceLayer> known = surfaceInState(layer))
+		return *known;
+	const LayerTriangles read = readTriangles(layer, progress.part(0, 0.2));
+	return surfaceLayer(mcf::checkedSurface(read.points, read.triangles, progress.part(0.2, 1)),
+		read.pointOfSlot, progress.part(1, 1));
+}
+
+SolidLayer readSolid(const MeshModel& layer, mcf::Repair repair, const mcf::Progress& progress)
+{
+	if (std::optional<SurfaceLayer> known = surfaceInState(layer))
+		return {*known, {}};
+	const LayerTriangles read = readTriangles(layer, progress.part(0, 0.2));
+	mcf::SolidSurface solid =
+		mcf::solidSurface(read.points, read.triangles, repair, progress.part(0.2, 1));
+	return {surfaceLayer(std::move(solid.surface), read.pointOfSlot, progress.part(1, 1)),
+		solid.report};
 }
 
 std::vector<char> readSelection(

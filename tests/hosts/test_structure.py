@@ -12,7 +12,7 @@ from conftest import ROOT
 
 LIBRARY = ROOT / "vcg_ext" / "skeleton"
 # Bottom to top, as drawn in the library's README.md: a folder may include what stands before it.
-ORDER = ["core", "mesh", "spatial", "graph", "input", "poles", "resample", "solver", "flow", "collapse",
+ORDER = ["core", "mesh", "spatial", "graph", "input", "repair", "poles", "resample", "solver", "flow", "collapse",
          "sheets", "refine", "measure", "io"]
 INCLUDE = re.compile(r'^#include [<"](?:skeleton/)?([\w/.]+\.h)[>"]', re.M)
 

@@ -29,7 +29,8 @@ enum class Defect {
 	NonManifoldVertices, ///< where separate fans of faces touch
 	OneSided,            ///< not orientable; there may be border edges, too
 	BorderEdges,         ///< not watertight
-	NoVolume             ///< a connected component is flat
+	NoVolume,            ///< a connected component is flat
+	OpenSheet            ///< bounds nothing, however its borders are closed
 };
 
 /// The mesh cannot be skeletonized; the text says what is wrong, how many, where, and what cures it.

@@ -21,6 +21,13 @@ enum class PoleMethod {
 	Balls    ///< shrinking balls (Ma, Bae, Choi 2012): the same poles, faster, and never outside
 };
 
+/// What is done with a mesh that does not bound a solid: see make_solid.h.
+enum class Repair {
+	Auto, ///< small defects are mended; where that is not enough, the surface is wrapped
+	Mend, ///< small defects are mended, no more
+	Off   ///< it is refused, but for what checkedSurface() repairs
+};
+
 /**
  * What the user may choose. Lengths are fractions of the bounding box diagonal of a connected
  * component, so that each component of a scene is treated as it would be alone. The box is that along

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "all_filters.h"
+#include "filter_support.h"
+
+#include <skeleton/solid.h>
+
+namespace mcfskel {
+
+namespace mcf = vcg::tri::mcf;
+
+namespace {
+
+Results run(FilterRun& run)
+{
+	const SolidLayer made = readSolid(run.layer(), mcf::Repair::Auto, run.progress.part(0, 0.95));
+	logNotes(run, made.surface);
+	const mcf::SolidReport& report = made.report;
+	if (report.outcome == mcf::SolidReport::Sound)
+		run.log("The surface bounds a solid as it is.");
+	const mcf::SurfaceMesh& mesh = *made.surface.mesh;
+
+	DocumentEdit edit(run.document);
+	MeshModel& layer = edit.addSurface(
+		run.layer(), baseName(run.layer()) + "_solid", mesh, run.progress.part(0.95, 1));
+	edit.attachSurface(layer, compactSurface(made.surface.mesh));
+	Results results = repairResults(report);
+	results.merge(Results {
+		{"vertices", mesh.vertexCount()},
+		{"faces", mesh.faceCount()},
+		{"holes_closed", report.mended.holesClosed},
+		{"edges_parted", report.mended.edgesParted},
+		{"vertices_parted", report.mended.verticesParted},
+		{"pieces_dropped", report.mended.piecesDropped + report.piecesDropped},
+		{"self_intersections", report.selfIntersections},
+		{"wrapped", report.outcome == mcf::SolidReport::Wrapped ? 1 : 0},
+	});
+	edit.commit();
+	return results;
+}
+
+} // namespace
+
+FilterSpec makeSolidFilter()
+{
+	return {"generate_solid_mcf", menuName("Make Solid"),
+		helpPage(
+			"Makes the closed, two-manifold surface of the solid that a mesh means, as a new layer, as "
+			"gently as that goes. A surface that is sound stays as it is. Small defects are mended where "
+			"they are: copies of faces, coincident vertices, edges with more than two faces, faces turned "
+			"against their neighbours, T-junctions, small holes; the rest keeps its vertices. Where that is "
+			"not enough, as with large holes, soups of triangles or parts that run into each other, the "
+			"surface is wrapped: the new one is where the winding number of the triangles is one half.<br><br>"
+			"The log says what was done, and how far the result is from the input. A sheet that bounds "
+			"nothing is refused."),
+		FilterCategory::Remeshing, MeshModel::MM_FACENUMBER, {}, run};
+}
+
+} // namespace mcfskel

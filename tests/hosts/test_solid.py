@@ -1,0 +1,92 @@
+# SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Make Solid: closed two-manifolds of what people have, and their skeletons."""
+
+import numpy as np
+import pymeshlab
+import pytest
+
+from conftest import FULL, arrays, diagonal, document, failing, fingerprint, labels
+from filter_names import SOLID
+from hostile.primitives import genus, is_two_manifold, signed_volume
+
+Mesh = tuple[np.ndarray, np.ndarray]
+
+
+def missing(part: float) -> Mesh:
+    """The capsule without a part of its faces, chosen at random."""
+    vertices, faces = arrays("capsule")
+    return vertices, faces[np.random.default_rng(1).random(len(faces)) >= part]
+
+
+def cut_off() -> Mesh:
+    """Without all that is in the last third of its length."""
+    vertices, faces = arrays("capsule")
+    along = vertices[:, np.argmax(np.ptp(vertices, axis=0))]
+    keep = (along[faces] < along.min() + 0.67 * np.ptp(along)).all(axis=1)
+    return vertices, faces[keep]
+
+
+def crossing() -> Mesh:
+    """Two capsules that cross at a right angle."""
+    vertices, faces = arrays("capsule")
+    return (np.vstack([vertices, vertices[:, [1, 0, 2]]]),
+            np.vstack([faces, faces[:, ::-1] + len(vertices)]))
+
+
+def solid(layers: pymeshlab.MeshSet) -> Mesh:
+    mesh = layers.current_mesh()
+    return mesh.vertex_matrix(), mesh.face_matrix().astype(np.int64)
+
+
+@pytest.mark.parametrize("mesh, repaired", [
+    (lambda: missing(0.03), 1), (lambda: missing(0.4), 2), (cut_off, None), (crossing, 2)])
+def test_broken(mesh, repaired):
+    layers = document(mesh())
+    before = layers.current_mesh().vertex_matrix()
+    numbers = layers.apply_filter(SOLID)
+    if repaired is not None:
+        assert numbers["repaired"] == repaired
+    assert numbers["wrapped"] == (numbers["repaired"] == 2)
+    assert labels(layers)[-1] == "mesh_0_solid"
+    assert np.array_equal(layers.mesh(0).vertex_matrix(), before)
+    assert is_two_manifold(solid(layers)) and genus(solid(layers)) == 0
+    assert signed_volume(solid(layers)) > 0
+    assert 0 <= numbers["distance_mean"] <= numbers["distance_max"] < 10
+
+
+def test_mended_keeps_vertices():
+    vertices, faces = missing(0.03)
+    layers = document((vertices, faces))
+    numbers = layers.apply_filter(SOLID)
+    assert numbers["holes_closed"] > 10 and numbers["distance_max"] == 0
+    # In single precision, in which all surfaces are read.
+    assert np.array_equal(layers.current_mesh().vertex_matrix(), np.float32(vertices[np.unique(faces)]))
+
+
+def test_sound_stays():
+    layers = document(arrays("torus"))
+    numbers = layers.apply_filter(SOLID)
+    assert (numbers["repaired"], numbers["distance_max"]) == (0, 0)
+    assert np.array_equal(layers.current_mesh().vertex_matrix(),
+                          np.float32(layers.mesh(0).vertex_matrix()))
+    assert np.array_equal(layers.current_mesh().face_matrix(), layers.mesh(0).face_matrix())
+
+
+@pytest.mark.parametrize("mesh", [lambda: missing(0.03), lambda: missing(0.4)])
+def test_its_skeleton_is_that_of_the_shape(mesh):
+    layers = document(mesh())
+    layers.apply_filter(SOLID)
+    results = layers.apply_filter(FULL, target_length=pymeshlab.PercentageValue(1.5))
+    assert (results["components"], results["cycles"], results["terminals"]) == (1, 0, 2)
+    vertices, _ = arrays("capsule")
+    nodes = layers.current_mesh().vertex_matrix()
+    axis = np.argmax(np.ptp(vertices, axis=0))
+    assert np.abs(np.delete(nodes, axis, axis=1)).max() < 0.02 * diagonal(vertices)
+
+
+def test_a_sheet_is_refused():
+    layers = document((np.eye(3), [[0, 1, 2]]))
+    before = fingerprint(layers)
+    assert "open sheet" in failing(layers, SOLID)
+    assert fingerprint(layers) == before

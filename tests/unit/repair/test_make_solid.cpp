@@ -1,0 +1,203 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "mesh_checks.h"
+#include "shapes.h"
+
+#include <skeleton/repair/make_solid.h>
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+using namespace vcg::tri::mcf;
+using vcg::Point3d;
+
+namespace {
+
+SolidSurface solid(const shapes::Soup& soup, Repair repair = Repair::Auto)
+{
+	return solidSurface(soup.points, soup.triangles, repair);
+}
+
+/// What is thrown; Defect::Other if nothing is.
+Defect defectOf(const shapes::Soup& soup, Repair repair = Repair::Auto)
+{
+	try {
+		solid(soup, repair);
+	}
+	catch (const InvalidInput& error) {
+		return error.defect();
+	}
+	return Defect::Other;
+}
+
+double volumeIn(const SurfaceMesh& mesh)
+{
+	double volume = 0;
+	for (const Triangle& t : mesh.triangles())
+		volume += mesh.position[size_t(t[0])]
+			* (mesh.position[size_t(t[1])] ^ mesh.position[size_t(t[2])]) / 6;
+	return volume;
+}
+
+int piecesOf(const SurfaceMesh& mesh)
+{
+	int components = 0;
+	connectedComponents(mesh, &components);
+	return components;
+}
+
+/// The part of a sphere below a height.
+shapes::Soup bowl(double height, int levels = 4)
+{
+	shapes::Soup soup = shapes::sphere(levels);
+	std::vector<Triangle> left;
+	for (const Triangle& t : soup.triangles)
+		if (soup.points[size_t(t[0])][2] < height)
+			left.push_back(t);
+	soup.triangles = left;
+	return soup;
+}
+
+TEST(MakeSolid, LeavesASoundSurfaceToTheLastBit)
+{
+	for (const shapes::Soup& soup : {shapes::torus(), shapes::capsule(), shapes::plate(2),
+			 shapes::insideOut(shapes::sphere()), shapes::unmerged(shapes::sphere())}) {
+		const SolidSurface made = solid(soup);
+		const CheckedSurface checked = checkedSurface(soup.points, soup.triangles);
+		EXPECT_EQ(made.report.outcome, SolidReport::Sound);
+		EXPECT_TRUE(made.surface.mesh.position == checked.mesh.position);
+		EXPECT_TRUE(made.surface.mesh.triangles() == checked.mesh.triangles());
+		EXPECT_EQ(made.surface.vertexOfInput, checked.vertexOfInput);
+		EXPECT_EQ(made.surface.notes, checked.notes);
+	}
+}
+
+TEST(MakeSolid, LeavesBodiesInsideBodies)
+{
+	const shapes::Soup soup = shapes::joined({shapes::sphere(), shapes::sphere(3, 0.4)});
+	EXPECT_EQ(solid(soup).report.outcome, SolidReport::Sound);
+	EXPECT_EQ(piecesOf(solid(soup).surface.mesh), 2);
+}
+
+TEST(MakeSolid, MendsASmallHole)
+{
+	const shapes::Soup soup = shapes::opened(shapes::sphere());
+	const SolidSurface made = solid(soup);
+	EXPECT_EQ(made.report.outcome, SolidReport::Mended);
+	EXPECT_EQ(made.report.mended.holesClosed, 1);
+	EXPECT_EQ(checks::structureError(made.surface.mesh), "");
+	ASSERT_EQ(made.surface.vertexOfInput.size(), soup.points.size());
+	for (size_t v = 0; v < soup.points.size(); ++v)
+		EXPECT_TRUE(
+			made.surface.mesh.position[size_t(made.surface.vertexOfInput[v])] == soup.points[v]);
+	EXPECT_EQ(made.report.distanceMax, 0);
+	EXPECT_NE(made.report.text().find("1 hole closed"), std::string::npos);
+}
+
+TEST(MakeSolid, WrapsWhatHasALargeHole)
+{
+	const shapes::Soup soup = bowl(0.2);
+	const SolidSurface made = solid(soup);
+	EXPECT_EQ(made.report.outcome, SolidReport::Wrapped);
+	EXPECT_EQ(checks::structureError(made.surface.mesh), "");
+	EXPECT_EQ(piecesOf(made.surface.mesh), 1);
+	EXPECT_LT(made.report.distanceMean, 0.05);
+	// The vertices of the input know their place on the wrap.
+	std::vector<char> used(soup.points.size(), 0);
+	for (const Triangle& t : soup.triangles)
+		for (int v : t)
+			used[size_t(v)] = 1;
+	for (size_t v = 0; v < soup.points.size(); ++v) {
+		const int own = made.surface.vertexOfInput[v];
+		ASSERT_EQ(own >= 0, bool(used[v]));
+		if (own >= 0) {
+			EXPECT_LT(Distance(made.surface.mesh.position[size_t(own)], soup.points[v]), 0.05);
+		}
+	}
+}
+
+TEST(MakeSolid, MendAloneRefusesWhatWouldBeWrapped)
+{
+	EXPECT_EQ(defectOf(bowl(0.2), Repair::Mend), Defect::BorderEdges);
+	EXPECT_EQ(defectOf(shapes::kleinBottle(), Repair::Mend), Defect::OneSided);
+}
+
+TEST(MakeSolid, OffRefusesAsTheCheckDoes)
+{
+	EXPECT_EQ(defectOf(shapes::opened(shapes::sphere()), Repair::Off), Defect::BorderEdges);
+	EXPECT_EQ(defectOf(shapes::tetrahedraSharingEdge(), Repair::Off), Defect::NonManifoldEdges);
+	EXPECT_EQ(
+		defectOf(shapes::tetrahedraSharingVertex(), Repair::Off), Defect::NonManifoldVertices);
+}
+
+TEST(MakeSolid, WrapsBodiesThatRunIntoEachOther)
+{
+	const shapes::Soup soup = shapes::joined(
+		{shapes::box(2, 1, 1), shapes::moved(shapes::box(2, 1, 1), {1.03, 0.21, 0.17})});
+	const SolidSurface made = solid(soup);
+	EXPECT_EQ(made.report.outcome, SolidReport::Wrapped);
+	EXPECT_GT(made.report.selfIntersections, 0);
+	EXPECT_EQ(piecesOf(made.surface.mesh), 1);
+	const double edge = made.report.spacing * Distance(Point3d(0, 0, 0), Point3d(3.03, 1.21, 1.17));
+	EXPECT_NEAR(volumeIn(made.surface.mesh), 4 - 0.97 * 0.79 * 0.83, 26 * edge * edge / 2);
+	EXPECT_EQ(piecesOf(solid(soup, Repair::Off).surface.mesh), 2);
+}
+
+TEST(MakeSolid, TurnsAWrapThatIsInsideOut)
+{
+	const SolidSurface made = solid(shapes::insideOut(bowl(0.2)));
+	EXPECT_EQ(made.report.outcome, SolidReport::Wrapped);
+	EXPECT_NEAR(volumeIn(made.surface.mesh), volumeIn(solid(bowl(0.2)).surface.mesh), 1e-3);
+}
+
+TEST(MakeSolid, RefusesAnOpenSheet)
+{
+	shapes::Soup sheet;
+	for (int i = 0; i <= 20; ++i)
+		for (int j = 0; j <= 20; ++j)
+			sheet.points.emplace_back(i, j, 0.02 * (i - 10) * (i - 10));
+	for (int i = 0; i < 20; ++i)
+		for (int j = 0; j < 20; ++j) {
+			const int a = 21 * i + j;
+			sheet.triangles.push_back({a, a + 21, a + 22});
+			sheet.triangles.push_back({a, a + 22, a + 1});
+		}
+	EXPECT_EQ(defectOf(sheet), Defect::OpenSheet);
+	EXPECT_EQ(defectOf(shapes::insideOut(sheet)), Defect::OpenSheet);
+	EXPECT_EQ(defectOf(sheet, Repair::Off), Defect::BorderEdges);
+}
+
+TEST(MakeSolid, RefusesWhatHasNoFacesOrVolume)
+{
+	EXPECT_EQ(defectOf({}), Defect::Empty);
+	EXPECT_EQ(defectOf({{{0, 0, 0}, {1, 0, 0}}, {}}), Defect::NoFaces);
+	EXPECT_EQ(defectOf(shapes::transformed(
+				  shapes::sphere(), [](const Point3d& p) { return Point3d(p[0], p[1], 0); })),
+		Defect::NoVolume);
+}
+
+TEST(MakeSolid, KeepsWhatHasVolumeOfWhatIsPartlyFlat)
+{
+	const shapes::Soup flat = shapes::transformed(
+		shapes::sphere(), [](const Point3d& p) { return Point3d(p[0] + 3, p[1], 0); });
+	const SolidSurface made = solid(shapes::joined({shapes::sphere(), flat}));
+	EXPECT_EQ(made.report.outcome, SolidReport::Mended);
+	EXPECT_EQ(made.report.mended.piecesDropped, 1);
+	EXPECT_EQ(piecesOf(made.surface.mesh), 1);
+}
+
+TEST(MakeSolid, MeansTheSameAtAnySize)
+{
+	const SolidSurface usual = solid(bowl(0.2));
+	for (double size : {1e-6, 1e6}) {
+		const SolidSurface made = solid(shapes::scaled(bowl(0.2), size));
+		EXPECT_EQ(made.report.outcome, SolidReport::Wrapped);
+		EXPECT_NEAR(
+			volumeIn(made.surface.mesh) / std::pow(size, 3), volumeIn(usual.surface.mesh), 1e-3);
+	}
+}
+
+} // namespace

@@ -1,0 +1,218 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "shapes.h"
+
+#include <skeleton/mesh/components.h>
+#include <skeleton/repair/mend.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+using namespace vcg::tri::mcf;
+using vcg::Point3d;
+
+namespace {
+
+MendedSurface mended(const shapes::Soup& soup)
+{
+	return mend(soup.points, soup.triangles);
+}
+
+/// Closed, in so many pieces, with this Euler characteristic, and the vertices of the input to the last bit.
+void expectMended(
+	const MendedSurface& surface, const shapes::Soup& soup, int pieces = 1, int euler = 2)
+{
+	ASSERT_TRUE(surface.closed);
+	const auto mesh = SurfaceMesh::ifClosedManifold(surface.points, surface.triangles);
+	ASSERT_TRUE(mesh);
+	int components = 0;
+	connectedComponents(*mesh, &components);
+	EXPECT_EQ(components, pieces);
+	EXPECT_EQ(mesh->vertexCount() - mesh->faceCount() / 2, euler);
+	for (size_t v = 0; v < soup.points.size(); ++v)
+		EXPECT_TRUE(surface.points[v] == soup.points[v]);
+}
+
+double enclosedVolume(const MendedSurface& surface)
+{
+	double volume = 0;
+	for (const Triangle& t : surface.triangles)
+		volume += surface.points[size_t(t[0])]
+			* (surface.points[size_t(t[1])] ^ surface.points[size_t(t[2])]) / 6;
+	return volume;
+}
+
+TEST(Mend, LeavesASoundSurfaceAsItIs)
+{
+	const shapes::Soup soup = shapes::torus();
+	const MendedSurface surface = mended(soup);
+	expectMended(surface, soup, 1, 0);
+	EXPECT_FALSE(surface.report.isChanged());
+	EXPECT_TRUE(surface.triangles == soup.triangles);
+}
+
+TEST(Mend, FillsAHoleOfOneTriangle)
+{
+	const shapes::Soup soup = shapes::opened(shapes::sphere(3));
+	const MendedSurface surface = mended(soup);
+	expectMended(surface, soup);
+	EXPECT_EQ(surface.report.holesClosed, 1);
+	EXPECT_NEAR(enclosedVolume(surface), enclosedVolume(mended(shapes::sphere(3))), 1e-12);
+}
+
+TEST(Mend, FillsTheHolesOfFacesMissingAtRandom)
+{
+	for (unsigned seed : {1u, 2u, 3u}) {
+		shapes::Soup soup = shapes::torus(1, 0.3, 60, 24);
+		std::mt19937 random(seed);
+		soup.triangles.erase(std::remove_if(soup.triangles.begin(), soup.triangles.end(),
+								 [&](const Triangle&) { return random() % 12 == 0; }),
+			soup.triangles.end());
+		const MendedSurface surface = mended(soup);
+		expectMended(surface, soup, 1, 0);
+		EXPECT_GT(surface.report.holesClosed, 50);
+		EXPECT_NEAR(enclosedVolume(surface), enclosedVolume(mended(shapes::torus(1, 0.3, 60, 24))),
+			0.02 * 1.7);
+	}
+}
+
+TEST(Mend, LeavesALargeHole)
+{
+	shapes::Soup soup = shapes::sphere(3);
+	std::vector<Triangle> half;
+	for (const Triangle& t : soup.triangles)
+		if (soup.points[size_t(t[0])][2] < 0.1)
+			half.push_back(t);
+	soup.triangles = half;
+	const MendedSurface surface = mended(soup);
+	EXPECT_FALSE(surface.closed);
+	EXPECT_EQ(surface.report.holesLeft, 1);
+	EXPECT_EQ(surface.report.holesClosed, 0);
+}
+
+TEST(Mend, DoesNotFillAcrossTheShape)
+{
+	// A tube without its ends: each end is small, and its filling is the end. With a wall through an end,
+	// the filling would cross that.
+	shapes::Soup soup = shapes::capsule(4, 0.3, 24);
+	std::vector<Triangle> open;
+	for (const Triangle& t : soup.triangles) {
+		bool end = false;
+		for (int v : t)
+			end |= soup.points[size_t(v)][0] > 2.01;
+		if (!end)
+			open.push_back(t);
+	}
+	soup.triangles = open;
+	EXPECT_EQ(mended(soup).report.holesClosed, 1);
+	const shapes::Soup pin = shapes::moved(shapes::box(1, 0.05, 0.05), {1.5, -0.02, -0.02});
+	const MendedSurface crossed = mended(shapes::joined({soup, pin}));
+	EXPECT_EQ(crossed.report.holesClosed, 0);
+	EXPECT_FALSE(crossed.closed);
+}
+
+TEST(Mend, TurnsFacesToAgree)
+{
+	shapes::Soup soup = shapes::opened(shapes::sphere(3));
+	for (size_t f = 5; f < soup.triangles.size(); f += 20)
+		std::swap(soup.triangles[f][0], soup.triangles[f][1]);
+	const MendedSurface surface = mended(soup);
+	expectMended(surface, soup);
+	EXPECT_EQ(surface.report.facesTurned, int((soup.triangles.size() + 14) / 20));
+	EXPECT_GT(enclosedVolume(surface), 4);
+}
+
+TEST(Mend, PartsBodiesThatTouchAtAnEdge)
+{
+	const shapes::Soup soup = shapes::tetrahedraSharingEdge();
+	const MendedSurface surface = mended(soup);
+	expectMended(surface, soup, 2, 4);
+	EXPECT_EQ(surface.report.edgesParted, 1);
+	EXPECT_NEAR(enclosedVolume(surface), 2.0 / 6, 1e-12);
+}
+
+TEST(Mend, PartsBodiesThatTouchAtAVertex)
+{
+	const shapes::Soup soup = shapes::tetrahedraSharingVertex();
+	const MendedSurface surface = mended(soup);
+	expectMended(surface, soup, 2, 4);
+	EXPECT_EQ(surface.report.verticesParted, 1);
+}
+
+TEST(Mend, DropsAFin)
+{
+	shapes::Soup soup = shapes::sphere(3);
+	const Triangle t = soup.triangles[10];
+	const int tip = int(soup.points.size());
+	soup.points.push_back(soup.points[size_t(t[0])] * 1.1);
+	soup.triangles.push_back({t[1], t[0], tip});
+	const MendedSurface surface = mended(soup);
+	expectMended(surface, soup);
+	EXPECT_EQ(surface.report.piecesDropped, 1);
+	EXPECT_NEAR(enclosedVolume(surface), enclosedVolume(mended(shapes::sphere(3))), 1e-12);
+}
+
+TEST(Mend, UnitesBoxesWithACommonWall)
+{
+	const shapes::Soup soup =
+		shapes::joined({shapes::box(), shapes::moved(shapes::box(), {1, 0, 0})});
+	shapes::Soup merged = soup; // the wall's vertices are the same ones
+	for (Triangle& t : merged.triangles)
+		for (int& v : t)
+			for (int w = 0; w < v; ++w)
+				if (merged.points[size_t(w)] == merged.points[size_t(v)])
+					v = w;
+	const MendedSurface surface = mended(merged);
+	ASSERT_TRUE(surface.closed);
+	EXPECT_NEAR(enclosedVolume(surface), 2, 1e-12);
+}
+
+TEST(Mend, ClosesTJunctions)
+{
+	shapes::Soup soup = shapes::sphere(2);
+	const Triangle t = soup.triangles[7];
+	const int middle = int(soup.points.size());
+	soup.points.push_back((soup.points[size_t(t[0])] + soup.points[size_t(t[1])]) / 2.0);
+	soup.triangles[7] = {t[0], middle, t[2]};
+	soup.triangles.push_back({middle, t[1], t[2]});
+	const MendedSurface surface = mended(soup);
+	expectMended(surface, soup);
+	EXPECT_EQ(surface.report.junctionsClosed, 1);
+	EXPECT_EQ(surface.report.holesClosed, 0);
+}
+
+TEST(Mend, MergesVerticesThatNearlyCoincide)
+{
+	const shapes::Soup soup = shapes::jittered(shapes::unmerged(shapes::sphere(3)), 1e-6);
+	const MendedSurface surface = mended(soup);
+	ASSERT_TRUE(surface.closed);
+	EXPECT_EQ(surface.report.verticesMerged, int(soup.points.size()) - 258);
+	EXPECT_EQ(int(soup.triangles.size()), int(surface.triangles.size()));
+}
+
+TEST(Mend, LeavesOutFacesThatAreNotFinite)
+{
+	shapes::Soup soup = shapes::sphere(3);
+	soup.points[3][1] = std::numeric_limits<double>::quiet_NaN();
+	const MendedSurface surface = mended(soup);
+	ASSERT_TRUE(surface.closed);
+	EXPECT_EQ(surface.report.holesClosed, 1);
+	for (const Triangle& t : surface.triangles)
+		for (int v : t)
+			EXPECT_NE(v, 3);
+}
+
+TEST(Mend, SaysThatASurfaceIsOneSided)
+{
+	const MendedSurface surface = mended(shapes::kleinBottle());
+	EXPECT_FALSE(surface.closed);
+	EXPECT_TRUE(surface.report.oneSided);
+}
+
+} // namespace

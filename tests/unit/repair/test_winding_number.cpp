@@ -1,0 +1,149 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "shapes.h"
+
+#include <skeleton/repair/overlap.h>
+#include <skeleton/repair/triangle_tree.h>
+#include <skeleton/repair/winding_number.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+using namespace vcg::tri::mcf;
+using vcg::Point3d;
+
+namespace {
+
+/// Points in and around a shape, none of them chosen by its coordinates.
+std::vector<Point3d> queries(const shapes::Soup& soup, int count)
+{
+	vcg::Box3d box;
+	for (const Point3d& p : soup.points)
+		box.Add(p);
+	box.Offset(0.2 * box.Diag());
+	std::mt19937 random(5);
+	const auto part = [&] { return random() / double(std::mt19937::max()); };
+	std::vector<Point3d> points;
+	for (int i = 0; i < count; ++i) {
+		const double x = part(), y = part(), z = part();
+		points.emplace_back(
+			box.min[0] + x * box.DimX(), box.min[1] + y * box.DimY(), box.min[2] + z * box.DimZ());
+	}
+	return points;
+}
+
+double sumOfSolidAngles(const shapes::Soup& soup, const Point3d& q)
+{
+	double sum = 0;
+	for (const Triangle& t : soup.triangles)
+		sum += detail::windingOfTriangle(
+			soup.points[size_t(t[0])], soup.points[size_t(t[1])], soup.points[size_t(t[2])], q);
+	return sum;
+}
+
+TEST(WindingNumber, AFaceOfATetrahedronSeenFromItsMiddleIsAQuarter)
+{
+	const Point3d a(1, 1, 1), b(1, -1, -1), c(-1, 1, -1);
+	const double w = detail::windingOfTriangle(a, b, c, Point3d(0, 0, 0));
+	EXPECT_NEAR(std::abs(w), 0.25, 1e-14);
+	EXPECT_NEAR(detail::windingOfTriangle(a, c, b, Point3d(0, 0, 0)), -w, 1e-14);
+}
+
+TEST(WindingNumber, IsOneInsideAndZeroOutsideOfAClosedSurface)
+{
+	const shapes::Soup soup = shapes::sphere(4);
+	const TriangleTree tree(soup.points, soup.triangles);
+	const WindingNumber winding(tree);
+	for (const Point3d& q : queries(soup, 300))
+		if (std::abs(q.Norm() - 1) > 0.01) {
+			EXPECT_NEAR(winding(q), q.Norm() < 1 ? 1 : 0, 0.02);
+		}
+}
+
+TEST(WindingNumber, IsNearTheSumOfSolidAnglesOnOpenSurfaces)
+{
+	shapes::Soup soup = shapes::torus(1, 0.3, 90, 40);
+	soup.triangles.resize(soup.triangles.size() * 2 / 3);
+	const TriangleTree tree(soup.points, soup.triangles);
+	const WindingNumber winding(tree);
+	double mean = 0;
+	for (const Point3d& q : queries(soup, 300)) {
+		const double error = std::abs(winding(q) - sumOfSolidAngles(soup, q));
+		EXPECT_LT(error, 0.02);
+		mean += error / 300;
+	}
+	EXPECT_LT(mean, 0.002);
+}
+
+TEST(WindingNumber, OfHalfASphereIsOneHalfInTheMiddle)
+{
+	shapes::Soup soup = shapes::sphere(4);
+	std::vector<Triangle> upper;
+	for (const Triangle& t : soup.triangles)
+		if ((soup.points[size_t(t[0])] + soup.points[size_t(t[1])] + soup.points[size_t(t[2])])[2]
+			> 0)
+			upper.push_back(t);
+	const TriangleTree tree(soup.points, upper);
+	EXPECT_NEAR(WindingNumber(tree)(Point3d(0, 0, 0)), 0.5, 0.02);
+}
+
+TEST(TriangleTree, FindsTheClosestPointOfAll)
+{
+	const shapes::Soup soup = shapes::torus();
+	const TriangleTree tree(soup.points, soup.triangles);
+	for (const Point3d& q : queries(soup, 100)) {
+		double nearest = 1e9;
+		for (const Triangle& t : soup.triangles)
+			nearest = std::min(nearest,
+				detail::closestOnTriangle(soup.points[size_t(t[0])], soup.points[size_t(t[1])],
+					soup.points[size_t(t[2])], q)
+					.squaredDistance);
+		const TriangleTree::Closest found = tree.closest(q);
+		EXPECT_NEAR(found.distance, std::sqrt(nearest), 1e-12);
+		EXPECT_NEAR(Distance(found.point, q), found.distance, 1e-12);
+	}
+}
+
+TEST(TriangleTree, ALineThroughASphereEntersAndLeaves)
+{
+	const shapes::Soup soup = shapes::sphere(3);
+	const TriangleTree tree(soup.points, soup.triangles);
+	int enters = 0, leaves = 0;
+	tree.forEachCrossing(
+		Point3d(-2, 0.1, 0.23), Point3d(2, 0.12, 0.2), [&](int, double t, bool alongNormal) {
+			(alongNormal ? leaves : enters) += 1;
+			EXPECT_EQ(alongNormal, t > 0.5);
+		});
+	EXPECT_EQ(enters, 1);
+	EXPECT_EQ(leaves, 1);
+}
+
+TEST(WindingVolumes, OfABox)
+{
+	const shapes::Soup soup = shapes::box(2, 3, 4);
+	const WindingVolumes found = windingVolumes(soup.points, soup.triangles);
+	EXPECT_NEAR(found.once, 24, 1e-9);
+	EXPECT_EQ(found.wrongPart(), 0);
+}
+
+TEST(WindingVolumes, OfTwoBoxesThatRunIntoEachOther)
+{
+	const shapes::Soup soup =
+		shapes::joined({shapes::box(2, 2, 2), shapes::moved(shapes::box(2, 2, 2), {1, 0, 0})});
+	const WindingVolumes found = windingVolumes(soup.points, soup.triangles, 120);
+	EXPECT_NEAR(found.once, 12, 0.2);
+	EXPECT_NEAR(found.repeated, 4, 0.1);
+	EXPECT_NEAR(found.wrongPart(), 1.0 / 3, 0.01);
+}
+
+TEST(WindingVolumes, OfWhatIsInsideOut)
+{
+	const shapes::Soup soup = shapes::insideOut(shapes::box());
+	EXPECT_NEAR(windingVolumes(soup.points, soup.triangles).negative, 1, 1e-9);
+}
+
+} // namespace

@@ -1,0 +1,176 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief Seams: borders that run along each other, with vertices that nearly coincide, or only on one side.
+
+#ifndef VCG_MCF_CLOSE_SEAMS_H
+#define VCG_MCF_CLOSE_SEAMS_H
+
+#include "triangle_tree.h"
+
+#include <skeleton/core/progress.h>
+#include <skeleton/input/soup_repair.h>
+#include <skeleton/mesh/surface_mesh.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/// What closeSeams() has done.
+struct ClosedSeams
+{
+	/// For each point the one that stands for it.
+	std::vector<int> vertexOf;
+	int merged = 0;    ///< vertices that nearly coincided with another one
+	int junctions = 0; ///< vertices that lay on an edge of the other side: T-junctions
+};
+
+namespace detail {
+
+/// An edge of one face only, as it runs in the face.
+struct BorderEdge
+{
+	int from, to, face;
+};
+
+inline std::vector<BorderEdge> borderEdges(
+	size_t vertices, const std::vector<Triangle>& triangles, const Progress& progress)
+{
+	std::vector<BorderEdge> border;
+	const SoupEdges edges = sortedSoupEdges(vertices, triangles, progress.part(0, 0.9));
+	forEachSoupEdge(
+		edges, progress.part(0.9, 1), [&](int low, const SoupEdge* begin, const SoupEdge* end) {
+			if (end - begin != 1)
+				return;
+			const bool forward = begin->forward;
+			border.push_back(
+				{forward ? low : begin->high, forward ? begin->high : low, int(begin->face)});
+		});
+	return border;
+}
+
+} // namespace detail
+
+/**
+ * Merges border vertices that nearly coincide, and cuts border edges on which a border vertex lies: within
+ * a hundredth of the border edges there. What is no border stays.
+ * @param triangles are changed. @throws Cancelled.
+ * Complexity: O(F + B log B) for B border edges.
+ */
+inline ClosedSeams closeSeams(const std::vector<Point3d>& points, std::vector<Triangle>& triangles,
+	const Progress& progress = Progress())
+{
+	constexpr double nearness = 0.01; // of an edge
+	constexpr int mostRounds = 3;     // each cuts one edge of a face
+	ClosedSeams done;
+	done.vertexOf.resize(points.size());
+	std::iota(done.vertexOf.begin(), done.vertexOf.end(), 0);
+	const auto find = [&](int v) {
+		while (done.vertexOf[size_t(v)] != v)
+			v = done.vertexOf[size_t(v)] = done.vertexOf[size_t(done.vertexOf[size_t(v)])];
+		return v;
+	};
+	for (int round = 0; round < mostRounds; ++round) {
+		const Progress part = progress.part(double(round) / mostRounds, (round + 1.0) / mostRounds);
+		const std::vector<detail::BorderEdge> border =
+			detail::borderEdges(points.size(), triangles, part.part(0, 0.5));
+		if (border.empty())
+			break;
+		std::vector<Triangle> segments;
+		for (const detail::BorderEdge& e : border)
+			segments.push_back({e.from, e.to, e.to});
+		const TriangleTree tree(points, segments, part.part(0.5, 0.7));
+		const auto length = [&](int e) {
+			return Distance(
+				points[size_t(segments[size_t(e)][0])], points[size_t(segments[size_t(e)][1])]);
+		};
+		std::vector<std::vector<std::pair<double, int>>> onEdge(border.size());
+		int merged = 0, junctions = 0;
+		detail::reportedLoop(
+			int(border.size()), part.part(0.7, 1), detail::repairing, [&](int own) {
+				const int v = border[size_t(own)].from;
+				const Point3d& p = points[size_t(v)];
+				const double reach = nearness * length(own);
+				Box3d box;
+				box.Add(p);
+				box.Offset(reach);
+				int lowest = v, edge = -1;
+				double nearest = reach, at = 0;
+				tree.forEachFaceIn(box, [&](int e) {
+					const auto [a, b, unused] = segments[size_t(e)];
+					(void)unused;
+					if (a == v || b == v)
+						return;
+					const double whole = length(e), most = std::min(reach, nearness * whole);
+					for (int w : {a, b})
+						if (Distance(points[size_t(w)], p) <= most)
+							lowest = std::min(lowest, w);
+					const Point3d along = points[size_t(b)] - points[size_t(a)];
+					const double t =
+						whole > 0 ? (p - points[size_t(a)]) * along / (whole * whole) : 0;
+					const double away = Distance(p, points[size_t(a)] + along * t);
+					if (t > nearness && t < 1 - nearness && away <= most && away < nearest) {
+						nearest = away;
+						edge = e;
+						at = t;
+					}
+				});
+				if (lowest != v) {
+					const int first = find(lowest), other = find(v);
+					merged += first != other;
+					done.vertexOf[size_t(std::max(first, other))] = std::min(first, other);
+				}
+				else if (edge >= 0)
+					onEdge[size_t(edge)].emplace_back(at, v);
+			});
+		std::vector<char> cut(triangles.size(), 0);
+		for (size_t e = 0; e < border.size(); ++e) {
+			auto& inserted = onEdge[e];
+			const size_t f = size_t(border[e].face);
+			if (inserted.empty() || cut[f])
+				continue;
+			cut[f] = 1;
+			std::sort(inserted.begin(), inserted.end());
+			const Triangle t = triangles[f];
+			const int apex = t[0] != border[e].from && t[0] != border[e].to ? t[0]
+				: t[1] != border[e].from && t[1] != border[e].to            ? t[1]
+																			: t[2];
+			int from = border[e].from;
+			inserted.emplace_back(1, border[e].to);
+			for (size_t i = 0; i < inserted.size(); ++i) {
+				if (inserted[i].second == apex)
+					continue;
+				const Triangle piece = {from, inserted[i].second, apex};
+				if (i == 0)
+					triangles[f] = piece;
+				else
+					triangles.push_back(piece);
+				from = inserted[i].second;
+			}
+			junctions += int(inserted.size()) - 1;
+		}
+		done.merged += merged;
+		done.junctions += junctions;
+		if (merged)
+			for (Triangle& t : triangles)
+				for (int& v : t)
+					v = find(v);
+		if (merged || junctions)
+			detail::removeDegenerateFaces(points.size(), triangles, part.part(1, 1));
+		if (!junctions)
+			break;
+	}
+	for (size_t v = 0; v < points.size(); ++v)
+		done.vertexOf[v] = find(int(v));
+	return done;
+}
+
+} // namespace vcg::tri::mcf
+
+#endif

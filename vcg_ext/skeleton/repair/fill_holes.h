@@ -1,0 +1,374 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief Small holes closed by triangles between their border vertices, as smooth as these allow.
+
+#ifndef VCG_MCF_FILL_HOLES_H
+#define VCG_MCF_FILL_HOLES_H
+
+#include "part_surface.h"
+#include "triangle_tree.h"
+
+#include <skeleton/core/progress.h>
+#include <skeleton/mesh/surface_mesh.h>
+
+#include <vcg/space/intersection/triangle_triangle3.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/// What fillHoles() has done.
+struct FilledHoles
+{
+	int closed = 0, left = 0;
+};
+
+/// What counts as a small hole.
+struct HoleLimits
+{
+	/// Area of the filling, as a part of that of the piece of surface around it; all holes of a piece.
+	double area = 0.2, allAreas = 0.5;
+	/// Border edges of one hole: the time grows with their cube.
+	int edges = 200;
+	/// The sharpest turn of the filling against itself and the surface, degrees: 0 is straight on. Beyond, it
+	/// would lie back on the surface.
+	double turn = 160;
+};
+
+namespace detail {
+
+/**
+ * The triangulation of a closed polygon in space that turns least, and has the least area of those.
+ * Source: Liepa, "Filling holes in meshes", SGP 2003, Sec. 3; the recursion is due to Barequet and Sharir, 1995.
+ */
+class PolygonFilling
+{
+public:
+	struct Weight
+	{
+		double turn = std::numeric_limits<
+			double>::infinity(); ///< largest 1 - cos of the angle between normals
+		double area = 0;
+
+		bool operator<(const Weight& other) const
+		{
+			return turn != other.turn ? turn < other.turn : area < other.area;
+		}
+	};
+
+	/**
+	 * @param polygon   corners in order; @param outside unit normal of the face at each side i, i + 1.
+	 * @param allowed   allowed(i, k): whether the filling may have the edge from corner i to corner k.
+	 */
+	template <class Allowed>
+	PolygonFilling(const std::vector<Point3d>& polygon, const std::vector<Point3d>& outside,
+		const Allowed& allowed) :
+			p(polygon),
+			outside(outside), n(int(polygon.size())), best(size_t(n) * size_t(n)),
+			apex(size_t(n) * size_t(n), -1)
+	{
+		for (int i = 0; i + 1 < n; ++i)
+			best[at(i, i + 1)] = {0, 0};
+		for (int span = 2; span < n; ++span)
+			for (int i = 0; i + span < n; ++i) {
+				const int k = i + span;
+				const bool isLast = span == n - 1;
+				if (!isLast && !allowed(i, k))
+					continue;
+				for (int m = i + 1; m < k; ++m) {
+					const Weight &left = best[at(i, m)], &right = best[at(m, k)];
+					const double sum = std::max(left.turn, right.turn);
+					if (!(sum <= best[at(i, k)].turn))
+						continue;
+					const Point3d area =
+						((p[size_t(m)] - p[size_t(i)]) ^ (p[size_t(k)] - p[size_t(i)])) / 2.0;
+					const Point3d normal = unit(area);
+					double turn = std::max({sum, turnAt(normal, i, m), turnAt(normal, m, k)});
+					if (isLast)
+						turn = std::max(turn, between(normal, outside[size_t(n - 1)]));
+					const Weight weight = {turn, left.area + right.area + area.Norm()};
+					if (weight < best[at(i, k)]) {
+						best[at(i, k)] = weight;
+						apex[at(i, k)] = m;
+					}
+				}
+			}
+	}
+
+	Weight weight() const { return best[at(0, n - 1)]; }
+
+	/// The triangles, as places in the polygon.
+	std::vector<Triangle> triangles() const
+	{
+		std::vector<Triangle> result;
+		std::vector<std::array<int, 2>> open = {{0, n - 1}};
+		while (!open.empty()) {
+			const auto [i, k] = open.back();
+			open.pop_back();
+			if (k - i < 2)
+				continue;
+			const int m = apex[at(i, k)];
+			result.push_back({i, m, k});
+			open.push_back({i, m});
+			open.push_back({m, k});
+		}
+		return result;
+	}
+
+private:
+	const std::vector<Point3d>& p;
+	const std::vector<Point3d>& outside;
+	int n;
+	std::vector<Weight> best;
+	std::vector<int> apex;
+
+	size_t at(int i, int k) const { return size_t(i) * size_t(n) + size_t(k); }
+
+	static Point3d unit(const Point3d& v)
+	{
+		const double length = v.Norm();
+		return length > 0 ? v / length : Point3d(0, 0, 0);
+	}
+	/// A triangle without area turns by a right angle.
+	static double between(const Point3d& a, const Point3d& b) { return 1 - a * b; }
+
+	/// Of a triangle against what lies beyond its edge from i to k.
+	double turnAt(const Point3d& normal, int i, int k) const
+	{
+		if (k == i + 1)
+			return between(normal, outside[size_t(i)]);
+		const Point3d& m = p[size_t(apex[at(i, k)])];
+		return between(normal, unit((m - p[size_t(i)]) ^ (p[size_t(k)] - p[size_t(i)])));
+	}
+};
+
+/**
+ * The loops of half-edges around the holes of a coherently oriented surface, as they run in the faces. Where
+ * several fans of faces meet at a vertex, a loop goes on at the fan across the gap, so that the gap can be
+ * filled and the vertex stays whole; where the fans face different ways, each is for itself.
+ */
+inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& points,
+	const std::vector<Triangle>& triangles, const std::vector<int>& partner)
+{
+	const Fans fans(triangles, partner);
+	const auto origin = [&](int h) { return triangles[size_t(h) / 3][size_t(h) % 3]; };
+	struct BorderFan
+	{
+		int out = -1, into = -1; ///< half-edges
+		Point3d normal = Point3d(0, 0, 0);
+	};
+	std::map<int, BorderFan> fanOf;
+	std::map<int, std::vector<int>> fansAt;
+	for (int h = 0; h < int(partner.size()); ++h)
+		if (partner[size_t(h)] < 0) {
+			const int start = fans.find(h);
+			fanOf[start].out = h;
+			fanOf[fans.find(Fans::next(h))].into = h;
+			fansAt[origin(h)].push_back(start);
+		}
+	for (int c = 0; c < int(partner.size()); ++c)
+		if (const auto fan = fanOf.find(fans.find(c)); fan != fanOf.end()) {
+			const Triangle& t = triangles[size_t(c) / 3];
+			const Point3d& a = points[size_t(t[0])];
+			fan->second.normal += (points[size_t(t[1])] - a) ^ (points[size_t(t[2])] - a);
+		}
+	std::map<int, int> following; // of the half-edge into a vertex
+	for (const auto& [v, around] : fansAt) {
+		Point3d normal(0, 0, 0);
+		for (int fan : around)
+			normal += fanOf[fan].normal;
+		bool alike = true;
+		for (int fan : around)
+			alike &= fanOf[fan].normal * normal > 0;
+		// Seen from outside, each fan reaches counter-clockwise from its outgoing to its incoming border.
+		Point3d x, y;
+		vcg::GetUV(normal, x, y);
+		const Point3d& centre = points[size_t(v)];
+		const auto angle = [&](int to) {
+			const Point3d d = points[size_t(to)] - centre;
+			return std::atan2(d * y, d * x);
+		};
+		std::map<int, int> next;
+		std::set<int> reached;
+		for (int fan : around) {
+			const double from = angle(origin(fanOf[fan].into));
+			double nearest = std::numeric_limits<double>::infinity();
+			for (int other : around) {
+				double turn = angle(origin(Fans::next(fanOf[other].out))) - from;
+				if (turn <= 0)
+					turn += 2 * M_PI;
+				if (turn < nearest) {
+					nearest = turn;
+					next[fan] = other;
+				}
+			}
+			reached.insert(next[fan]);
+		}
+		for (int fan : around)
+			following[fanOf[fan].into] =
+				fanOf[alike && reached.size() == around.size() ? next[fan] : fan].out;
+	}
+	std::vector<std::vector<int>> loops;
+	std::vector<char> done(partner.size(), 0);
+	for (int h = 0; h < int(partner.size()); ++h) {
+		if (partner[size_t(h)] >= 0 || done[size_t(h)])
+			continue;
+		std::vector<int> loop;
+		for (int at = h; !done[size_t(at)]; at = following[at]) {
+			done[size_t(at)] = 1;
+			loop.push_back(at);
+		}
+		loops.push_back(std::move(loop));
+	}
+	return loops;
+}
+
+/// For each face the lowest one of its piece of surface.
+inline std::vector<int> pieceOfFaces(const std::vector<int>& partner)
+{
+	std::vector<int> parent(partner.size() / 3);
+	std::iota(parent.begin(), parent.end(), 0);
+	const auto find = [&](int f) {
+		while (parent[size_t(f)] != f)
+			f = parent[size_t(f)] = parent[size_t(parent[size_t(f)])];
+		return f;
+	};
+	for (int h = 0; h < int(partner.size()); ++h)
+		if (partner[size_t(h)] > h) {
+			const int a = find(h / 3), b = find(partner[size_t(h)] / 3);
+			parent[size_t(std::max(a, b))] = std::min(a, b);
+		}
+	for (int f = 0; f < int(parent.size()); ++f)
+		parent[size_t(f)] = find(f);
+	return parent;
+}
+
+/// Whether a triangle runs into others with which it shares no vertex.
+inline bool crossesOthers(const TriangleTree& tree, const std::vector<Triangle>& triangles,
+	const std::vector<Point3d>& points, const Triangle& t)
+{
+	Box3d box;
+	for (int v : t)
+		box.Add(points[size_t(v)]);
+	bool crosses = false;
+	tree.forEachFaceIn(box, [&](int f) {
+		const Triangle& other = triangles[size_t(f)];
+		for (int v : other)
+			if (std::find(t.begin(), t.end(), v) != t.end())
+				return;
+		const auto at = [&](const Triangle& of, size_t k) { return points[size_t(of[k])]; };
+		crosses = crosses
+			|| vcg::NoDivTriTriIsect<double>(
+				at(t, 0), at(t, 1), at(t, 2), at(other, 0), at(other, 1), at(other, 2));
+	});
+	return crosses;
+}
+
+} // namespace detail
+
+/**
+ * Fills the holes that are small, see HoleLimits, and whose filling crosses no other part of the surface.
+ * @param triangles coherently oriented, parted by partSurface(); get the filling at their end.
+ * @param partner   as PartedSurface has it.
+ * @throws Cancelled. Complexity: O(F log F + n^3) for holes of n edges.
+ */
+inline FilledHoles fillHoles(const std::vector<Point3d>& points, std::vector<Triangle>& triangles,
+	const std::vector<int>& partner, const HoleLimits& limits = HoleLimits(),
+	const Progress& progress = Progress())
+{
+	const char* const what = "Filling holes";
+	FilledHoles done;
+	const std::vector<std::vector<int>> loops = detail::holeLoops(points, triangles, partner);
+	if (loops.empty())
+		return done;
+	const auto areaVector = [&](const Triangle& t) {
+		const Point3d& a = points[size_t(t[0])];
+		return ((points[size_t(t[1])] - a) ^ (points[size_t(t[2])] - a)) / 2.0;
+	};
+	const std::vector<int> piece = detail::pieceOfFaces(partner);
+	std::vector<double> area(piece.size(), 0), filled(piece.size(), 0);
+	for (size_t f = 0; f < piece.size(); ++f)
+		area[size_t(piece[f])] += areaVector(triangles[f]).Norm();
+	std::vector<char> onBorder(points.size(), 0);
+	for (int h = 0; h < int(partner.size()); ++h)
+		if (partner[size_t(h)] < 0)
+			onBorder[size_t(triangles[size_t(h) / 3][size_t(h) % 3])] = 1;
+	std::set<std::pair<int, int>> edges; // between border vertices
+	for (const Triangle& t : triangles)
+		for (size_t k = 0; k < 3; ++k)
+			if (onBorder[size_t(t[k])] && onBorder[size_t(t[(k + 1) % 3])])
+				edges.insert(std::minmax(t[k], t[(k + 1) % 3]));
+	const std::vector<Triangle> given = triangles;
+	const TriangleTree tree(points, given, progress.part(0, 0.3));
+	const double mostTurn = 1 - std::cos(limits.turn * M_PI / 180);
+	const Progress filling = progress.part(0.3, 1);
+	for (size_t i = 0; i < loops.size(); ++i) {
+		filling.report(double(i) / double(loops.size()), what);
+		const std::vector<int>& loop = loops[i];
+		const int n = int(loop.size());
+		++done.left;
+		if (n < 3 || n > limits.edges)
+			continue;
+		// Against the faces, so that the filling has its normals on the same side.
+		std::vector<int> corner;
+		std::vector<Point3d> polygon, outside;
+		std::set<int> around;
+		for (int k = 0; k < n; ++k) {
+			const int h = loop[size_t(n - 1 - k)];
+			const int v = triangles[size_t(h) / 3][size_t(detail::Fans::next(h)) % 3];
+			corner.push_back(v);
+			polygon.push_back(points[size_t(v)]);
+			const Point3d normal = areaVector(triangles[size_t(h) / 3]);
+			outside.push_back(normal.Norm() > 0 ? normal / normal.Norm() : normal);
+			around.insert(piece[size_t(h) / 3]);
+		}
+		const auto edge = [&](int a, int b) {
+			return std::pair<int, int>(std::minmax(corner[size_t(a)], corner[size_t(b)]));
+		};
+		const detail::PolygonFilling best(polygon, outside, [&](int a, int b) {
+			return corner[size_t(a)] != corner[size_t(b)] && !edges.count(edge(a, b));
+		});
+		double surface = 0, before = 0;
+		for (int p : around) {
+			surface += area[size_t(p)];
+			before += filled[size_t(p)];
+		}
+		const auto [turn, size] = best.weight();
+		if (!(turn <= mostTurn) || size > limits.area * surface
+			|| before + size > limits.allAreas * surface)
+			continue;
+		std::vector<Triangle> made;
+		std::set<std::pair<int, int>> chords;
+		bool fits = true;
+		for (const Triangle& t : best.triangles()) {
+			made.push_back({corner[size_t(t[0])], corner[size_t(t[1])], corner[size_t(t[2])]});
+			for (const auto& [a, b] : {std::pair(t[0], t[1]), std::pair(t[1], t[2])})
+				if (b - a > 1)
+					fits &= chords.insert(edge(a, b)).second; // a vertex may be on the loop twice
+			fits = fits && !detail::crossesOthers(tree, given, points, made.back());
+		}
+		if (!fits)
+			continue;
+		edges.insert(chords.begin(), chords.end());
+		triangles.insert(triangles.end(), made.begin(), made.end());
+		for (int p : around)
+			filled[size_t(p)] += size;
+		++done.closed;
+		--done.left;
+	}
+	return done;
+}
+
+} // namespace vcg::tri::mcf
+
+#endif

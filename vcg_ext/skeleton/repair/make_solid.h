@@ -1,0 +1,513 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief From any triangles to the closed surface of the solid that they mean, as gently as that goes.
+
+#ifndef VCG_MCF_MAKE_SOLID_H
+#define VCG_MCF_MAKE_SOLID_H
+
+#include "mend.h"
+#include "overlap.h"
+#include "triangle_tree.h"
+#include "winding_number.h"
+#include "wrap.h"
+
+#include <skeleton/core/errors.h>
+#include <skeleton/core/notes.h>
+#include <skeleton/core/parameters.h>
+#include <skeleton/core/progress.h>
+#include <skeleton/input/check_input.h>
+#include <skeleton/mesh/surface_rounding.h>
+#include <skeleton/spatial/nearest_points.h>
+#include <skeleton/spatial/transferred_nodes.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/// What was done to make a surface that of a solid. Lengths are fractions of the input's diagonal.
+struct SolidReport
+{
+	enum Outcome {
+		Sound,  ///< nothing, but for the repairs of checkedSurface()
+		Mended, ///< see mend()
+		Wrapped ///< see wrap()
+	};
+
+	Outcome outcome = Sound;
+	MendReport mended;
+	/// Pieces of the wrap that were left out: specks, and cavities.
+	int piecesDropped = 0;
+	/// Triangles that cross others, and the part of the volume that is enclosed more than once; counted where
+	/// that is noticeable.
+	int selfIntersections = 0;
+	double overlap = 0;
+	/// Distance between the vertices of the result and the input, both ways.
+	double distanceMean = 0, distanceMax = 0;
+	/// Edge length of the wrap; 0 if there is none.
+	double spacing = 0;
+
+	/// One sentence for the log; empty if nothing was done.
+	std::string text() const
+	{
+		if (outcome == Sound)
+			return "";
+		std::vector<std::string> what;
+		const auto add = [&](int count, const char* one, const char* many) {
+			if (count)
+				what.push_back(std::to_string(count) + ' ' + (count == 1 ? one : many));
+		};
+		add(mended.facesDropped, "face dropped", "faces dropped");
+		add(mended.verticesMerged, "vertex merged", "vertices merged");
+		add(mended.junctionsClosed, "T-junction closed", "T-junctions closed");
+		add(mended.edgesParted, "edge parted", "edges parted");
+		add(mended.verticesParted, "vertex parted", "vertices parted");
+		add(mended.facesTurned, "face turned", "faces turned");
+		add(mended.holesClosed, "hole closed", "holes closed");
+		add(mended.piecesDropped + piecesDropped, "piece dropped", "pieces dropped");
+		add(selfIntersections, "triangle that crosses others resolved",
+			"triangles that cross others resolved");
+		std::string list;
+		for (const std::string& item : what)
+			list += (list.empty() ? "" : ", ") + item;
+		const auto percent = [](double part) { return detail::number(100 * part, 2) + " %"; };
+		return (outcome == Mended ? std::string("The surface was mended")
+								  : "The surface was wrapped by winding numbers, with edges of "
+						   + percent(spacing) + " of its diagonal")
+			+ (list.empty() ? "" : ": " + list) + "; the solid is " + percent(distanceMean)
+			+ " of the diagonal from the input on average, " + percent(distanceMax) + " at most.";
+	}
+};
+
+/// A surface that bounds a solid, and what was done to it.
+struct SolidSurface
+{
+	/// `vertexOfInput` names, for an input vertex that is none of the solid's, the closest one that is.
+	CheckedSurface surface;
+	SolidReport report;
+};
+
+namespace detail {
+
+/// More of the volume enclosed more than once than this is wrapped.
+constexpr double noticeableOverlap = 0.002;
+
+/// Triangles that cross others with which they share no vertex. Complexity: O(F log F) on even surfaces.
+inline int selfIntersections(const std::vector<Point3d>& points,
+	const std::vector<Triangle>& triangles, const TriangleTree& tree, const Progress& progress)
+{
+	std::vector<char> crosses(triangles.size(), 0);
+	forEachBlock(
+		int(triangles.size()), progress, "Looking for self-intersections", [&](int begin, int end) {
+			for (int f = begin; f < end; ++f)
+				crosses[size_t(f)] = crossesOthers(tree, triangles, points, triangles[size_t(f)]);
+		});
+	return int(std::count(crosses.begin(), crosses.end(), 1));
+}
+
+/// A point of a surface, and the unit normal there.
+struct SurfacePlace
+{
+	Point3d point, normal;
+};
+
+/// Centroids of triangles, `count` of them, spread evenly over the area.
+inline std::vector<SurfacePlace> placesByArea(
+	const std::vector<Point3d>& points, const std::vector<Triangle>& triangles, int count)
+{
+	const auto areaVector = [&](const Triangle& t) {
+		const Point3d& a = points[size_t(t[0])];
+		return ((points[size_t(t[1])] - a) ^ (points[size_t(t[2])] - a)) / 2.0;
+	};
+	double whole = 0;
+	for (const Triangle& t : triangles)
+		whole += areaVector(t).Norm();
+	std::vector<SurfacePlace> places;
+	double upto = 0;
+	for (const Triangle& t : triangles) {
+		const Point3d n = areaVector(t);
+		const double area = n.Norm();
+		upto += area;
+		// A large triangle is as many places, each somewhere else on it.
+		for (int k = 0; area > 0 && double(places.size()) + 0.5 < upto / whole * count; ++k) {
+			const double golden = 0.6180339887498949, s0 = std::fmod(0.5 + k * golden, 1.0);
+			const double t0 = std::fmod(0.5 + k * golden * golden, 1.0);
+			const bool fold = s0 + t0 > 1;
+			const double s = k == 0 ? 1 / 3.0 : fold ? 1 - s0 : s0;
+			const double r = k == 0 ? 1 / 3.0 : fold ? 1 - t0 : t0;
+			const Point3d& a = points[size_t(t[0])];
+			places.push_back(
+				{a + (points[size_t(t[1])] - a) * s + (points[size_t(t[2])] - a) * r, n / area});
+		}
+	}
+	return places;
+}
+
+/// Turns closed pieces that are inside out, each for itself.
+inline void turnOutward(
+	const std::vector<Point3d>& points, std::vector<Triangle>& triangles, const Progress& progress)
+{
+	const std::vector<int> partner = pairedHalfEdges(points, triangles, nullptr, progress);
+	const std::vector<int> piece = pieceOfFaces(partner);
+	std::vector<double> volume(triangles.size(), 0);
+	std::vector<char> open(triangles.size(), 0);
+	const Point3d origin = points[size_t(triangles[0][0])];
+	for (size_t f = 0; f < triangles.size(); ++f) {
+		const Triangle& t = triangles[f];
+		volume[size_t(piece[f])] += (points[size_t(t[0])] - origin)
+			* ((points[size_t(t[1])] - origin) ^ (points[size_t(t[2])] - origin)) / 6;
+		for (size_t k = 0; k < 3; ++k)
+			if (partner[3 * f + k] < 0)
+				open[size_t(piece[f])] = 1;
+	}
+	for (size_t f = 0; f < triangles.size(); ++f)
+		if (const size_t p = size_t(piece[f]); !open[p] && volume[p] < 0)
+			std::swap(triangles[f][1], triangles[f][2]);
+}
+
+/// How a surface encloses: what the winding number is just inside of it.
+struct Enclosure
+{
+	double outward =
+		0; ///< mean of the winding number on the surface, 1/2 if closed, below 0: inside out
+	double enclosing = 0; ///< part of the area that is not like an open sheet
+};
+
+inline Enclosure enclosureOf(const std::vector<SurfacePlace>& places, const WindingNumber& winding,
+	double diagonal, const Progress& progress)
+{
+	constexpr double close = 1e-6; // of the diagonal
+	constexpr double likeASheet =
+		0.65; // a flat sheet has 1/2 on its inside, half a sphere 0.75 to 0.85
+	std::vector<double> inside(places.size());
+	forEachBlock(
+		int(places.size()), progress, "Measuring the winding number", [&](int begin, int end) {
+			for (int i = begin; i < end; ++i) {
+				const SurfacePlace& at = places[size_t(i)];
+				inside[size_t(i)] = winding(at.point - at.normal * (close * diagonal));
+			}
+		});
+	Enclosure found;
+	for (double w : inside) {
+		found.outward += (std::clamp(w, -1.0, 2.0) - 0.5) / double(places.size());
+		found.enclosing += (w > likeASheet) / double(places.size());
+	}
+	return found;
+}
+
+/// The thickness below which a twentieth of the surface is, measured against the normals; at most `most`.
+inline double smallThickness(const std::vector<SurfacePlace>& places, const TriangleTree& tree,
+	double most, const Progress& progress)
+{
+	constexpr double small = 0.05; // part of the area
+	constexpr int pieces = 8;      // short segments meet few boxes
+	std::vector<double> thickness(places.size(), most);
+	forEachBlock(int(places.size()), progress, "Measuring the thickness", [&](int begin, int end) {
+		for (int i = begin; i < end; ++i) {
+			const SurfacePlace& at = places[size_t(i)];
+			double& found = thickness[size_t(i)];
+			for (int k = 0; k < pieces && found == most; ++k) {
+				const double from = most * k / pieces, length = most / pieces;
+				tree.forEachCrossing(at.point - at.normal * from,
+					at.point - at.normal * (from + length), [&](int, double t, bool leaves) {
+						if (leaves && from + t * length > 1e-6 * most)
+							found = std::min(found, from + t * length);
+					});
+			}
+		}
+	});
+	const auto middle = thickness.begin() + long(small * double(thickness.size()));
+	std::nth_element(thickness.begin(), middle, thickness.end());
+	return *middle;
+}
+
+/// Mean and greatest distance from points to triangles; of at most `most` of them, evenly chosen.
+struct Distances
+{
+	double mean = 0, greatest = 0;
+};
+
+inline Distances distances(
+	const std::vector<Point3d>& from, const TriangleTree& to, const Progress& progress)
+{
+	constexpr size_t most = 20000;
+	const size_t step = std::max<size_t>(1, from.size() / most);
+	std::vector<double> distance((from.size() + step - 1) / step, 0);
+	forEachBlock(int(distance.size()), progress, "Measuring the distance", [&](int begin, int end) {
+		for (int i = begin; i < end; ++i)
+			distance[size_t(i)] = to.closest(from[size_t(i) * step]).distance;
+	});
+	Distances result;
+	for (double d : distance) {
+		result.mean += d / double(distance.size());
+		result.greatest = std::max(result.greatest, d);
+	}
+	return result;
+}
+
+/// Leaves out cavities and what is no larger than the lattice can tell from nothing. @return how many.
+inline int dropSmallPieces(WrappedSurface& surface, double spacing, const Progress& progress)
+{
+	const SurfaceMesh mesh(surface.points, surface.triangles, progress.part(0, 0.5));
+	int count = 0;
+	const std::vector<int> component = connectedComponents(mesh, &count, progress.part(0.5, 1));
+	std::vector<double> volume(size_t(count), 0);
+	const Point3d origin = surface.points[0];
+	for (const Triangle& t : surface.triangles)
+		volume[size_t(component[size_t(t[0])])] += (surface.points[size_t(t[0])] - origin)
+			* ((surface.points[size_t(t[1])] - origin) ^ (surface.points[size_t(t[2])] - origin))
+			/ 6;
+	const double largest = *std::max_element(volume.begin(), volume.end());
+	const double least = std::min(2 * spacing * spacing * spacing, largest);
+	std::vector<Triangle> kept;
+	for (const Triangle& t : surface.triangles)
+		if (volume[size_t(component[size_t(t[0])])] >= least)
+			kept.push_back(t);
+	surface.triangles = std::move(kept);
+	return int(std::count_if(volume.begin(), volume.end(), [&](double v) { return v < least; }));
+}
+
+/// Makes the solid; one object for each input.
+class SolidMaker
+{
+public:
+	SolidMaker(const std::vector<Point3d>& points, const std::vector<Triangle>& triangles) :
+			points(points), triangles(triangles)
+	{
+	}
+
+	SolidSurface run(Repair repair, const Progress& progress)
+	{
+		std::optional<InvalidInput> error;
+		try {
+			solid.surface = checkedSurface(
+				points, triangles, repair == Repair::Off ? progress : progress.part(0, 0.3));
+		}
+		catch (const InvalidInput& found) {
+			if (repair == Repair::Off || !isMended(found.defect()))
+				throw;
+			error = found;
+		}
+		if (repair == Repair::Off)
+			return std::move(solid);
+		if (!error) {
+			if (repair == Repair::Auto && overlaps(solid.surface.mesh, progress.part(0.3, 0.4)))
+				wrapIt(solid.surface.mesh.position, solid.surface.mesh.triangles(), {},
+					progress.part(0.4, 1));
+			return std::move(solid);
+		}
+		MendedSurface mended = mend(points, triangles, HoleLimits(), progress.part(0.3, 0.5));
+		solid.report.mended = mended.report;
+		if (mended.closed && takeMended(mended, repair, progress.part(0.5, 0.6)))
+			return std::move(solid);
+		if (repair == Repair::Mend || mended.triangles.empty())
+			throw InvalidInput(*error);
+		wrapIt(mended.points, std::move(mended.triangles), error, progress.part(0.6, 1));
+		return std::move(solid);
+	}
+
+private:
+	const std::vector<Point3d>& points;
+	const std::vector<Triangle>& triangles;
+	SolidSurface solid;
+
+	/// Whether a defect is one of those that are mended or wrapped.
+	static bool isMended(Defect defect)
+	{
+		switch (defect) {
+		case Defect::NotFinite:
+		case Defect::NonManifoldEdges:
+		case Defect::NonManifoldVertices:
+		case Defect::OneSided:
+		case Defect::BorderEdges:
+		case Defect::NoVolume: return true;
+		case Defect::Other:
+		case Defect::Empty:
+		case Defect::NoFaces:
+		case Defect::OpenSheet: break;
+		}
+		return false;
+	}
+
+	/// Whether a noticeable part of the volume is enclosed more than once because the surface crosses itself.
+	bool overlaps(const SurfaceMesh& mesh, const Progress& progress)
+	{
+		const std::vector<Triangle> faces = mesh.triangles(progress.part(0, 0));
+		const double part =
+			windingVolumes(mesh.position, faces, 128, progress.part(0, 0.3)).wrongPart();
+		if (part < noticeableOverlap)
+			return false;
+		const TriangleTree tree(mesh.position, faces, progress.part(0.3, 0.6));
+		const int found = selfIntersections(mesh.position, faces, tree, progress.part(0.6, 1));
+		if (!found) // bodies inside bodies
+			return false;
+		solid.report.selfIntersections = found;
+		solid.report.overlap = part;
+		return true;
+	}
+
+	bool takeMended(const MendedSurface& mended, Repair repair, const Progress& progress)
+	{
+		CheckedSurface checked;
+		try {
+			checked = checkedSurface(mended.points, mended.triangles, progress.part(0, 0.4));
+		}
+		catch (const InvalidInput&) {
+			return false; // flat
+		}
+		if (repair == Repair::Auto && overlaps(checked.mesh, progress.part(0.4, 0.6)))
+			return false;
+		std::vector<int> vertexOfInput;
+		vertexOfInput.reserve(points.size());
+		for (int v : mended.vertexOfInput)
+			vertexOfInput.push_back(checked.vertexOfInput[size_t(v)]);
+		solid.report.outcome = SolidReport::Mended;
+		finish(std::move(checked.mesh), std::move(vertexOfInput), progress.part(0.6, 1));
+		return true;
+	}
+
+	/// @param error  of the check, for what has no volume at all.
+	void wrapIt(const std::vector<Point3d>& given, std::vector<Triangle> faces,
+		const std::optional<InvalidInput>& error, const Progress& progress)
+	{
+		constexpr int samples = 4000;
+		constexpr double usual = 30000, most = 150000; // squares of the spacing in the area
+		constexpr double ofThickness = 0.4;
+		constexpr int mostNodes = 6000000;
+		turnOutward(given, faces, progress.part(0, 0.05));
+		Box3d box;
+		double area = 0;
+		for (const Triangle& t : faces) {
+			for (int v : t)
+				box.Add(given[size_t(v)]);
+			const Point3d& a = given[size_t(t[0])];
+			area += ((given[size_t(t[1])] - a) ^ (given[size_t(t[2])] - a)).Norm() / 2;
+		}
+		if (!(area > 0))
+			throw InvalidInput(*error);
+		TriangleTree tree(given, faces, progress.part(0.05, 0.1));
+		std::vector<SurfacePlace> places = placesByArea(given, faces, samples);
+		Enclosure enclosure;
+		{
+			const WindingNumber winding(tree, progress.part(0.1, 0.12));
+			enclosure = enclosureOf(places, winding, box.Diag(), progress.part(0.12, 0.15));
+		}
+		if (enclosure.outward < 0) {
+			for (Triangle& t : faces)
+				std::swap(t[1], t[2]);
+			for (SurfacePlace& place : places)
+				place.normal = -place.normal;
+		}
+		const WindingNumber winding(tree, progress.part(0.15, 0.17));
+		if (enclosure.outward < 0)
+			enclosure = enclosureOf(places, winding, box.Diag(), progress.part(0.17, 0.2));
+		if (enclosure.enclosing < 0.1)
+			refuse(error);
+		const double widest = std::sqrt(area / usual), narrowest = std::sqrt(area / most);
+		const double thin =
+			smallThickness(places, tree, widest / ofThickness, progress.part(0.2, 0.25));
+		const double spacing = std::clamp(ofThickness * thin, narrowest, widest);
+		WrappedSurface made = wrap(tree, winding, spacing, mostNodes, progress.part(0.25, 0.8));
+		if (made.triangles.empty())
+			refuse(error);
+		solid.report.outcome = SolidReport::Wrapped;
+		solid.report.spacing = spacing / box.Diag();
+		solid.report.piecesDropped = dropSmallPieces(made, spacing, progress.part(0.8, 0.85));
+		CheckedSurface checked = checkedSurface(
+			roundedCoordinates(made.points), made.triangles, progress.part(0.85, 0.9));
+		finish(std::move(checked.mesh), std::vector<int>(points.size(), -1), progress.part(0.9, 1));
+	}
+
+	[[noreturn]] static void refuse(const std::optional<InvalidInput>& error)
+	{
+		if (error && error->defect() == Defect::NoVolume)
+			throw InvalidInput(*error);
+		throw InvalidInput(
+			"The surface is an open sheet: it bounds no solid that a skeleton could lie in. Give it a "
+			"thickness first, or close it.",
+			Defect::OpenSheet);
+	}
+
+	/// Takes the mesh, gives each input vertex that has a face a vertex of it, and measures the distances.
+	void finish(SurfaceMesh mesh, std::vector<int> vertexOfInput, const Progress& progress)
+	{
+		const auto isFinite = [&](const Point3d& p) {
+			return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+		};
+		std::vector<char> used(points.size(), 0);
+		std::vector<Triangle> finite;
+		Box3d box;
+		for (const Triangle& t : triangles) {
+			bool whole = true;
+			for (int v : t)
+				whole &= isFinite(points[size_t(v)]);
+			if (!whole)
+				continue;
+			finite.push_back(t);
+			for (int v : t) {
+				used[size_t(v)] = 1;
+				box.Add(points[size_t(v)]);
+			}
+		}
+		std::vector<Point3d> lost, input;
+		std::vector<size_t> whose;
+		for (size_t v = 0; v < points.size(); ++v) {
+			if (!used[v])
+				continue;
+			input.push_back(points[v]);
+			if (vertexOfInput[v] < 0) {
+				lost.push_back(points[v]);
+				whose.push_back(v);
+			}
+		}
+		const std::vector<int> nearest =
+			nearestPoints(mesh.position, lost, meanEdgeLength(mesh), progress.part(0, 0.3));
+		for (size_t i = 0; i < lost.size(); ++i)
+			vertexOfInput[whose[i]] = nearest[i];
+
+		const std::vector<Triangle> faces = mesh.triangles(progress.part(0.3, 0.3));
+		const TriangleTree inputTree(points, finite, progress.part(0.3, 0.5));
+		const TriangleTree ownTree(mesh.position, faces, progress.part(0.5, 0.7));
+		const Distances there = distances(mesh.position, inputTree, progress.part(0.7, 0.85));
+		const Distances back = distances(input, ownTree, progress.part(0.85, 1));
+		SolidReport& report = solid.report;
+		report.distanceMean = std::max(there.mean, back.mean) / box.Diag();
+		report.distanceMax = std::max(there.greatest, back.greatest) / box.Diag();
+		solid.surface.mesh = std::move(mesh);
+		solid.surface.vertexOfInput = std::move(vertexOfInput);
+		solid.surface.notes = {report.text()};
+	}
+};
+
+} // namespace detail
+
+/**
+ * The closed, oriented, two-manifold surface of the solid that triangles mean.
+ *
+ * A surface that checkedSurface() takes stays as that leaves it, to the last bit, unless it crosses itself
+ * so that a noticeable part of its volume is enclosed more than once. Else its small defects are mended, see
+ * mend(), and where that is not enough it is wrapped by its winding numbers, see wrap().
+ *
+ * @param points    mesh units. @param triangles corners as indices into `points`.
+ * @param repair    Auto: as above; Mend: no wrap; Off: checkedSurface() alone.
+ * @throws InvalidInput if there is no solid: no faces, no volume, an open sheet; what checkedSurface()
+ *         throws where more is not allowed. SolverError, Cancelled.
+ * Complexity: as checkedSurface() where it is sound; else as mend() and wrap().
+ */
+inline SolidSurface solidSurface(const std::vector<Point3d>& points,
+	const std::vector<Triangle>& triangles, Repair repair = Repair::Auto,
+	const Progress& progress = Progress())
+{
+	return detail::SolidMaker(points, triangles).run(repair, progress);
+}
+
+} // namespace vcg::tri::mcf
+
+#endif

@@ -1,0 +1,265 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief Small defects of a surface mended where they are; the rest keeps its vertices to the last bit.
+
+#ifndef VCG_MCF_MEND_H
+#define VCG_MCF_MEND_H
+
+#include "close_seams.h"
+#include "fill_holes.h"
+#include "part_surface.h"
+
+#include <skeleton/core/errors.h>
+#include <skeleton/core/progress.h>
+#include <skeleton/core/reported_arrays.h>
+#include <skeleton/input/coincident_points.h>
+#include <skeleton/input/soup_repair.h>
+#include <skeleton/mesh/surface_mesh.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/// What mend() has done.
+struct MendReport
+{
+	int facesDropped = 0;    ///< degenerate, not finite, copies, or two back to back
+	int verticesMerged = 0;  ///< that coincided, or nearly so along a border
+	int junctionsClosed = 0; ///< vertices on the edge of another face
+	int edgesParted = 0;     ///< with more than two faces
+	int verticesParted = 0;  ///< at which separate fans of faces met
+	int facesTurned = 0;     ///< against their neighbours
+	int piecesDropped = 0;   ///< open specks, and closed pieces without volume
+	int holesClosed = 0;
+	int holesLeft = 0; ///< too large, or not to be filled without crossing the surface
+	bool oneSided = false;
+
+	bool isChanged() const
+	{
+		return facesDropped || verticesMerged || junctionsClosed || edgesParted || verticesParted
+			|| facesTurned || piecesDropped || holesClosed;
+	}
+};
+
+/// A surface mended as far as that goes.
+struct MendedSurface
+{
+	/// Those of the input, in their order and to the last bit; then the new ones.
+	std::vector<Point3d> points;
+	std::vector<Triangle> triangles;
+	/// For each input point the one that stands for it: itself, unless it was merged.
+	std::vector<int> vertexOfInput;
+	MendReport report;
+	/// Whether it is a closed, coherently oriented two-manifold.
+	bool closed = false;
+};
+
+namespace detail {
+
+/// Removes pairs of faces with the same corners that are turned against each other: they enclose nothing.
+inline int removeBackToBack(std::vector<Triangle>& triangles)
+{
+	struct Known
+	{
+		Triangle sorted;
+		int face;
+		bool operator<(const Known& other) const
+		{
+			return sorted != other.sorted ? sorted < other.sorted : face < other.face;
+		}
+	};
+	std::vector<Known> faces;
+	for (size_t f = 0; f < triangles.size(); ++f) {
+		Triangle t = triangles[f];
+		std::sort(t.begin(), t.end());
+		faces.push_back({t, int(f)});
+	}
+	std::sort(faces.begin(), faces.end());
+	std::vector<char> drop(triangles.size(), 0);
+	int dropped = 0;
+	for (size_t i = 0; i + 1 < faces.size(); ++i)
+		if (faces[i].sorted == faces[i + 1].sorted) { // copies of the same turn are gone by now
+			drop[size_t(faces[i].face)] = drop[size_t(faces[i + 1].face)] = 1;
+			dropped += 2;
+			++i;
+		}
+	size_t kept = 0;
+	for (size_t f = 0; f < triangles.size(); ++f)
+		if (!drop[f])
+			triangles[kept++] = triangles[f];
+	triangles.resize(kept);
+	return dropped;
+}
+
+/// Drops open pieces that are specks, unless the surface is made of them, and closed ones without volume.
+inline int dropSpecks(
+	const std::vector<Point3d>& points, std::vector<Triangle>& triangles, std::vector<int>& partner)
+{
+	constexpr double speck = 0.002;  // of the whole area
+	constexpr double mostAll = 0.05; // of the whole area: beyond, they are the surface
+	constexpr double flat = 1e-10;   // volume over area^1.5
+	const std::vector<int> piece = pieceOfFaces(partner);
+	struct Piece
+	{
+		double area = 0, volume = 0;
+		bool open = false;
+	};
+	std::map<int, Piece> pieces;
+	double whole = 0;
+	const Point3d origin = points[size_t(triangles[0][0])];
+	for (size_t f = 0; f < triangles.size(); ++f) {
+		const Triangle& t = triangles[f];
+		const Point3d a = points[size_t(t[0])] - origin, b = points[size_t(t[1])] - origin,
+					  c = points[size_t(t[2])] - origin;
+		Piece& p = pieces[piece[f]];
+		const double area = ((b - a) ^ (c - a)).Norm() / 2;
+		p.area += area;
+		whole += area;
+		p.volume += a * (b ^ c) / 6;
+		for (size_t k = 0; k < 3; ++k)
+			p.open |= partner[3 * f + k] < 0;
+	}
+	double specks = 0;
+	for (const auto& [first, p] : pieces)
+		if (p.open && p.area <= speck * whole)
+			specks += p.area;
+	std::vector<char> drop(triangles.size(), 0);
+	int dropped = 0;
+	for (const auto& [first, p] : pieces)
+		if (p.open ? p.area <= speck * whole && specks <= mostAll * whole
+				   : std::abs(p.volume) <= flat * std::pow(p.area, 1.5)) {
+			drop[size_t(first)] = 1;
+			++dropped;
+		}
+	if (!dropped || dropped == int(pieces.size()))
+		return 0;
+	std::vector<int> number(triangles.size(), -1);
+	int kept = 0;
+	for (size_t f = 0; f < triangles.size(); ++f)
+		if (!drop[size_t(piece[f])])
+			number[f] = kept++;
+	std::vector<int> partnerLeft(3 * size_t(kept), -1);
+	for (size_t h = 0; h < partner.size(); ++h)
+		if (number[h / 3] >= 0 && partner[h] >= 0)
+			partnerLeft[3 * size_t(number[h / 3]) + h % 3] =
+				3 * number[size_t(partner[h]) / 3] + partner[h] % 3;
+	for (size_t f = 0; f < triangles.size(); ++f)
+		if (number[f] >= 0)
+			triangles[size_t(number[f])] = triangles[f];
+	triangles.resize(size_t(kept));
+	partner = std::move(partnerLeft);
+	return dropped;
+}
+
+} // namespace detail
+
+/**
+ * Mends small defects, in this order: faces that are degenerate, not finite, or there twice; vertices that
+ * coincide; seams (see closeSeams()); edges and vertices where the surface is no two-manifold (see
+ * partSurface()); orientation; specks; small holes (see fillHoles()).
+ *
+ * A surface that has none of these defects stays as it is. What cannot be mended is left, with `closed` false.
+ * @param points    mesh units. @param triangles corners as indices into `points`.
+ * @throws Cancelled. Complexity: about O(V + F), and of the holes.
+ */
+inline MendedSurface mend(const std::vector<Point3d>& points,
+	const std::vector<Triangle>& triangles, const HoleLimits& limits = HoleLimits(),
+	const Progress& progress = Progress())
+{
+	using namespace detail;
+	MendedSurface mended;
+	MendReport& report = mended.report;
+	mended.points = copiedArray(points, progress, repairing);
+	std::vector<Triangle>& faces = mended.triangles;
+	const auto isFinite = [&](int v) {
+		const Point3d& p = points[size_t(v)];
+		return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+	};
+	faces.reserve(triangles.size());
+	for (const Triangle& t : triangles)
+		if (isFinite(t[0]) && isFinite(t[1]) && isFinite(t[2]))
+			faces.push_back(t);
+	for (size_t v = 0; v < points.size(); ++v)
+		if (!isFinite(int(v)))
+			mended.points[v] = Point3d(0, 0, 0); // of no face
+	report.facesDropped = int(triangles.size() - faces.size());
+	report.facesDropped += int(removeDegenerateFaces(points.size(), faces, progress.part(0, 0.1)));
+
+	// Coincident vertices, if there are fewer defects with these merged.
+	std::vector<int>& vertexOfInput = mended.vertexOfInput;
+	vertexOfInput.resize(points.size());
+	std::iota(vertexOfInput.begin(), vertexOfInput.end(), 0);
+	const auto defectsOf = [&](const std::vector<Triangle>& some) {
+		const EdgeDefects defects = edgeDefects(mended.points,
+			sortedSoupEdges(points.size(), some, progress.part(0.1, 0.1)), progress.part(0.1, 0.1));
+		return defects.border + defects.nonManifold;
+	};
+	if (const size_t defects = defectsOf(faces)) {
+		const std::vector<int> first =
+			firstCoincident(mended.points, progress.part(0.1, 0.15), repairing);
+		std::vector<Triangle> merged = faces;
+		for (Triangle& t : merged)
+			for (int& v : t)
+				v = first[size_t(v)];
+		const size_t dropped =
+			removeDegenerateFaces(points.size(), merged, progress.part(0.15, 0.2));
+		if (defectsOf(merged) < defects) {
+			for (size_t v = 0; v < points.size(); ++v)
+				report.verticesMerged += isFinite(int(v)) && first[v] != int(v);
+			report.facesDropped += int(dropped);
+			faces = std::move(merged);
+			vertexOfInput = first;
+		}
+	}
+	report.facesDropped += removeBackToBack(faces);
+	const ClosedSeams seams = closeSeams(mended.points, faces, progress.part(0.2, 0.4));
+	report.verticesMerged += seams.merged;
+	report.junctionsClosed = seams.junctions;
+	for (int& v : vertexOfInput)
+		v = seams.vertexOf[size_t(v)];
+	if (faces.empty())
+		return mended;
+
+	std::vector<int> partedFrom;
+	const auto turn = [&] {
+		return orientCoherently(faces,
+			sortedSoupEdges(mended.points.size(), faces, progress.part(0.5, 0.5)),
+			progress.part(0.5, 0.5));
+	};
+	// First over the edges with two faces only: how the others are parted depends on it.
+	const int turnedFirst = turn();
+	const PartedSurface parted =
+		partSurface(mended.points, faces, partedFrom, true, progress.part(0.4, 0.5));
+	report.edgesParted = parted.edges;
+	report.verticesParted = parted.vertices;
+	const int turnedThen = turn();
+	report.oneSided = turnedThen < 0;
+	report.facesTurned = std::max(turnedFirst, 0) + std::max(turnedThen, 0);
+	if (report.oneSided)
+		return mended;
+	std::vector<int> partner =
+		pairedHalfEdges(mended.points, faces, nullptr, progress.part(0.5, 0.55));
+	report.piecesDropped = dropSpecks(mended.points, faces, partner);
+	const FilledHoles holes =
+		fillHoles(mended.points, faces, partner, limits, progress.part(0.55, 0.95));
+	report.holesClosed = holes.closed;
+	report.holesLeft = holes.left;
+	if (holes.left == 0) {
+		report.verticesParted +=
+			partSurface(mended.points, faces, partedFrom, false, progress.part(0.95, 1)).vertices;
+		mended.closed = SurfaceMesh::isClosedManifold(mended.points.size(), faces);
+	}
+	return mended;
+}
+
+} // namespace vcg::tri::mcf
+
+#endif

@@ -1,0 +1,229 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief Surfaces parted where more than two faces meet at an edge, or separate fans of faces at a vertex.
+
+#ifndef VCG_MCF_PART_SURFACE_H
+#define VCG_MCF_PART_SURFACE_H
+
+#include <skeleton/core/progress.h>
+#include <skeleton/input/soup_repair.h>
+#include <skeleton/mesh/surface_mesh.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/// What partSurface() has done.
+struct PartedSurface
+{
+	/// For each half-edge 3 f + k the one on the other side of the edge; -1: a border.
+	std::vector<int> partner;
+	int edges = 0;    ///< with more than two faces
+	int vertices = 0; ///< that became several
+};
+
+namespace detail {
+
+/// Joins corners into fans, over the edges that have two faces now.
+class Fans
+{
+public:
+	Fans(const std::vector<Triangle>& triangles, const std::vector<int>& partner) :
+			triangles(triangles), parent(3 * triangles.size())
+	{
+		std::iota(parent.begin(), parent.end(), 0);
+		for (int h = 0; h < int(partner.size()); ++h) {
+			const int g = partner[size_t(h)];
+			if (g < h)
+				continue;
+			for (int v : {vertex(h), vertex(next(h))})
+				parent[size_t(find(vertex(h) == v ? h : next(h)))] =
+					find(vertex(g) == v ? g : next(g));
+		}
+	}
+
+	int find(int corner) const
+	{
+		while (parent[size_t(corner)] != corner)
+			corner = parent[size_t(corner)] = parent[size_t(parent[size_t(corner)])];
+		return corner;
+	}
+
+	static int next(int h) { return h % 3 == 2 ? h - 2 : h + 1; }
+
+private:
+	const std::vector<Triangle>& triangles;
+	mutable std::vector<int> parent;
+
+	int vertex(int h) const { return triangles[size_t(h) / 3][size_t(h) % 3]; }
+};
+
+/// Pairs the faces at each edge: two by two, those first that continue each other best.
+inline std::vector<int> pairedHalfEdges(const std::vector<Point3d>& points,
+	const std::vector<Triangle>& triangles, int* crowdedEdges, const Progress& progress)
+{
+	std::vector<int> partner(3 * triangles.size(), -1);
+	const SoupEdges edges = sortedSoupEdges(points.size(), triangles, progress.part(0, 0.7));
+	int crowded = 0;
+	forEachSoupEdge(
+		edges, progress.part(0.7, 1), [&](int low, const SoupEdge* begin, const SoupEdge* end) {
+			const auto halfEdge = [&](const SoupEdge& e) {
+				const Triangle& t = triangles[e.face];
+				const int from = e.forward ? low : e.high;
+				return 3 * int(e.face) + (t[0] == from ? 0 : t[1] == from ? 1 : 2);
+			};
+			const auto join = [&](const SoupEdge& a, const SoupEdge& b) {
+				partner[size_t(halfEdge(a))] = halfEdge(b);
+				partner[size_t(halfEdge(b))] = halfEdge(a);
+			};
+			const int count = int(end - begin);
+			if (count == 2)
+				join(begin[0], begin[1]);
+			if (count <= 2)
+				return;
+			++crowded;
+			const Point3d& origin = points[size_t(low)];
+			const Point3d axis = points[size_t(begin->high)] - origin;
+			std::vector<Point3d> away; // from the edge, within each face
+			for (const SoupEdge* e = begin; e != end; ++e) {
+				const Triangle& t = triangles[e->face];
+				const int apex = t[0] + t[1] + t[2] - low - begin->high;
+				Point3d d = points[size_t(apex)] - origin;
+				if (axis.SquaredNorm() > 0)
+					d -= axis * ((d * axis) / axis.SquaredNorm());
+				away.push_back(d.Norm() > 0 ? d / d.Norm() : d);
+			}
+			// Faces turned alike before those turned against each other; straight on before round a corner;
+			// of equal ones those with the solid in the narrower angle between them, which parts bodies
+			// that touch.
+			constexpr double alike = 1e6;
+			std::vector<std::tuple<int, long, int, int, int>> pairs;
+			for (int i = 0; i < count; ++i)
+				for (int j = i + 1; j < count; ++j) {
+					const int against = begin[i].forward == begin[j].forward;
+					const int f = begin[i].forward ? i : j, g = i + j - f;
+					const double solid = (axis ^ away[size_t(f)]) * away[size_t(g)];
+					pairs.emplace_back(against,
+						std::lround(alike * (away[size_t(i)] * away[size_t(j)])), solid < 0 ? 0 : 1,
+						i, j);
+				}
+			std::sort(pairs.begin(), pairs.end());
+			std::vector<char> taken(size_t(count), 0);
+			for (const auto& [against, straightness, side, i, j] : pairs)
+				if (!taken[size_t(i)] && !taken[size_t(j)]) {
+					taken[size_t(i)] = taken[size_t(j)] = 1;
+					join(begin[i], begin[j]);
+				}
+		});
+	if (crowdedEdges)
+		*crowdedEdges = crowded;
+	return partner;
+}
+
+} // namespace detail
+
+/**
+ * Parts a surface so that each edge has at most two faces and each vertex one fan of faces: new vertices at the
+ * places of the old ones. The faces at an edge are paired by which continues which best.
+ * @param keepOpenFans  fans with borders at a vertex stay together: a hole between them is still to be filled.
+ * @param points    get new ones at their end. @param triangles are changed.
+ * @param partedFrom gets, for each new point, the one that it was.
+ * @throws Cancelled. Complexity: about O(V + F).
+ */
+inline PartedSurface partSurface(std::vector<Point3d>& points, std::vector<Triangle>& triangles,
+	std::vector<int>& partedFrom, bool keepOpenFans, const Progress& progress = Progress())
+{
+	constexpr int mostRounds = 4;
+	PartedSurface parted;
+	for (int round = 0; round < mostRounds; ++round) {
+		const Progress part = progress.part(double(round) / mostRounds, (round + 1.0) / mostRounds);
+		int crowded = 0;
+		parted.partner = detail::pairedHalfEdges(points, triangles, &crowded, part.part(0, 0.5));
+		if (round == 0)
+			parted.edges = crowded;
+		const detail::Fans fans(triangles, parted.partner);
+		std::vector<char> isOpen(parted.partner.size(), 0); // of fans, by their first corner
+		for (int h = 0; h < int(parted.partner.size()); ++h)
+			if (parted.partner[size_t(h)] < 0)
+				isOpen[size_t(fans.find(h))] = isOpen[size_t(fans.find(detail::Fans::next(h)))] = 1;
+		// The fan that a vertex keeps: its first one, or all open ones together.
+		const size_t before = points.size();
+		std::vector<int> owner(before, -1);
+		std::vector<int> vertexOfFan(parted.partner.size(), -1);
+		std::vector<char> manifold(before, 1);
+		for (int c = 0; c < int(parted.partner.size()); ++c) {
+			const int fan = fans.find(c);
+			const int v = triangles[size_t(c) / 3][size_t(c) % 3];
+			int& vertex = vertexOfFan[size_t(fan)];
+			if (vertex >= 0)
+				continue;
+			int& first = owner[size_t(v)];
+			if (first < 0)
+				first = fan;
+			if (first == fan || (keepOpenFans && isOpen[size_t(first)] && isOpen[size_t(fan)]))
+				vertex = v;
+			else {
+				vertex = int(points.size());
+				points.push_back(Point3d(points[size_t(v)]));
+				partedFrom.push_back(v);
+				manifold[size_t(v)] = 0;
+			}
+		}
+		for (int c = 0; c < int(parted.partner.size()); ++c)
+			triangles[size_t(c) / 3][size_t(c) % 3] = vertexOfFan[size_t(fans.find(c))];
+		parted.vertices += int(std::count(manifold.begin(), manifold.end(), 0));
+		if (!crowded)
+			return parted;
+
+		// Two pairs of faces may still share both ends of their edge: all but one get a vertex in its middle.
+		const detail::SoupEdges edges =
+			detail::sortedSoupEdges(points.size(), triangles, part.part(0.5, 0.9));
+		std::vector<std::array<int, 2>> toCut;
+		detail::forEachSoupEdge(edges, part.part(0.9, 1),
+			[&](int low, const detail::SoupEdge* begin, const detail::SoupEdge* end) {
+				bool first = true;
+				for (const detail::SoupEdge* e = begin; end - begin > 2 && e != end; ++e) {
+					const Triangle& t = triangles[e->face];
+					const int from = e->forward ? low : e->high;
+					const int h = 3 * int(e->face) + (t[0] == from ? 0 : t[1] == from ? 1 : 2);
+					const int g = parted.partner[size_t(h)];
+					if (g > h && !std::exchange(first, false))
+						toCut.push_back({h, g});
+				}
+			});
+		if (toCut.empty())
+			return parted;
+		std::vector<char> cut(triangles.size(), 0);
+		for (const auto& pair : toCut) {
+			if (cut[size_t(pair[0]) / 3] || cut[size_t(pair[1]) / 3])
+				continue; // in the next round
+			const Triangle first = triangles[size_t(pair[0]) / 3];
+			const int a = first[size_t(pair[0] % 3)], b = first[size_t((pair[0] + 1) % 3)];
+			const int middle = int(points.size());
+			points.push_back((points[size_t(a)] + points[size_t(b)]) / 2.0);
+			partedFrom.push_back(-1);
+			for (int h : pair) {
+				const size_t f = size_t(h) / 3;
+				cut[f] = 1;
+				Triangle half = triangles[f];
+				half[size_t(h) % 3] = middle;
+				triangles[f][size_t(detail::Fans::next(h)) % 3] = middle;
+				triangles.push_back(half);
+			}
+		}
+	}
+	return parted;
+}
+
+} // namespace vcg::tri::mcf
+
+#endif

@@ -1,0 +1,239 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief A tree of boxes over any triangles: closest points, crossings of segments, pairs that meet.
+
+#ifndef VCG_MCF_TRIANGLE_TREE_H
+#define VCG_MCF_TRIANGLE_TREE_H
+
+#include <skeleton/core/parallel.h>
+#include <skeleton/core/progress.h>
+#include <skeleton/core/ticker.h>
+#include <skeleton/mesh/closest_point_walk.h>
+#include <skeleton/mesh/surface_mesh.h>
+
+#include <vcg/space/box3.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/**
+ * A balanced binary tree of bounding boxes over triangles, which need neither be closed nor manifold nor
+ * oriented. The same triangles in the same order give the same tree and the same answers.
+ */
+class TriangleTree
+{
+public:
+	/// A node; its left child is the next one. Leaves hold the triangles order()[begin], ..., order()[end - 1].
+	struct Node
+	{
+		Box3d box;
+		int begin, end;
+		int right; ///< -1: a leaf
+
+		bool isLeaf() const { return right < 0; }
+	};
+
+	/// The point of the triangles that is closest to another one.
+	struct Closest
+	{
+		Point3d point;
+		double distance;
+		int face; ///< -1 if there are no triangles
+	};
+
+	/**
+	 * @param points    mesh units, finite; kept by reference, as are the triangles.
+	 * @param triangles corners as indices into `points`.
+	 * @throws Cancelled. Complexity: O(F log F).
+	 */
+	TriangleTree(const std::vector<Point3d>& points, const std::vector<Triangle>& triangles,
+		const Progress& progress = Progress()) :
+			points(points),
+			triangles(triangles)
+	{
+		std::vector<Point3d> middle;
+		middle.reserve(triangles.size());
+		ids.reserve(triangles.size());
+		detail::reportedLoop(int(triangles.size()), progress.part(0, 0.1), sorting, [&](int f) {
+			middle.push_back((corner(f, 0) + corner(f, 1) + corner(f, 2)) / 3.0);
+			ids.push_back(f);
+		});
+		nodes.reserve(triangles.size());
+		detail::Ticker ticker(progress.part(0.1, 1), sorting, double(triangles.size()));
+		if (!triangles.empty())
+			build(middle, 0, int(triangles.size()), ticker);
+	}
+
+	const std::vector<Node>& allNodes() const { return nodes; }
+	const std::vector<int>& order() const { return ids; }
+	const Point3d& corner(int f, int k) const
+	{
+		return points[size_t(triangles[size_t(f)][size_t(k)])];
+	}
+	int size() const { return int(ids.size()); }
+
+	/// The closest point, of several the one on the triangle that the tree meets first.
+	/// @param reach nothing farther away is found. Complexity: about O(log F).
+	Closest closest(const Point3d& p, double reach = std::numeric_limits<double>::infinity()) const
+	{
+		Closest best = {p, reach, -1};
+		if (nodes.empty())
+			return best;
+		double squared = reach * reach;
+		struct Place
+		{
+			int node;
+			double squared;
+		};
+		std::array<Place, 128> stack;
+		int top = 0;
+		stack[size_t(top++)] = {0, squaredDistance(nodes[0].box, p)};
+		while (top > 0) {
+			const Place place = stack[size_t(--top)];
+			if (place.squared > squared)
+				continue;
+			const Node& node = nodes[size_t(place.node)];
+			if (node.isLeaf()) {
+				for (int i = node.begin; i < node.end; ++i) {
+					const int f = ids[size_t(i)];
+					const detail::TrianglePoint on =
+						detail::closestOnTriangle(corner(f, 0), corner(f, 1), corner(f, 2), p);
+					if (on.squaredDistance < squared) {
+						squared = on.squaredDistance;
+						best.point = on.point;
+						best.face = f;
+					}
+				}
+				continue;
+			}
+			Place near = {place.node + 1, squaredDistance(nodes[size_t(place.node) + 1].box, p)};
+			Place far = {node.right, squaredDistance(nodes[size_t(node.right)].box, p)};
+			if (far.squared < near.squared)
+				std::swap(near, far);
+			stack[size_t(top++)] = far;
+			stack[size_t(top++)] = near;
+		}
+		best.distance = std::sqrt(squared);
+		return best;
+	}
+
+	/// Calls visit(face, t, forward) for each triangle that the segment p + t (q - p), t in [0, 1], crosses;
+	/// forward: it goes the way of the triangle's normal. Through an edge it may cross both triangles.
+	/// Complexity: O(log F + crossings).
+	template <class Visit>
+	void forEachCrossing(const Point3d& p, const Point3d& q, const Visit& visit) const
+	{
+		constexpr double rounding = 1e-9; // a segment through an edge must hit one of its triangles
+		const Point3d step = q - p;
+		Box3d segment;
+		segment.Add(p);
+		segment.Add(q);
+		forEachFaceIn(segment, [&](int f) {
+			const Point3d& a = corner(f, 0);
+			const Point3d e1 = corner(f, 1) - a, e2 = corner(f, 2) - a;
+			const Point3d across = step ^ e2;
+			const double determinant = e1 * across;
+			if (determinant == 0)
+				return;
+			const Point3d from = p - a;
+			const double u = (from * across) / determinant;
+			const Point3d aside = from ^ e1;
+			const double w = (step * aside) / determinant;
+			const double t = (e2 * aside) / determinant;
+			if (u >= -rounding && w >= -rounding && u + w <= 1 + rounding && t >= 0 && t <= 1)
+				visit(f, t, determinant < 0);
+		});
+	}
+
+	/// Calls visit(face) for each triangle whose box meets a box.
+	template <class Visit>
+	void forEachFaceIn(const Box3d& box, const Visit& visit) const
+	{
+		if (nodes.empty())
+			return;
+		std::array<int, 128> stack;
+		int top = 0;
+		stack[size_t(top++)] = 0;
+		while (top > 0) {
+			const int at = stack[size_t(--top)];
+			const Node& node = nodes[size_t(at)];
+			if (!node.box.Collide(box))
+				continue;
+			if (node.isLeaf()) {
+				for (int i = node.begin; i < node.end; ++i)
+					if (boxOf(ids[size_t(i)]).Collide(box))
+						visit(ids[size_t(i)]);
+				continue;
+			}
+			stack[size_t(top++)] = node.right;
+			stack[size_t(top++)] = at + 1;
+		}
+	}
+
+	Box3d boxOf(int f) const
+	{
+		Box3d box;
+		for (int k = 0; k < 3; ++k)
+			box.Add(corner(f, k));
+		return box;
+	}
+
+private:
+	static constexpr const char* sorting = "Sorting the triangles";
+	static constexpr int leafSize = 4;
+
+	const std::vector<Point3d>& points;
+	const std::vector<Triangle>& triangles;
+	std::vector<int> ids;
+	std::vector<Node> nodes;
+
+	static double squaredDistance(const Box3d& box, const Point3d& p)
+	{
+		double sum = 0;
+		for (int k = 0; k < 3; ++k) {
+			const double beyond = std::max({box.min[k] - p[k], p[k] - box.max[k], 0.0});
+			sum += beyond * beyond;
+		}
+		return sum;
+	}
+
+	void build(const std::vector<Point3d>& middle, int begin, int end, detail::Ticker& ticker)
+	{
+		const int at = int(nodes.size());
+		nodes.push_back({Box3d(), begin, end, -1});
+		if (end - begin <= leafSize) {
+			for (int i = begin; i < end; ++i) {
+				nodes[size_t(at)].box.Add(boxOf(ids[size_t(i)]));
+				ticker.tick();
+			}
+			return;
+		}
+		Box3d spread;
+		for (int i = begin; i < end; ++i)
+			spread.Add(middle[size_t(ids[size_t(i)])]);
+		const int axis = spread.MaxDim();
+		const int half = (begin + end) / 2;
+		std::nth_element(
+			ids.begin() + begin, ids.begin() + half, ids.begin() + end, [&](int a, int b) {
+				const double x = middle[size_t(a)][axis], y = middle[size_t(b)][axis];
+				return x != y ? x < y : a < b;
+			});
+		build(middle, begin, half, ticker);
+		const int right = int(nodes.size());
+		build(middle, half, end, ticker);
+		nodes[size_t(at)].right = right;
+		nodes[size_t(at)].box = nodes[size_t(at) + 1].box;
+		nodes[size_t(at)].box.Add(nodes[size_t(right)].box);
+	}
+};
+
+} // namespace vcg::tri::mcf
+
+#endif

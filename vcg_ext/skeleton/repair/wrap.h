@@ -1,0 +1,313 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief The boundary of the solid that oriented triangles mean: where their winding number is one half.
+
+#ifndef VCG_MCF_WRAP_H
+#define VCG_MCF_WRAP_H
+
+#include "tetrahedral_lattice.h"
+#include "triangle_tree.h"
+#include "winding_number.h"
+
+#include <skeleton/core/errors.h>
+#include <skeleton/core/parallel.h>
+#include <skeleton/core/progress.h>
+#include <skeleton/core/ticker.h>
+#include <skeleton/mesh/surface_mesh.h>
+
+#include <vcg/space/box3.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/// The points and triangles of a closed surface.
+struct WrappedSurface
+{
+	std::vector<Point3d> points;
+	std::vector<Triangle> triangles;
+};
+
+namespace detail {
+
+/**
+ * Extracts the surface { w = 1/2 } from the tetrahedra of a lattice.
+ *
+ * Evaluated are the nodes near the triangles, where w jumps, and from there on all that have a tetrahedron in
+ * common with a change of sign: across holes the surface is followed wherever it goes. All tetrahedra at
+ * an edge with a change of sign are then complete, and the surface through them is closed and two-manifold.
+ */
+class Wrapping
+{
+public:
+	Wrapping(
+		const TriangleTree& tree, const WindingNumber& winding, double spacing, int mostNodes) :
+			tree(tree),
+			winding(winding), mostNodes(mostNodes), lattice(originOf(tree, spacing), spacing)
+	{
+	}
+
+	WrappedSurface run(const Progress& progress)
+	{
+		addNodesNearTriangles(progress.part(0, 0.15));
+		evaluate(progress.part(0.15, 0.6));
+		placeVertices(progress.part(0.6, 0.9));
+		connect(progress.part(0.9, 1));
+		return std::move(surface);
+	}
+
+private:
+	static constexpr const char* wrapping = "Wrapping the surface";
+	using Lattice = TetrahedralLattice;
+
+	const TriangleTree& tree;
+	const WindingNumber& winding;
+	int mostNodes;
+	Lattice lattice;
+	std::vector<double> value;    ///< of w, for each node
+	std::vector<int> firstVertex; ///< of those on the edges forward from each node
+	WrappedSurface surface;
+
+	/// Not a corner of the bounding box: shapes tend to have vertices and edges in its planes.
+	static Point3d originOf(const TriangleTree& tree, double spacing)
+	{
+		return tree.size() ? tree.allNodes()[0].box.min - Point3d(0.3819, 0.2361, 0.1459) * spacing
+						   : Point3d(0, 0, 0);
+	}
+
+	bool isInside(int node) const { return value[size_t(node)] > 0.5; }
+	bool changes(int node, int other) const { return isInside(node) != isInside(other); }
+
+	void limitNodes() const
+	{
+		if (lattice.size() > mostNodes)
+			throw SolverError("The surface has too many places of detail to be wrapped.");
+	}
+
+	void addNodesNearTriangles(const Progress& progress)
+	{
+		// Both ends of an edge that crosses a triangle are nearer to it than the edge is long.
+		const double a = lattice.spacing();
+		std::vector<std::array<Point3d, 3>> pieces;
+		reportedLoop(tree.size(), progress, wrapping, [&](int i) {
+			const int f = tree.order()[size_t(i)];
+			pieces.push_back({tree.corner(f, 0), tree.corner(f, 1), tree.corner(f, 2)});
+			while (!pieces.empty()) {
+				const std::array<Point3d, 3> t = pieces.back();
+				pieces.pop_back();
+				size_t longest = 0;
+				for (size_t k = 1; k < 3; ++k)
+					if (SquaredDistance(t[k], t[(k + 1) % 3])
+						> SquaredDistance(t[longest], t[(longest + 1) % 3]))
+						longest = k;
+				const Point3d &p = t[longest], &q = t[(longest + 1) % 3],
+							  &apex = t[(longest + 2) % 3];
+				if (SquaredDistance(p, q) > 9 * a * a) { // the box of a long one is mostly empty
+					pieces.push_back({p, (p + q) / 2.0, apex});
+					pieces.push_back({(p + q) / 2.0, q, apex});
+				}
+				else
+					addNodesNear(t, a);
+			}
+			limitNodes();
+		});
+	}
+
+	void addNodesNear(const std::array<Point3d, 3>& t, double reach)
+	{
+		Box3d box;
+		for (const Point3d& p : t)
+			box.Add(p);
+		box.Offset(reach);
+		const double half = lattice.spacing() / 2;
+		const Point3d low = (box.min - lattice.position(Lattice::Place {0, 0, 0})) / half;
+		const Point3d high = (box.max - lattice.position(Lattice::Place {0, 0, 0})) / half;
+		for (int parity = 0; parity < 2; ++parity) {
+			const auto first = [&](double x) {
+				const int n = int(std::ceil(x));
+				return n + ((n - parity) & 1);
+			};
+			for (int x = first(low[0]); x <= high[0]; x += 2)
+				for (int y = first(low[1]); y <= high[1]; y += 2)
+					for (int z = first(low[2]); z <= high[2]; z += 2) {
+						const Lattice::Place at = {x, y, z};
+						if (closestOnTriangle(t[0], t[1], t[2], lattice.position(at))
+								.squaredDistance
+							<= reach * reach)
+							lattice.add(at);
+					}
+		}
+	}
+
+	void evaluate(const Progress& progress)
+	{
+		for (int from = 0, first = lattice.size(); from < lattice.size();) {
+			const int to = lattice.size();
+			value.resize(size_t(to));
+			// Of what the first round leaves nobody knows how much it is.
+			const Progress part = from == 0 ? progress.part(0, 0.9) : progress.part(0.9, 0.9);
+			forEachBlock(to - from, part, wrapping, [&](int begin, int end) {
+				for (int i = from + begin; i < from + end; ++i)
+					value[size_t(i)] = winding(lattice.position(i));
+			});
+			reportedLoop(
+				to - from, progress.part(0.9, from < first ? 1 : 0.9), wrapping, [&](int i) {
+					const int node = from + i;
+					for (int d = 0; d < Lattice::directions; ++d) {
+						const int other = lattice.neighbour(node, d);
+						if (other >= 0 && other < to && changes(node, other))
+							lattice.completeAround(node, d);
+					}
+				});
+			limitNodes();
+			from = to;
+		}
+	}
+
+	/// Where the surface meets an edge, as a part of it.
+	double crossing(int node, int other) const
+	{
+		// Off the triangles w is smooth: along an edge it is a straight line with a jump at each triangle.
+		std::vector<std::pair<double, int>> jumps;
+		tree.forEachCrossing(lattice.position(node), lattice.position(other),
+			[&](int, double t, bool alongNormal) { jumps.emplace_back(t, alongNormal ? -1 : 1); });
+		std::sort(jumps.begin(), jumps.end());
+		const double start = value[size_t(node)] - 0.5, end = value[size_t(other)] - 0.5;
+		double slope = end - start;
+		for (const auto& jump : jumps)
+			slope -= jump.second;
+		jumps.emplace_back(1, 0);
+		const bool inside = start > 0;
+		double t = 0, at = start;
+		for (const auto& [next, jump] : jumps) {
+			const double before = at + slope * (next - t);
+			if ((before > 0) != inside)
+				return t + at / (at - before) * (next - t);
+			if ((before + jump > 0) != inside)
+				return next;
+			t = next;
+			at = before + jump;
+		}
+		return start / (start - end); // a triangle's edge was missed, or met twice
+	}
+
+	void placeVertices(const Progress& progress)
+	{
+		constexpr double nearest = 0.03; // part of an edge: so no triangle is without area
+		firstVertex.reserve(size_t(lattice.size()) + 1);
+		std::vector<std::pair<int, int>> edges;
+		reportedLoop(lattice.size(), progress.part(0, 0.2), wrapping, [&](int node) {
+			firstVertex.push_back(int(edges.size()));
+			for (int d = 0; d < Lattice::forward; ++d)
+				if (const int other = lattice.neighbour(node, d);
+					other >= 0 && changes(node, other))
+					edges.emplace_back(node, other);
+		});
+		surface.points.resize(edges.size());
+		forEachBlock(int(edges.size()), progress.part(0.2, 1), wrapping, [&](int begin, int end) {
+			for (int i = begin; i < end; ++i) {
+				const auto [node, other] = edges[size_t(i)];
+				const double t = std::clamp(crossing(node, other), nearest, 1 - nearest);
+				surface.points[size_t(i)] =
+					lattice.position(node) * (1 - t) + lattice.position(other) * t;
+			}
+		});
+	}
+
+	/// The vertex on the edge between two nodes with a change of sign.
+	int vertexBetween(int a, int b) const
+	{
+		const auto count = [&](int node, int direction) {
+			int before = 0;
+			for (int d = 0; d < direction; ++d)
+				if (const int other = lattice.neighbour(node, d);
+					other >= 0 && changes(node, other))
+					++before;
+			return firstVertex[size_t(node)] + before;
+		};
+		for (int d = 0; d < Lattice::forward; ++d) {
+			if (lattice.neighbour(a, d) == b)
+				return count(a, d);
+			if (lattice.neighbour(b, d) == a)
+				return count(b, d);
+		}
+		return -1;
+	}
+
+	void connect(const Progress& progress)
+	{
+		reportedLoop(lattice.size(), progress, wrapping, [&](int node) {
+			lattice.forEachTetrahedron(
+				node, [&](const std::array<int, 4>& corners) { cut(corners); });
+		});
+	}
+
+	void addTriangle(int a, int b, int c, bool turned)
+	{
+		surface.triangles.push_back({a, turned ? c : b, turned ? b : c});
+	}
+
+	/// The surface within a tetrahedron, its normal from inside to outside.
+	void cut(const std::array<int, 4>& corners)
+	{
+		int mask = 0;
+		for (int i = 0; i < 4; ++i)
+			mask |= int(isInside(corners[size_t(i)])) << i;
+		const auto vertex = [&](int i, int j) {
+			return vertexBetween(corners[size_t(i)], corners[size_t(j)]);
+		};
+		// Even permutations of the corners.
+		static constexpr int alone[4][4] = {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 0, 1, 3}, {3, 0, 2, 1}};
+		static constexpr int pairs[6][4] = {
+			{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 3, 0, 1}};
+		for (int i = 0; i < 4; ++i)
+			if (mask == 1 << i || mask == (15 ^ 1 << i)) {
+				const int* p = alone[i];
+				addTriangle(vertex(i, p[1]), vertex(i, p[2]), vertex(i, p[3]), mask != 1 << i);
+			}
+		for (const auto& p : pairs)
+			if (mask == (1 << p[0] | 1 << p[1])) {
+				const std::array<int, 4> quad = {
+					vertex(p[0], p[2]), vertex(p[0], p[3]), vertex(p[1], p[3]), vertex(p[1], p[2])};
+				const auto squared = [&](size_t i, size_t j) {
+					return SquaredDistance(
+						surface.points[size_t(quad[i])], surface.points[size_t(quad[j])]);
+				};
+				const size_t first = squared(0, 2) <= squared(1, 3) ? 0 : 1;
+				for (size_t i : {first, first + 2})
+					addTriangle(quad[i], quad[(i + 1) % 4], quad[(i + 2) % 4], false);
+			}
+	}
+};
+
+} // namespace detail
+
+/**
+ * The boundary of the solid { w > 1/2 }, w the winding number of oriented triangles: closed, two-manifold,
+ * oriented outward, of any number of pieces. Its vertices lie on the triangles where these bound the solid, and
+ * across holes on the surface { w = 1/2 }.
+ *
+ * What is thinner than about the spacing may be torn or missed; cavities are surfaces of their own.
+ *
+ * @param tree      of the triangles, and @param winding their winding number.
+ * @param spacing   of the lattice, mesh units, > 0: about the edge length of the result.
+ * @param mostNodes of the lattice.
+ * @throws SolverError if more nodes were needed; Cancelled.
+ * Complexity: O(A / spacing^2 log F) for the area A of the triangles.
+ * Source: ours; marching tetrahedra after Doi and Koide, 1991, on the lattice of Labelle and Shewchuk, 2007.
+ */
+inline WrappedSurface wrap(const TriangleTree& tree, const WindingNumber& winding, double spacing,
+	int mostNodes, const Progress& progress = Progress())
+{
+	return detail::Wrapping(tree, winding, spacing, mostNodes).run(progress);
+}
+
+} // namespace vcg::tri::mcf
+
+#endif
