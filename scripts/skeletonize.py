@@ -55,6 +55,8 @@ def parse_arguments(arguments: list[str] | None = None) -> argparse.Namespace:
     flow.add_argument("--resample-iterations", type=int, metavar="N", help="rounds of it (5)")
     flow.add_argument("--no-denoise", dest="denoise", action="store_const", const=False,
                       help="resample without smoothing the noise first")
+    flow.add_argument("--repair", choices=["auto", "mend", "off"],
+                      help="what is done with a mesh that does not bound a solid (auto)")
     flow.add_argument("--no-adaptive", dest="adaptive", action="store_const", const=False,
                       help="the same lengths everywhere, however thin the shape is")
     flow.add_argument("--relative-length", type=float, metavar="K",
@@ -88,7 +90,8 @@ def filter_parameters(options: argparse.Namespace) -> dict[str, Any]:
     kinds = {"percent": pymeshlab.PercentageValue, "units": pymeshlab.PureValue}
     parameters = {}
     for name in ["w_l", "w_h", "w_m", "epsilon", "split_angle", "resample", "target_length",
-                 "resample_iterations", "denoise", "adaptive", "relative_length", "refine", "pole_method", "max_iterations",
+                 "resample_iterations", "denoise", "adaptive", "relative_length", "refine", "repair",
+                 "pole_method", "max_iterations",
                  "keep_stages"]:
         value = getattr(options, name)
         if isinstance(value, tuple):

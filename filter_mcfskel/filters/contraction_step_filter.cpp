@@ -21,7 +21,9 @@ struct Start
 {
 	std::shared_ptr<const mcf::Stage> stage;
 	PoledSurface surface;
-	SurfaceLink link;
+	SurfaceLink link; ///< none yet if the surface is repaired
+
+	bool isRepaired() const { return surface.solid.outcome != mcf::SolidReport::Sound; }
 };
 
 Start startOf(FilterRun& run, const mcf::Parameters& parameters)
@@ -50,11 +52,13 @@ Start startOf(FilterRun& run, const mcf::Parameters& parameters)
 		run.log(
 			"This layer was a stage of the contraction, but its state is gone or its geometry was "
 			"changed: it is taken as a surface of its own.");
-	start.surface = surfaceWithPoles(run, parameters.poleMethod, run.progress.part(0, 0.08));
+	start.surface = surfaceWithPoles(
+		run, parameters.poleMethod, readRepair(run.parameters), run.progress.part(0, 0.08));
 	start.stage = std::make_shared<const mcf::Stage>(mcf::startOfFlow(*start.surface.surface.mesh,
 		*start.surface.poles, selectionToHold(run, start.surface.surface), parameters,
 		run.progress.part(0.08, 0.1), noteLog(run)));
-	start.link = linkTo(run.layer(), start.surface.surface);
+	if (!start.isRepaired())
+		start.link = linkTo(run.layer(), start.surface.surface);
 	return start;
 }
 
@@ -90,11 +94,25 @@ Results run(FilterRun& run)
 
 	DocumentEdit edit(run.document);
 	MeshModel& source = run.layer();
-	addStages(edit, source, stages, start.link, run.progress.part(0.95, 1));
+	SurfaceLink link = start.link;
+	MeshModel* surface = &source;
+	SurfaceLayer contracted = start.surface.surface;
+	if (start.isRepaired()) {
+		surface = &edit.addSurface(
+			source, baseName(source) + "_solid", *contracted.mesh, run.progress.part(0.95, 0.95));
+		edit.writeNodes(source, *contracted.vertexOfSlot, last->node);
+		contracted = compactSurface(contracted.mesh);
+		link = linkTo(*surface, contracted);
+	}
+	addStages(edit, source, stages, link, run.progress.part(0.95, 1));
 	if (start.surface.computed)
-		edit.writePoles(source, start.surface.surface, start.surface.poles);
-	edit.writeNodes(start.link, last->node);
-	const Results results = stageResults(*last);
+		edit.writePoles(*surface, contracted, start.surface.poles);
+	if (start.isRepaired())
+		edit.writeNodes(*surface, *contracted.vertexOfSlot, last->node);
+	else
+		edit.writeNodes(link, last->node);
+	Results results = stageResults(*last);
+	results.merge(repairResults(start.surface.solid));
 	edit.commit();
 	return results;
 }
@@ -110,6 +128,7 @@ FilterSpec contractionStepFilter()
 		parameters.push_back(adaptive);
 	parameters.push_back({ParameterKind::Integer, "steps", 1, "Steps",
 		"Iterations to make, at least 1; each leaves a layer of its own, NAME_meso_K."});
+	parameters.push_back(repairParameter());
 	parameters.push_back(fixSelectedParameter());
 	parameters.push_back(keepSheetsParameter());
 	parameters.push_back(sheetThresholdParameter());

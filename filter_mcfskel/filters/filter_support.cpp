@@ -80,6 +80,16 @@ ParameterSpec poleMethodParameter()
 		{"voronoi", "balls"}};
 }
 
+ParameterSpec repairParameter()
+{
+	return {ParameterKind::Choice, "repair", double(mcf::Parameters().repair), "Repair",
+		"What is done with a mesh that does not bound a solid. 'auto': small defects are mended; where that "
+		"is not enough, as with large holes, soups or parts that run into each other, the surface is "
+		"wrapped by winding numbers; sound meshes stay as they are. 'mend': no more than the former. "
+		"'off': such a mesh is refused, and the message says why.",
+		{"auto", "mend", "off"}};
+}
+
 std::vector<ParameterSpec> weightParameters()
 {
 	const mcf::Parameters defaults;
@@ -156,6 +166,12 @@ void readFlow(const ParameterValues& values, mcf::Parameters& parameters)
 mcf::PoleMethod readPoleMethod(const ParameterValues& values)
 {
 	return values.integer("pole_method") == 0 ? mcf::PoleMethod::Voronoi : mcf::PoleMethod::Balls;
+}
+
+mcf::Repair readRepair(const ParameterValues& values)
+{
+	const int choice = values.integer("repair");
+	return choice == 0 ? mcf::Repair::Auto : choice == 1 ? mcf::Repair::Mend : mcf::Repair::Off;
 }
 
 Results stageResults(const mcf::Stage& stage)
@@ -241,12 +257,17 @@ SurfaceLayer compactSurface(std::shared_ptr<const mcf::SurfaceMesh> mesh)
 	return {std::move(mesh), identity, {}};
 }
 
-PoledSurface surfaceWithPoles(FilterRun& run, mcf::PoleMethod method, const mcf::Progress& progress)
+PoledSurface surfaceWithPoles(
+	FilterRun& run, mcf::PoleMethod method, mcf::Repair repair, const mcf::Progress& progress)
 {
 	PoledSurface result;
-	result.surface = readSurface(run.layer(), progress.part(0, 0.2));
+	SolidLayer read = readSolid(run.layer(), repair, progress.part(0, 0.2));
+	const bool isLayer = !read.isRepaired();
+	result.surface = std::move(read.surface);
+	result.solid = std::move(read.report);
 	logNotes(run, result.surface);
-	result.poles = readPoles(run.layer(), result.surface, progress.part(0.2, 0.2));
+	if (isLayer)
+		result.poles = readPoles(run.layer(), result.surface, progress.part(0.2, 0.2));
 	if (!result.poles) {
 		run.log("The surface has no medial poles yet: computing them.");
 		result.poles = std::make_shared<const mcf::PoleSet>(

@@ -32,6 +32,7 @@ ParameterSpec denoiseParameter();
 /// adaptive and relative_length.
 std::vector<ParameterSpec> adaptiveParameters();
 ParameterSpec poleMethodParameter();
+ParameterSpec repairParameter();
 std::vector<ParameterSpec> weightParameters();
 ParameterSpec epsilonParameter();
 ParameterSpec splitAngleParameter();
@@ -46,6 +47,7 @@ void readAdaptive(const ParameterValues& values, vcg::tri::mcf::Parameters& para
 double readEpsilon(const ParameterValues& values);
 void readFlow(const ParameterValues& values, vcg::tri::mcf::Parameters& parameters);
 vcg::tri::mcf::PoleMethod readPoleMethod(const ParameterValues& values);
+vcg::tri::mcf::Repair readRepair(const ParameterValues& values);
 
 // Reports, for Python and for the log.
 
@@ -75,14 +77,16 @@ SurfaceLayer compactSurface(std::shared_ptr<const vcg::tri::mcf::SurfaceMesh> me
 struct PoledSurface
 {
 	SurfaceLayer surface;
+	/// What the surface had to be repaired of; it is then no layer yet.
+	vcg::tri::mcf::SolidReport solid;
 	std::shared_ptr<const vcg::tri::mcf::PoleSet> poles;
 	/// Whether the poles were computed just now, and are not on the layer yet.
 	bool computed = false;
 };
 
 /// The poles that the current surface layer carries; if it has none, computes them and says so.
-PoledSurface surfaceWithPoles(
-	FilterRun& run, vcg::tri::mcf::PoleMethod method, const vcg::tri::mcf::Progress& progress);
+PoledSurface surfaceWithPoles(FilterRun& run, vcg::tri::mcf::PoleMethod method,
+	vcg::tri::mcf::Repair repair, const vcg::tri::mcf::Progress& progress);
 
 /// NAME_meso_K.
 QString stageLabel(const QString& name, const vcg::tri::mcf::Stage& stage);

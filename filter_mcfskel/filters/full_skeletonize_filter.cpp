@@ -51,10 +51,12 @@ Results run(FilterRun& run)
 	if (keepStages < 0)
 		throw mcf::InvalidParameter("Parameter keep_stages must be at least 0.");
 
-	const SurfaceLayer read = readSurface(run.layer(), run.progress.part(0, 0.02));
+	const SolidLayer solid =
+		readSolid(run.layer(), readRepair(run.parameters), run.progress.part(0, 0.02));
+	const SurfaceLayer& read = solid.surface;
 	logNotes(run, read);
 	mcf::SurfaceInput surfaceInput {read.mesh, selectionToHold(run, read)};
-	if (!parameters.resample)
+	if (!parameters.resample && !solid.isRepaired())
 		surfaceInput.poles = readPoles(run.layer(), read, run.progress.part(0.02, 0.02));
 	if (surfaceInput.poles)
 		run.log("Taking the medial poles that the layer carries.");
@@ -86,9 +88,10 @@ Results run(FilterRun& run)
 	const QString name = baseName(input);
 	MeshModel* surface = &input;
 	SurfaceLayer contracted = read;
-	if (parameters.resample) {
-		surface = &edit.addSurface(
-			input, name + "_resampled", *result.surface, run.progress.part(0.99, 0.99));
+	const bool isInput = !parameters.resample && !solid.isRepaired();
+	if (!isInput) {
+		surface = &edit.addSurface(input, name + (parameters.resample ? "_resampled" : "_solid"),
+			*result.surface, run.progress.part(0.99, 0.99));
 		contracted = compactSurface(result.surface);
 	}
 	const SurfaceLink link = linkTo(*surface, contracted);
@@ -100,10 +103,11 @@ Results run(FilterRun& run)
 	if (!surfaceInput.poles)
 		edit.writePoles(*surface, contracted, result.poles);
 	edit.writeNodes(*surface, *contracted.vertexOfSlot, result.nodeOfSurface());
-	if (parameters.resample)
+	if (!isInput)
 		edit.writeNodes(input, *read.vertexOfSlot, result.node);
 	Results results = resultsOf(result, parameters.keepSheets);
 	logIfNotConverged(run, *result.stage, "Raise max_iterations.");
+	results.merge(repairResults(solid.report));
 	edit.commit();
 	return results;
 }
@@ -119,6 +123,7 @@ FilterSpec fullSkeletonizeFilter()
 			"only as good as the triangles of the input. On a coarse surface, where edges are longer "
 			"than 4 % of the diagonal and than the shape is thick, they are halved for the contraction, "
 			"so that the skeleton stays inside; not with held vertices or sheets."},
+		repairParameter(),
 		targetLengthParameter(),
 		resampleIterationsParameter().asAdvanced(),
 		denoiseParameter(),
@@ -147,7 +152,7 @@ FilterSpec fullSkeletonizeFilter()
 	parameters.push_back(sheetThresholdParameter());
 	return {"generate_curve_skeleton_mcf", menuName("Full Skeletonize"),
 		helpPage(
-			"Computes the curve skeleton (centerline, centreline, thinned medial axis) of a closed surface: "
+			"Computes the curve skeleton (centerline, centreline, thinned medial axis) of a surface: "
 			"a graph of nodes and edges in the middle of the shape, with one component for each of its components and one cycle for "
 			"each of its handles. Resamples the surface, finds its medial poles, contracts it until "
 			"no volume is left, collapses the result to curves and refines these; each is a filter of "

@@ -23,8 +23,8 @@ Results run(FilterRun& run)
 	parameters.leastRadius = run.parameters.fraction("min_radius") * referenceDiagonal(run.layer());
 	parameters.mostStretch = run.parameters.real("max_stretch");
 	parameters.check();
-	const PoledSurface poled =
-		surfaceWithPoles(run, mcf::Parameters().poleMethod, run.progress.part(0, 0.5));
+	const PoledSurface poled = surfaceWithPoles(
+		run, mcf::Parameters().poleMethod, mcf::Repair::Off, run.progress.part(0, 0.5));
 	const mcf::MedialLayer medial = mcf::medialLayer(*poled.surface.mesh, *poled.poles,
 		run.parameters.flag("joined"), parameters, run.progress.part(0.5, 1));
 	if (medial.position.empty())

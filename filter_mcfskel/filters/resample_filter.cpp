@@ -21,7 +21,9 @@ Results run(FilterRun& run)
 	readResampling(run.parameters, parameters);
 	readAdaptive(run.parameters, parameters);
 	parameters.check();
-	const SurfaceLayer surface = readSurface(run.layer(), run.progress.part(0, 0.1));
+	const SolidLayer solid =
+		readSolid(run.layer(), readRepair(run.parameters), run.progress.part(0, 0.1));
+	const SurfaceLayer& surface = solid.surface;
 	logNotes(run, surface);
 	mcf::ResampledSurface made =
 		mcf::resampledSurface(*surface.mesh, parameters, run.progress.part(0.1, 1), noteLog(run));
@@ -35,6 +37,7 @@ Results run(FilterRun& run)
 	edit.attachSurface(layer, resampled);
 	Results results = {{"vertices", mesh.vertexCount()}, {"faces", mesh.faceCount()},
 		{"edge_length_mean", mcf::meanEdgeLength(mesh)}};
+	results.merge(repairResults(solid.report));
 	edit.commit();
 	return results;
 }
@@ -47,13 +50,14 @@ FilterSpec resampleFilter()
 		targetLengthParameter(), resampleIterationsParameter(), denoiseParameter()};
 	for (const ParameterSpec& adaptive : adaptiveParameters())
 		parameters.push_back(adaptive);
+	parameters.push_back(repairParameter());
 	return {"meshing_isotropic_resampling_mcf", menuName("Resample"),
 		helpPage(
 			"Covers the surface with triangles of even size, smaller where it is thin, as a new layer: the skeleton is only as "
 			"good as the sampling that it is computed from. Splits long edges, collapses short ones, "
 			"flips edges towards six neighbours for each vertex, evens the vertices out along the "
 			"surface and puts them back onto it; the topology stays.<br><br>"
-			"First stage of the skeletonization. Needs a closed two-manifold triangle mesh."),
+			"First stage of the skeletonization."),
 		FilterCategory::Remeshing, MeshModel::MM_FACENUMBER, parameters, run};
 }
 

@@ -121,6 +121,8 @@ class Job:
         if step in self.skip:
             raise Stop
         expected = self.mesh.expected.answer
+        if filter_name in (FULL, STEP, RESAMPLE):
+            parameters = {"repair": "off"} | parameters  # what is refused is part of the answer
         before = document_state(self.layers)
         geometry = document_state(self.layers, attributes=False)
         labels = [mesh.label() for mesh in self.layers]

@@ -12,6 +12,7 @@
 #include <skeleton/refine/refine.h>
 #include <skeleton/resample/resampled_surface.h>
 #include <skeleton/skeletonize.h>
+#include <skeleton/solid.h>
 #include <skeleton/mesh/surface_rounding.h>
 
 #include <chrono>
@@ -38,6 +39,8 @@ const char* const usage =
 	"  --no-adaptive             the same lengths everywhere, however thin the shape is\n"
 	"  --relative-length K       longest edge in local thicknesses\n"
 	"  --resample-only           stop after the resampling\n"
+	"  --repair CHOICE           auto, mend or off: what is done with what does not bound a solid\n"
+	"  --solid-only              stop after the repair\n"
 	"  --pole-method METHOD      voronoi or balls\n"
 	"  --w-l W  --w-h W  --w-m W weights of Eq. 6, in the paper's units\n"
 	"  --epsilon PCT             edges shorter than this are collapsed, in % of the diagonal\n"
@@ -57,7 +60,7 @@ const char* const usage =
 struct Options
 {
 	std::string mesh, skeleton, surface, stage;
-	bool resampleOnly = false;
+	bool resampleOnly = false, solidOnly = false;
 	bool verbose = false;
 	bool progressGaps = false;
 	mcf::Parameters parameters;
@@ -73,6 +76,17 @@ mcf::PoleMethod poleMethod(const std::string& name)
 	throw std::invalid_argument("unknown pole method " + name);
 }
 
+mcf::Repair repair(const std::string& name)
+{
+	if (name == "auto")
+		return mcf::Repair::Auto;
+	if (name == "mend")
+		return mcf::Repair::Mend;
+	if (name == "off")
+		return mcf::Repair::Off;
+	throw std::invalid_argument("unknown repair " + name);
+}
+
 Options parse(int argc, char** argv)
 {
 	Options options;
@@ -82,6 +96,7 @@ Options parse(int argc, char** argv)
 		{"--no-resample", [&] { p.resample = false; }},
 		{"--progress-gaps", [&] { options.progressGaps = true; }},
 		{"--resample-only", [&] { options.resampleOnly = true; }},
+		{"--solid-only", [&] { options.solidOnly = true; }},
 		{"--no-denoise", [&] { p.denoise = false; }},
 		{"--no-adaptive", [&] { p.adaptive = false; }},
 		{"--no-refine", [&] { p.refine = false; }},
@@ -96,6 +111,7 @@ Options parse(int argc, char** argv)
 		{"--target-length", [&](Text t) { p.targetLength = std::stod(t) / 100; }},
 		{"--resample-iterations", [&](Text t) { p.resampleIterations = std::stoi(t); }},
 		{"--relative-length", [&](Text t) { p.relativeLength = std::stod(t); }},
+		{"--repair", [&](Text t) { p.repair = repair(t); }},
 		{"--pole-method", [&](Text t) { p.poleMethod = poleMethod(t); }},
 		{"--w-l", [&](Text t) { p.wL = std::stod(t); }},
 		{"--w-h", [&](Text t) { p.wH = std::stod(t); }},
@@ -259,12 +275,21 @@ void run(const Options& options)
 		observer.onNote = [](const std::string& note) { std::cerr << note << '\n'; };
 		observer.onFigures = describe;
 	}
-	if (options.resampleOnly) {
-		mcf::SurfaceMesh surface =
-			mcf::checkedSurface(mcf::roundedCoordinates(soup.points), soup.triangles, progress)
-				.mesh;
+	const auto addSolid = [&](const mcf::SolidReport& solid) {
+		report.add("repaired", int(solid.outcome))
+			.add("distance_mean", 100 * solid.distanceMean)
+			.add("distance_max", 100 * solid.distanceMax);
+	};
+	if (options.resampleOnly || options.solidOnly) {
+		mcf::SolidSurface solid = mcf::solidSurface(
+			mcf::roundedCoordinates(soup.points), soup.triangles, parameters.repair, progress);
+		addSolid(solid.report);
+		if (options.verbose)
+			for (const std::string& note : solid.surface.notes)
+				std::cerr << note << '\n';
+		mcf::SurfaceMesh surface = std::move(solid.surface.mesh);
 		observer.onPhase(mcf::Phase::Check);
-		if (parameters.resample) {
+		if (parameters.resample && !options.solidOnly) {
 			mcf::ResampledSurface resampled =
 				mcf::resampledSurface(surface, parameters, progress, observer.onNote);
 			report.add("noise", resampled.noise.level);
@@ -278,6 +303,7 @@ void run(const Options& options)
 			soup.points, soup.triangles, parameters, progress, observer, options.refinement);
 		if (parameters.resample)
 			report.add("noise", result.noise.level);
+		addSolid(result.solid);
 		addSurface(*result.surface, options, report);
 		addSkeleton(result, options, report);
 	}

@@ -28,15 +28,15 @@ def environment(plugin) -> dict[str, str]:
 
 @pytest.fixture
 def folder(tmp_path) -> Path:
-    """Three good meshes and one with a hole."""
+    """Three good meshes and a flat one."""
     folder = tmp_path / "meshes"
     folder.mkdir()
     for name in ["torus", "capsule", "animal450"]:
         shutil.copy(MESHES / f"{name}.off", folder)
     lines = (MESHES / "torus.off").read_text().splitlines()
-    counts = lines[1].split()
-    lines[1] = f"{counts[0]} {int(counts[1]) - 1} 0"
-    (folder / "open.off").write_text("\n".join(lines[:-1]) + "\n")
+    for i in range(2, 2 + int(lines[1].split()[0])):
+        lines[i] = " ".join(lines[i].split()[:2] + ["0"])
+    (folder / "flat.off").write_text("\n".join(lines) + "\n")
     (folder / "notes.txt").write_text("no mesh")
     return folder
 
@@ -59,9 +59,9 @@ def test_a_bad_mesh_costs_the_others_nothing(folder, environment):
     assert done.returncode == 1, "a mesh failed"
     rows = table(folder)
     assert {name: row["status"] for name, row in rows.items()} == {
-        "torus": "ok", "capsule": "ok", "animal450": "ok", "open": "failed"}
-    assert "Close Holes" in rows["open"]["error"]
-    assert "Close Holes" in done.stdout and "torus.off" in done.stdout
+        "torus": "ok", "capsule": "ok", "animal450": "ok", "flat": "failed"}
+    assert "Remove Isolated" in rows["flat"]["error"]
+    assert "Remove Isolated" in done.stdout and "torus.off" in done.stdout
     assert "%" not in done.stderr and "it/s" not in done.stderr, "no progress bar but on a terminal"
     for name in ["torus", "capsule", "animal450"]:
         graph = json.loads((folder.parent / "out" / f"{name}.off.json").read_text())
@@ -85,7 +85,7 @@ def test_subfolders_and_names_that_meet(folder, environment):
         (folder / name).mkdir()
         (folder / "torus.off").replace(folder / name / "same.off") if name == "a" else (
             folder / "capsule.off").replace(folder / name / "same.off")
-    for name in ["open", "animal450"]:
+    for name in ["flat", "animal450"]:
         (folder / f"{name}.off").unlink()
     out = folder / "out"  # within the folder: its skeletons are no meshes
     command = [sys.executable, str(SCRIPT), str(folder), str(out), *COARSE, "--formats", "ply", "json"]
@@ -140,15 +140,15 @@ def test_goes_on_where_it_stopped(folder, environment):
     assert {name: second[name] for name in first} == first, "nothing was done again"
     assert (folder.parent / "out" / "capsule.off.json").stat().st_mtime_ns == written
     assert second["torus"]["status"] == "ok"
-    shutil.copy(MESHES / "torus.off", folder / "open.off")
+    shutil.copy(MESHES / "torus.off", folder / "flat.off")
     assert run(folder, env=environment).returncode == 1
     assert run(folder, "--retry", env=environment).returncode == 0
-    assert table(folder)["open"]["status"] == "ok"
+    assert table(folder)["flat"]["status"] == "ok"
 
 
 @pytest.mark.parametrize("way, status", [(signal.SIGINT, 130), (signal.SIGKILL, -signal.SIGKILL)])
 def test_goes_on_after_an_interruption(folder, environment, way, status):
-    (folder / "open.off").unlink()
+    (folder / "flat.off").unlink()
     shutil.copy(folder / "torus.off", folder / "torus.ply.off")  # names that differ in the middle
     opened("torus").save_current_mesh(str(folder / "torus.ply"))  # and in the end only
     out = folder.parent / "out"
@@ -255,5 +255,5 @@ def test_on_a_cluster_that_loses_a_worker(folder, environment, cluster, tmp_path
     assert running.returncode == 1, output
     rows = table(folder)
     assert len(rows) == 8
-    assert {name for name, row in rows.items() if row["status"] != "ok"} == {"open"}, output
-    assert "Close Holes" in rows["open"]["error"]
+    assert {name for name, row in rows.items() if row["status"] != "ok"} == {"flat"}, output
+    assert "Remove Isolated" in rows["flat"]["error"]

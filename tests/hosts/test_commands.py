@@ -155,7 +155,7 @@ class TestFailures:
         counts[1] = str(int(counts[1]) - 1)
         text[1] = " ".join(counts)
         (tmp_path / "open.off").write_text("\n".join(text[:-1]) + "\n")
-        run = skeletonize(tmp_path / "open.off", tmp_path / "out")
+        run = skeletonize(tmp_path / "open.off", tmp_path / "out", "--repair", "off")
         assert run.returncode == 1
         lines = run.stderr.strip().splitlines()
         assert lines[-1].startswith("error:") and "Close Holes" in lines[-1]

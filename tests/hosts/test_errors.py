@@ -14,6 +14,9 @@ from hostile.primitives import moebius_strip
 
 COARSE = {"target_length": pymeshlab.PercentageValue(1.5)}
 SURFACE_FILTERS = [RESAMPLE, POLES, STEP, FULL]
+# With the surface as it is.
+UNREPAIRED = [(RESAMPLE, {"repair": "off"}), (POLES, {}), (STEP, {"repair": "off"}),
+              (FULL, {"repair": "off"})]
 Mesh = tuple[np.ndarray, np.ndarray]
 
 
@@ -72,7 +75,7 @@ def flat() -> Mesh:
 class TestRefusals:
     """Meshes that bound no solid: what is wrong, how many, and the cure."""
 
-    @pytest.mark.parametrize("name", SURFACE_FILTERS)
+    @pytest.mark.parametrize("name, options", UNREPAIRED)
     @pytest.mark.parametrize("mesh, words", [
         (open_capsule, ["watertight", "3 border edges", "Close Holes"]),
         (lambda: moebius_strip(40), ["border edges"]),
@@ -82,15 +85,26 @@ class TestRefusals:
         (of_size_zero, ["no volume"]),
         (flat, ["no volume"]),
     ])
-    def test_bad_surface(self, name, mesh, words):
-        text = refused(document(mesh()), name)
+    def test_bad_surface(self, name, options, mesh, words):
+        text = refused(document(mesh()), name, **options)
         for word in words:
             assert word in text, text
 
-    @pytest.mark.parametrize("name", SURFACE_FILTERS)
-    def test_one_triangle(self, name):
-        text = refused(document((np.eye(3), [[0, 1, 2]])), name)
+    @pytest.mark.parametrize("name, options", UNREPAIRED)
+    def test_one_triangle(self, name, options):
+        text = refused(document((np.eye(3), [[0, 1, 2]])), name, **options)
         assert "3 border edges" in text
+
+    @pytest.mark.parametrize("name", [RESAMPLE, STEP, FULL])
+    @pytest.mark.parametrize("mesh, words", [
+        (lambda: (np.eye(3), [[0, 1, 2]]), ["open sheet"]),
+        (of_size_zero, ["no volume"]),
+        (flat, ["no volume"]),
+    ])
+    def test_what_cannot_be_repaired(self, name, mesh, words):
+        text = refused(document(mesh()), name)
+        for word in words:
+            assert word in text, text
 
     @pytest.mark.parametrize("name", SURFACE_FILTERS + [COLLAPSE])
     def test_empty_layer(self, name):

@@ -191,14 +191,20 @@ class TestDroppedIn:
         """The library knows no layers and no filters; the plugin adds which filter helps."""
         lines = (MESHES / "capsule.off").read_text().split("\n")
         vertices, faces, _ = map(int, lines[1].split())
-        broken = [lines[0], f"{vertices} {faces - 1} 0", *lines[2:-2], ""]
-        (tmp_path / "open.off").write_text("\n".join(broken))
-        text = run(program, tmp_path / "open.off", status=1)
-        assert "3 border edges" in text and "Fill the holes" in text
-        assert "layer" not in text and "Close Holes" not in text
+        sheet = [lines[0], f"{vertices} 1 0", *lines[2:3 + vertices], ""]
+        (tmp_path / "sheet.off").write_text("\n".join(sheet))
+        text = run(program, tmp_path / "sheet.off", status=1)
+        assert "open sheet" in text and "Give it a thickness" in text
+        assert "layer" not in text
+        flat = [lines[0], lines[1],
+                *(" ".join(line.split()[:2] + ["0"]) for line in lines[2:2 + vertices]),
+                *lines[2 + vertices:]]
+        (tmp_path / "flat.off").write_text("\n".join(flat))
+        text = run(program, tmp_path / "flat.off", status=1)
+        assert "no volume" in text and "Remove Isolated" not in text
         layers = opened("capsule")
-        layers.load_new_mesh(str(tmp_path / "open.off"))
-        assert "Close Holes" in failing(layers, FULL)
+        layers.load_new_mesh(str(tmp_path / "flat.off"))
+        assert "Remove Isolated" in failing(layers, FULL)
 
 
 def test_readme_shows_the_sample_program():

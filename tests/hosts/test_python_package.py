@@ -392,7 +392,7 @@ def test_save_and_load(run, tmp_path):
 
 
 ERRORS = {
-    "mesh.vertices, mesh.faces[:-1]": "Close Holes",
+    "mesh.vertices, mesh.faces[:-1], repair='off'": "Close Holes",
     "mesh, epsilom=0.2": "no option epsilom",
     "mesh, epsilon='much'": "epsilon='much' is no length",
     "mesh, w_l='a'": "w_l='a' is no number",

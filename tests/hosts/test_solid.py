@@ -6,7 +6,7 @@ import numpy as np
 import pymeshlab
 import pytest
 
-from conftest import FULL, arrays, diagonal, document, failing, fingerprint, labels
+from conftest import FULL, RESAMPLE, STEP, arrays, diagonal, document, failing, fingerprint, labels
 from filter_names import SOLID
 from hostile.primitives import genus, is_two_manifold, signed_volume
 
@@ -90,3 +90,68 @@ def test_a_sheet_is_refused():
     before = fingerprint(layers)
     assert "open sheet" in failing(layers, SOLID)
     assert fingerprint(layers) == before
+
+
+def test_full_skeletonize_repairs_by_itself():
+    """Nothing is asked of the user; one line in the log says what was done."""
+    vertices, faces = missing(0.03)
+    layers = document((vertices, faces))
+    results = layers.apply_filter(FULL, target_length=pymeshlab.PercentageValue(1.5))
+    assert (results["components"], results["cycles"], results["terminals"]) == (1, 0, 2)
+    assert (results["repaired"], results["distance_max"]) == (1, 0)
+    node = layers.mesh(0).vertex_custom_scalar_attribute_array("mcfskel_node")
+    nodes = layers.current_mesh().vertex_matrix()
+    used = np.unique(faces)
+    assert (np.delete(node, used) == -1).all() and (node[used] >= 0).all()
+    away = np.linalg.norm(nodes[node[used].astype(int)] - vertices[used], axis=1)
+    assert away.max() < 0.3 * diagonal(vertices)
+
+
+def test_full_skeletonize_wraps_by_itself():
+    vertices, faces = crossing()
+    layers = document((vertices, faces))
+    results = layers.apply_filter(FULL, target_length=pymeshlab.PercentageValue(1.5))
+    assert (results["components"], results["cycles"], results["terminals"]) == (1, 0, 4)
+    assert results["repaired"] == 2
+    node = layers.mesh(0).vertex_custom_scalar_attribute_array("mcfskel_node")
+    assert (node >= 0).all()
+
+
+def test_without_resampling_the_solid_is_a_layer():
+    vertices, faces = missing(0.03)
+    layers = document((vertices, faces))
+    layers.apply_filter(FULL, resample=False)
+    assert "mesh_0_solid" in labels(layers)
+
+
+def test_steps_start_from_the_solid():
+    vertices, faces = missing(0.03)
+    layers = document((vertices, faces))
+    results = layers.apply_filter(STEP, steps=2)
+    assert results["repaired"] == 1
+    assert labels(layers) == ["mesh_0", "mesh_0_solid", "mesh_0_meso_1", "mesh_0_meso_2"]
+    results = layers.apply_filter(STEP)
+    assert results["iterations"] == 3 and results["repaired"] == 0
+
+
+@pytest.mark.parametrize("name", [FULL, STEP, RESAMPLE])
+def test_off_refuses(name):
+    layers = document(missing(0.03))
+    before = fingerprint(layers)
+    assert "border edges" in failing(layers, name, repair="off")
+    assert fingerprint(layers) == before
+
+
+def test_mend_refuses_what_would_be_wrapped():
+    layers = document(missing(0.4))
+    assert "border edges" in failing(layers, FULL, repair="mend")
+
+
+@pytest.mark.parametrize("repair", ["auto", "mend", "off"])
+def test_a_sound_mesh_is_the_same_with_any_repair(repair):
+    reference, layers = document(arrays("torus")), document(arrays("torus"))
+    reference.apply_filter(FULL, repair="off", target_length=pymeshlab.PercentageValue(1.5))
+    results = layers.apply_filter(FULL, repair=repair, target_length=pymeshlab.PercentageValue(1.5))
+    assert results["repaired"] == 0
+    assert np.array_equal(layers.current_mesh().vertex_matrix(), reference.current_mesh().vertex_matrix())
+    assert np.array_equal(layers.current_mesh().edge_matrix(), reference.current_mesh().edge_matrix())

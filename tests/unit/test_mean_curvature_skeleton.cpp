@@ -303,8 +303,10 @@ TEST(MeanCurvatureSkeleton, CancelledOrRefusedLeavesBothMeshesAsTheyWere)
 		EXPECT_TRUE(unchanged());
 	}
 	fill(open, shapes::opened(soup));
-	EXPECT_THROW(MeanCurvatureSkeleton<DoubleMesh>::Do(open, skeleton), mcf::InvalidInput);
 	auto params = coarse<DoubleMesh>();
+	params.repair = mcf::Repair::Off;
+	EXPECT_THROW(MeanCurvatureSkeleton<DoubleMesh>::Do(open, skeleton, params), mcf::InvalidInput);
+	params = coarse<DoubleMesh>();
 	params.w_l = 0;
 	EXPECT_THROW(
 		MeanCurvatureSkeleton<DoubleMesh>::Do(mesh, skeleton, params), mcf::InvalidParameter);

@@ -271,7 +271,9 @@ TEST(Skeletonize, RefusesBadInput)
 	const shapes::Soup soup = shapes::capsule();
 	const auto defect = [](const shapes::Soup& bad) {
 		try {
-			run(bad, coarse());
+			Parameters parameters = coarse();
+			parameters.repair = Repair::Off;
+			run(bad, parameters);
 		}
 		catch (const InvalidInput& error) {
 			const std::string text = error.what();

@@ -49,9 +49,9 @@ namespace vcg::tri {
  * \endcode
  *
  * MeshType is any TriMesh with vertices and triangles, in float or double; it needs no adjacency, no
- * normals, and may have deleted elements. The mesh must bound a solid: closed, two-manifold, of any
- * number of components. Small defects are repaired in a copy: unreferenced and coincident vertices,
- * degenerate and duplicate faces, faces that are turned against their neighbours.
+ * normals, and may have deleted elements. The mesh should bound a solid: closed, two-manifold, of any
+ * number of components. What does not is repaired in a copy, as Params::repair says: see
+ * mcf::solidSurface().
  *
  * Computed in double whatever the scalar type; the same bits in each run and on any number of threads.
  *
@@ -103,6 +103,9 @@ public:
 		int max_iterations = 500;
 		/// Shrinking balls, or the Voronoi diagram, as in the paper: needs Qhull.
 		mcf::PoleMethod pole_method = mcf::PoleMethod::Balls;
+		/// A mesh that does not bound a solid: `Auto` mends small defects, and wraps the surface where that
+		/// is not enough; `Mend` does no more than the former; `Off` refuses it.
+		mcf::Repair repair = mcf::Repair::Auto;
 		/// Refine the curve: spurs, centring, smoothness, tips. Without, it is the paper's own.
 		bool refine = true;
 		/// Selected vertices of the surface stay where they are; the curve is then not refined.
@@ -298,8 +301,9 @@ private:
 		{
 			const mcf::TriangleSoup soup = mcf::readTriangles(surface, progress.part(0, 0.1));
 			mcf::CheckedSurface checked =
-				mcf::checkedSurface(mcf::roundedCoordinates(soup.points, progress.part(0.1, 0.2)),
-					soup.triangles, progress.part(0.2, 1));
+				mcf::solidSurface(mcf::roundedCoordinates(soup.points, progress.part(0.1, 0.2)),
+					soup.triangles, params.repair, progress.part(0.2, 1))
+					.surface;
 			mesh = std::make_shared<const mcf::SurfaceMesh>(std::move(checked.mesh));
 			vertexOfSlot.reserve(soup.pointOfSlot.size());
 			for (int point : soup.pointOfSlot)
@@ -356,6 +360,7 @@ private:
 		result.splitAngle = params.split_angle;
 		result.maxIterations = params.max_iterations;
 		result.poleMethod = params.pole_method;
+		result.repair = params.repair;
 		result.refine = params.refine;
 		result.keepSheets = params.keep_sheets;
 		result.sheetThreshold = params.sheet_threshold;

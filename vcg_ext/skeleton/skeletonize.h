@@ -18,6 +18,7 @@
 #include <skeleton/mesh/surface_rounding.h>
 #include <skeleton/poles/poles.h>
 #include <skeleton/refine/refine.h>
+#include <skeleton/repair/make_solid.h>
 #include <skeleton/resample/resampled_surface.h>
 #include <skeleton/sheets/collapse_with_sheets.h>
 #include <skeleton/spatial/transferred_nodes.h>
@@ -80,6 +81,8 @@ struct Skeletonization
 	NoiseReport noise;
 	/// Fraction of the components whose curve is refined; 0 if it was not asked for.
 	double refined = 0;
+	/// What was done to the triangles to make them those of a solid.
+	SolidReport solid;
 	PhaseSeconds seconds;
 
 	/// For each vertex of `surface` its node of the skeleton.
@@ -198,7 +201,8 @@ inline Skeletonization skeletonize(const SurfaceInput& input, const Parameters& 
 
 /**
  * Computes the skeleton of any triangle mesh: checks it as checkedSurface() does, in single precision
- * where that is enough, see SurfaceRounding, then as above.
+ * where that is enough, see SurfaceRounding, and makes it solid as parameters.repair says, see
+ * solidSurface(); then as above.
  * @param points    vertices, mesh units.
  * @param triangles corners as indices into `points`.
  * @throws as above; InvalidInput if they do not bound a solid.
@@ -210,8 +214,9 @@ inline Skeletonization skeletonize(const std::vector<Point3d>& points,
 {
 	parameters.check();
 	detail::PhaseClock clock(observer);
-	CheckedSurface checked = checkedSurface(
-		roundedCoordinates(points, progress.part(0, 0.002)), triangles, progress.part(0.002, 0.02));
+	SolidSurface solid = solidSurface(roundedCoordinates(points, progress.part(0, 0.002)),
+		triangles, parameters.repair, progress.part(0.002, 0.02));
+	CheckedSurface& checked = solid.surface;
 	if (observer.onNote)
 		for (const std::string& text : checked.notes)
 			observer.onNote(text);
@@ -221,6 +226,7 @@ inline Skeletonization skeletonize(const std::vector<Point3d>& points,
 	Skeletonization result =
 		skeletonize(input, parameters, progress.part(0.02, 1), observer, refinement);
 	result.seconds.check = seconds;
+	result.solid = std::move(solid.report);
 	std::vector<int> node;
 	node.reserve(checked.vertexOfInput.size());
 	for (int v : checked.vertexOfInput)

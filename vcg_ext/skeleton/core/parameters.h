@@ -69,6 +69,8 @@ struct Parameters
 	bool denoise = true;
 	/// Refine the curve at the end: see refine.h. Without, it is the paper's own.
 	bool refine = true;
+	/// For meshes that do not bound a solid.
+	Repair repair = Repair::Auto;
 
 	/// @throws InvalidParameter naming the first parameter that is out of its range.
 	void check() const
