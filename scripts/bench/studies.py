@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from curve import Curve, mean_distance, read_curve
+from damage import DAMAGES, damaged
 from meshes import read_mesh, subdivided, write_mesh
 from quality import Shape, measure
 
@@ -261,8 +262,31 @@ def nearest_on(points: np.ndarray, curve: Curve, together: int = 256) -> tuple[n
     return np.concatenate(gaps), np.concatenate(edges)
 
 
-STUDIES = {"known answers": known, "resolution": resolution, "noise": noise, "invariance": invariance,
-           "weights": weights, "trees": trees}
+def damage(bench: Bench, mesh: Path) -> str:
+    """The same surface damaged in known ways: repaired by default, compared with the skeleton of the sound one."""
+    points, triangles = read_mesh(mesh)
+    size = diagonal(points)
+    sound = bench.run(mesh)
+    rows = [[mesh.stem, "none", "sound", sound.graph(), "0", "-",
+             f"{sound.report['seconds']['check']['cpu']:.2f}"]]
+    for name in DAMAGES:
+        broken = write_mesh(bench.folder / "damaged.ply", *damaged(name, points, triangles))
+        try:
+            run = bench.run(broken)
+        except subprocess.CalledProcessError as error:
+            rows.append([mesh.stem, name, error.stderr.strip().splitlines()[-1], "-", "-", "-", "-"])
+            continue
+        rows.append([mesh.stem, name, ("sound", "mended", "wrapped")[run.report["repaired"]], run.graph(),
+                     apart(sound.curve, run.curve, size),
+                     f"{run.report['distance_mean']:.3f} / {run.report['distance_max']:.3f}",
+                     f"{run.report['seconds']['check']['cpu']:.2f}"])
+    return table(["mesh", "damage", "made solid", "components / cycles / tips / junctions",
+                  "from the sound one's, %", "solid from the input, mean / max %", "check and repair, s"],
+                 rows)
+
+
+STUDIES = {"known answers": known, "damage": damage, "resolution": resolution, "noise": noise,
+           "invariance": invariance, "weights": weights, "trees": trees}
 
 
 def study_table(name: str, program: Path, meshes: list[Path], folder: Path) -> str:
