@@ -16,6 +16,7 @@ from conftest import (COLLAPSE, FULL, MESHES, POLES, REFINE, RESAMPLE, STEP, are
                       fingerprint, labels, layer, opened, points, scalars, volume)
 
 COARSE = {"target_length": pymeshlab.PercentageValue(1.2)}
+REPAIR_NUMBERS = {"repaired", "distance_mean", "distance_max"}
 STAGE_NUMBERS = {"iterations", "converged", "volume_fraction", "area_fraction", "fixed_fraction",
                  "vertices", "faces"}
 CURVE_NUMBERS = {"skeleton_vertices", "skeleton_edges", "components", "cycles", "branches",
@@ -195,7 +196,8 @@ class TestStep:
         layers = opened("torus")
         surface = layers.mesh(0)
         results = layers.apply_filter(STEP)
-        assert set(results) == STAGE_NUMBERS
+        assert set(results) == STAGE_NUMBERS | REPAIR_NUMBERS
+        assert all(results[name] == 0 for name in REPAIR_NUMBERS)
         assert labels(layers) == ["torus.off", "torus_meso_1"]
         stage = layers.current_mesh()
         assert stage.label() == "torus_meso_1"
@@ -477,7 +479,8 @@ class TestFull:
 
     def test_numbers(self, torus_run):
         layers, results, _ = torus_run
-        assert set(results) == STAGE_NUMBERS | CURVE_NUMBERS | SECONDS | {"refined"}
+        assert set(results) == STAGE_NUMBERS | REPAIR_NUMBERS | CURVE_NUMBERS | SECONDS | {"refined"}
+        assert all(results[name] == 0 for name in REPAIR_NUMBERS)
         assert all(isinstance(value, (int, float)) for value in results.values())
         curve = layers.current_mesh()
         edges = curve.edge_matrix()
