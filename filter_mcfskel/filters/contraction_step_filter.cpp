@@ -48,12 +48,15 @@ Start startOf(FilterRun& run, const mcf::Parameters& parameters)
 				"is made with 'keep_sheets'.");
 		return start;
 	}
-	if (hasStageAttributes(run.layer()))
+	// What was closed and is not any more has lost faces in an edit: it is no shape to be repaired.
+	const bool wasStage = hasStageAttributes(run.layer());
+	const mcf::Repair repair = wasStage ? mcf::Repair::Off : readRepair(run.parameters);
+	if (wasStage)
 		run.log(
 			"This layer was a stage of the contraction, but its state is gone or its geometry was "
 			"changed: it is taken as a surface of its own.");
-	start.surface = surfaceWithPoles(
-		run, parameters.poleMethod, readRepair(run.parameters), run.progress.part(0, 0.08));
+	start.surface =
+		surfaceWithPoles(run, parameters.poleMethod, repair, run.progress.part(0, 0.08));
 	start.stage = std::make_shared<const mcf::Stage>(mcf::startOfFlow(*start.surface.surface.mesh,
 		*start.surface.poles, selectionToHold(run, start.surface.surface), parameters,
 		run.progress.part(0.08, 0.1), noteLog(run)));

@@ -5,6 +5,7 @@
 import hashlib
 import os
 import re
+import signal
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -22,6 +23,9 @@ sys.path.insert(0, str(ROOT / "tests"))
 from filter_names import COLLAPSE, FULL, POLES, REFINE, RESAMPLE, STEP  # noqa: E402, F401
 
 MESHES = ROOT / "meshes"
+
+# A shell's jobs in the background ignore Ctrl-C, and so would all that the tests start.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(scope="session", autouse=True)

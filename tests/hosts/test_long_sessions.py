@@ -100,7 +100,7 @@ class TestMemory:
         """,
         "errors": """
             def job():
-                failing(opened(F[1:]))
+                failing(opened(F[1:]), repair="off")
                 layers = opened()
                 failing(layers, "generate_meso_skeleton_mcf", w_l=0.0)
                 layers.apply_filter("generate_meso_skeleton_mcf")
@@ -188,7 +188,7 @@ class TestAfterErrors:
             errors, lengths = 0, set()
             for i in range(100):
                 layers = opened(F[1:], verbose={verbose})
-                errors += failing(layers)
+                errors += failing(layers, repair="off")
                 del layers
                 gc.collect()
                 junk = [bytearray(b"\\xff" * size) for size in range(200, 4000, 50)]
@@ -232,7 +232,7 @@ class TestAfterErrors:
     def test_messages_are_still_printed(self, plugin, tmp_path):
         """Of a document that prints them, after others have failed."""
         script = PRELUDE + textwrap.dedent("""
-            failing(opened(F[1:]))
+            failing(opened(F[1:]), repair="off")
             opened(verbose=True).apply_filter("compute_medial_poles_mcf")
         """)
         done = subprocess.run([sys.executable, "-c", script, str(plugin), str(MESHES)],
@@ -245,8 +245,8 @@ class TestAfterErrors:
         """What it writes itself, after two filters of one document have failed."""
         script = PRELUDE + textwrap.dedent("""
             layers = opened(F[1:])
-            failing(layers)
-            failing(layers, "generate_meso_skeleton_mcf")
+            failing(layers, repair="off")
+            failing(layers, "generate_meso_skeleton_mcf", repair="off")
             layers.print_status()
         """)
         done = subprocess.run([sys.executable, "-c", script, str(plugin), str(MESHES)],
@@ -264,7 +264,7 @@ class TestThreads:
             def work(number):
                 for i in range(12):
                     if (i + number) % 3 == 0:
-                        errors.append(failing(opened(F[1:])))
+                        errors.append(failing(opened(F[1:]), repair="off"))
                     else:
                         numbers = opened().apply_filter("generate_curve_skeleton_mcf", **SHORT)
                         lengths.append(numbers["skeleton_length"])

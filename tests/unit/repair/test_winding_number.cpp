@@ -4,7 +4,7 @@
 #include "shapes.h"
 
 #include <skeleton/repair/overlap.h>
-#include <skeleton/repair/triangle_tree.h>
+#include <skeleton/spatial/triangle_tree.h>
 #include <skeleton/repair/winding_number.h>
 
 #include <gtest/gtest.h>

@@ -73,9 +73,27 @@ struct FlowSurface
 	std::vector<double> epsilonLimit;
 };
 
+/// How often the flow would cut the edges of a surface that are longer than epsilonOfField of the field.
+/// Complexity: O(E).
+inline double cutsByField(const SurfaceMesh& mesh, const SizingField& field)
+{
+	double cuts = 0;
+	for (int h = 0; h < mesh.halfEdgeSlots(); ++h) {
+		if (!mesh.isEdge(h))
+			continue;
+		const double length =
+			epsilonOfField * std::min(field[mesh.origin(h)], field[mesh.target(h)]);
+		if (const double squared = mesh.squaredLength(h); squared > length * length)
+			cuts += std::sqrt(squared) / length;
+	}
+	return cuts;
+}
+
 /**
  * Stage::epsilonLimit for each vertex of a surface: epsilonOfField of the sizing field, at most
- * Parameters::maxEpsilon.
+ * Parameters::maxEpsilon. Where edges are much longer than the shape is thick, as on a needle, the shape does
+ * not change from one thickness to the next: the field is no smaller than what cuts edges a hundred times as
+ * often as there are vertices.
  * @param poles of all vertices.
  * @return empty where epsilon is small enough everywhere, and without parameters.adaptive.
  * @throws Cancelled. Complexity: as sizingField().
@@ -89,8 +107,14 @@ inline std::vector<double> epsilonLimits(const MeasuredSurface& surface, const P
 	std::vector<double> bound;
 	for (double diagonal : surface.diagonals())
 		bound.push_back(parameters.epsilon / epsilonOfField * diagonal);
-	const SizingField field =
-		sizingField(surface, poles, parameters.relativeLength, bound, progress);
+	SizingField field = sizingField(surface, poles, parameters.relativeLength, bound, progress);
+	constexpr double cutsOfVertex = 100;
+	const double most = cutsOfVertex * surface.mesh().vertexCount();
+	const auto cuts = [&](const SizingField& raised) {
+		return cutsByField(surface.mesh(), raised);
+	};
+	if (!field.empty() && cuts(field) > most)
+		raiseToCost(field, *std::max_element(bound.begin(), bound.end()), most, cuts);
 	limits.reserve(field.size());
 	for (size_t v = 0; v < field.size(); ++v)
 		limits.push_back(

@@ -38,6 +38,10 @@ using SizingField = std::vector<double>;
 /// of the default resampling, epsilon, the spacing of the refined curve. Below, all of them shrink with it.
 constexpr double neutralLength = 0.0045;
 
+/// No part of the sizing field is shorter, of the component's diagonal: what is thinner is not resolved, since a
+/// needle a million times as long as thick would need more vertices than any machine holds.
+constexpr double shortestLength = 3e-5;
+
 /// Epsilon is at most this part of the sizing field.
 constexpr double epsilonOfField = 4.0 / 9;
 
@@ -174,7 +178,8 @@ private:
  * The local thickness at a vertex is the radius of the maximal inner balls around; balls that only sharp
  * edges, corners and bumps of the surface hold do not count, see detail::isThin() and
  * detail::OppositeSides, unless the shape is as thin next to them. A component is left alone that is nowhere
- * thinner than its lengths would be anyway, the smaller of `bound` and neutralLength of its diagonal.
+ * thinner than its lengths would be anyway, the smaller of `bound` and neutralLength of its diagonal. The field
+ * is at least shortestLength of the diagonal.
  *
  * @param poles          of all vertices.
  * @param relativeLength longest edge in local thicknesses, > 0. An even mesh has 2 pi / relativeLength
@@ -212,6 +217,8 @@ inline SizingField sizingField(const MeasuredSurface& surface, const PoleSet& po
 	SizingField field;
 	if (seeds.empty())
 		return field;
+	for (auto& [length, v] : seeds)
+		length = std::max(length, shortestLength * surface.diagonal(component[v]));
 	const detail::OppositeSides opposite(mesh, poles, progress.part(0.6, 0.7));
 	std::vector<double> least(bound.size(), infinity);
 	const auto forget = [&](const auto& isNone) {
@@ -253,6 +260,34 @@ inline SizingField sizingField(const MeasuredSurface& surface, const PoleSet& po
 	}
 	progress.report(1, detail::sizing);
 	return field;
+}
+
+/**
+ * A field that is no smaller than it has to be for a mesh, or its edges, to cost no more than what is given:
+ * max(field, b) for the smallest b with cost(max(field, b)) <= most, to 40 halvings of its logarithm.
+ * @param field   finite somewhere. @param high an upper bound of b, mesh units.
+ * @param cost    double(SizingField): falls where the field grows; cost(field) > most.
+ * @return b. Complexity: 40 costs.
+ */
+template <class Cost>
+double raiseToCost(SizingField& field, double high, double most, Cost&& cost)
+{
+	constexpr int halvings = 40;
+	double low = *std::min_element(field.begin(), field.end());
+	high = std::max(low, high);
+	SizingField raised = field;
+	const auto raiseTo = [&](double least) {
+		for (size_t v = 0; v < field.size(); ++v)
+			raised[v] = std::max(field[v], least);
+	};
+	for (int i = 0; i < halvings && low < high; ++i) {
+		const double middle = std::sqrt(low * high);
+		raiseTo(middle);
+		(cost(raised) > most ? low : high) = middle;
+	}
+	raiseTo(high);
+	field.swap(raised);
+	return high;
 }
 
 } // namespace vcg::tri::mcf

@@ -316,26 +316,42 @@ inline void addTo(RefineReport& report, Defect defect)
 }
 
 /**
- * Refines the skeleton of one component and checks the result.
+ * Refines the skeleton of one component and checks the result. What leaves the surface or grows too long is
+ * tried again with closest points of which none is missed: where the shape is thinner than the samples of
+ * its surface are apart, the fast ones take the wrong wall. Not if the curve has more than 10000 nodes: that
+ * would take minutes.
  * @param refined  the unrefined curve; the refined one if there is no defect, else unchanged.
  */
-inline Defect refineChecked(CurveSkeleton& refined, const ClosestSurface& surface,
+inline Defect refineChecked(CurveSkeleton& refined, ClosestSurface& surface,
 	const SurfaceComponent& component, const LocalScale& scale, const RefineParameters& parameters,
 	const Progress& progress)
 {
+	constexpr size_t mostNodesOfSecond = 10000;
+	const CurveSkeleton unrefined = refined;
 	const InsideCheck inside(surface, component);
-	try {
-		CurveSkeleton curve =
-			refineComponent(refined, surface, component, scale, parameters, progress);
-		const Defect defect = defectOf(curve, refined,
-			parameters.spacing * scale.least(component.vertices), inside, progress.part(1, 1));
-		if (defect == Defect::None)
-			refined = std::move(curve);
-		return defect;
-	}
-	catch (const SolverError&) {
-		return Defect::NotFinite;
-	}
+	const double spacing = parameters.spacing * scale.least(component.vertices);
+	size_t nodes = 0;
+	const auto attempt = [&](double from, double to) {
+		try {
+			CurveSkeleton curve = refineComponent(
+				unrefined, surface, component, scale, parameters, progress.part(from, to));
+			nodes = curve.position.size();
+			const Defect defect =
+				defectOf(curve, unrefined, spacing, inside, progress.part(to, to));
+			if (defect == Defect::None)
+				refined = std::move(curve);
+			return defect;
+		}
+		catch (const SolverError&) {
+			return Defect::NotFinite;
+		}
+	};
+	constexpr double usual = 0.9; // of the time: few shapes need the second attempt
+	const Defect first = attempt(0, usual);
+	if ((first != Defect::Outside && first != Defect::TooLong) || nodes > mostNodesOfSecond)
+		return first;
+	surface.makeExact();
+	return attempt(usual, 1);
 }
 
 } // namespace refining
@@ -433,8 +449,7 @@ inline Refinement refineChecked(const CurveSkeleton& curve, const SurfaceMesh& s
 			part.edges.push_back({number[curve.edges[e][0]], number[curve.edges[e][1]]});
 		const Progress ofComponent =
 			progress.part(0.03 + 0.97 * c / components, 0.03 + 0.97 * (c + 1) / components);
-		const ClosestSurface closest(
-			unit, vertices.ids[c], sampleSpacing, ofComponent.part(0, 0.1));
+		ClosestSurface closest(unit, vertices.ids[c], sampleSpacing, ofComponent.part(0, 0.1));
 		const refining::SurfaceComponent own = {unit, vertices.ids[c], vertices.place};
 		const refining::Defect defect = refining::refineChecked(part, closest, own,
 			isThin(c) ? scale : refining::sameEverywhere, parameters, ofComponent.part(0.1, 0.95));

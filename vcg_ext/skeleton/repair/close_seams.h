@@ -7,11 +7,10 @@
 #ifndef VCG_MCF_CLOSE_SEAMS_H
 #define VCG_MCF_CLOSE_SEAMS_H
 
-#include "triangle_tree.h"
-
 #include <skeleton/core/progress.h>
 #include <skeleton/input/soup_repair.h>
 #include <skeleton/mesh/surface_mesh.h>
+#include <skeleton/spatial/triangle_tree.h>
 
 #include <algorithm>
 #include <array>

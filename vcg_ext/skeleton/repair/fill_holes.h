@@ -8,10 +8,10 @@
 #define VCG_MCF_FILL_HOLES_H
 
 #include "part_surface.h"
-#include "triangle_tree.h"
 
 #include <skeleton/core/progress.h>
 #include <skeleton/mesh/surface_mesh.h>
+#include <skeleton/spatial/triangle_tree.h>
 
 #include <vcg/space/intersection/triangle_triangle3.h>
 

@@ -9,7 +9,6 @@
 
 #include "mend.h"
 #include "overlap.h"
-#include "triangle_tree.h"
 #include "winding_number.h"
 #include "wrap.h"
 
@@ -21,6 +20,7 @@
 #include <skeleton/mesh/surface_rounding.h>
 #include <skeleton/spatial/nearest_points.h>
 #include <skeleton/spatial/transferred_nodes.h>
+#include <skeleton/spatial/triangle_tree.h>
 
 #include <algorithm>
 #include <cmath>

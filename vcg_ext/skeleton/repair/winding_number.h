@@ -8,10 +8,9 @@
 #ifndef VCG_MCF_WINDING_NUMBER_H
 #define VCG_MCF_WINDING_NUMBER_H
 
-#include "triangle_tree.h"
-
 #include <skeleton/core/progress.h>
 #include <skeleton/mesh/surface_mesh.h>
+#include <skeleton/spatial/triangle_tree.h>
 
 #include <Eigen/Core>
 

@@ -8,7 +8,6 @@
 #define VCG_MCF_WRAP_H
 
 #include "tetrahedral_lattice.h"
-#include "triangle_tree.h"
 #include "winding_number.h"
 
 #include <skeleton/core/errors.h>
@@ -16,6 +15,7 @@
 #include <skeleton/core/progress.h>
 #include <skeleton/core/ticker.h>
 #include <skeleton/mesh/surface_mesh.h>
+#include <skeleton/spatial/triangle_tree.h>
 
 #include <vcg/space/box3.h>
 

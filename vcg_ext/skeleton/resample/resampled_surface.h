@@ -73,23 +73,12 @@ inline SizingField fieldOfResampling(const MeasuredSurface& surface,
 	const double most =
 		std::max(maxVertices, 1.01 * expectedVertices(surface, length, SizingField()));
 	if (expected > most) {
-		constexpr int halvings = 40;
-		double low = *std::min_element(field.begin(), field.end());
-		double high = *std::max_element(length.begin(), length.end());
-		const auto atLeast = [&](double least) {
-			SizingField raised = field;
-			for (double& at : raised)
-				at = std::max(at, least);
-			return raised;
-		};
-		for (int i = 0; i < halvings; ++i) {
-			const double middle = std::sqrt(low * high);
-			(expectedVertices(surface, length, atLeast(middle)) > most ? low : high) = middle;
-		}
-		field = atLeast(high);
+		const double least = raiseToCost(field, *std::max_element(length.begin(), length.end()),
+			most,
+			[&](const SizingField& raised) { return expectedVertices(surface, length, raised); });
 		if (onNote)
 			onNote(detail::sentence(3, "To resolve all of the shape would take ", expected / 1e6,
-				" million vertices: parts with a radius below ", high / parameters.relativeLength,
+				" million vertices: parts with a radius below ", least / parameters.relativeLength,
 				" mesh units may be left out or simplified."));
 	}
 	else if (onNote)

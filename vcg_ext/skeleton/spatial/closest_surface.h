@@ -9,6 +9,7 @@
 
 #include "maximal_ball.h"
 #include "point_tree.h"
+#include "triangle_tree.h"
 
 #include <skeleton/core/progress.h>
 #include <skeleton/core/ticker.h>
@@ -17,6 +18,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
+#include <optional>
 #include <vector>
 
 namespace vcg::tri::mcf {
@@ -81,6 +84,8 @@ public:
 	/// The same from what closestFrom() has found.
 	Hit closest(const Point3d& query, const Hit& first) const
 	{
+		if (alwaysExact)
+			return exactFrom(query, first);
 		Nearest nearest {query, -1, first.distance};
 		tree.search(nearest);
 		if (nearest.slot < 0)
@@ -90,19 +95,18 @@ public:
 	}
 	Hit closest(const Point3d& query) const
 	{
-		return closestFrom(query, faceOfSample[tree.nearest(query)]);
+		return alwaysExact ? closestExactly(query) : closestNearSample(query);
 	}
 
-	/**
-	 * The closest point, none missed, however thin the shape is: all triangles are looked at of which a
-	 * sample is near enough for them to come closer. Five to ten times slower than closest().
-	 */
+	/// The closest point, none missed, however thin the shape is: by a tree of the triangles, which the
+	/// first such query makes. Slower than closest().
 	Hit closestExactly(const Point3d& query) const
 	{
-		NearTriangles near {*this, query, closest(query)};
-		tree.search(near);
-		return near.best;
+		return exactFrom(query, closestNearSample(query));
 	}
+
+	/// From now on closest() is closestExactly(), whatever asks for it.
+	void makeExact() { alwaysExact = true; }
 
 	/// A lower bound of the distance to the surface, on whichever side: as far as no sample is, less what
 	/// triangles reach beyond their samples. Cheap, and near the surface 0.
@@ -217,54 +221,25 @@ private:
 		}
 	};
 
-	/// A search region: all samples whose triangles may come nearer than the best point so far.
-	struct NearTriangles
-	{
-		const ClosestSurface& samples;
-		Point3d query;
-		Hit best;
-
-		const Point3d& centre() const { return query; }
-		double reach() const { return best.distance + samples.covering; }
-		void visit(int slot, const Point3d& p)
-		{
-			if (Distance(query, p) > reach())
-				return;
-			const SurfaceMesh& surface = samples.surface;
-			const int sample = samples.tree.order()[slot];
-			const int face = samples.faceOfSample[sample];
-			if (sample >= samples.vertexCount) {
-				lookAt(face);
-				return;
-			}
-			for (int h = 3 * face; h < 3 * face + 3; ++h)
-				if (surface.position[surface.origin(h)] == p)
-					surface.forEachOutgoing(surface.origin(h), [&](int out) { lookAt(out / 3); });
-		}
-
-	private:
-		void lookAt(int face)
-		{
-			const SurfaceMesh& surface = samples.surface;
-			const detail::TrianglePoint on =
-				detail::closestOnTriangle(surface.position[surface.origin(3 * face)],
-					surface.position[surface.origin(3 * face + 1)],
-					surface.position[surface.origin(3 * face + 2)], query);
-			const double distance = std::sqrt(on.squaredDistance);
-			if (distance < best.distance)
-				best = {on.point, distance, face};
-		}
-	};
-
 	static constexpr const char* sorting = "Sorting the surface";
 
 	const SurfaceMesh& surface;
 	int vertexCount; ///< the first samples are the vertices
 	std::vector<int> faceOfSample;
+	std::vector<int> faces;
 	/// No point of a triangle is farther than this from the nearest of the triangle's own samples.
 	double covering = 0;
 	PointTree tree;
 	Box3d box;
+	bool alwaysExact = false;
+	/// What only exact queries need; made by the first.
+	struct Triangles
+	{
+		std::vector<Triangle> corners;
+		std::optional<TriangleTree> tree;
+	};
+	mutable Triangles triangles;
+	mutable std::once_flag trianglesOnce;
 
 	std::vector<Point3d> samples(
 		const std::vector<int>& vertices, double spacing, const Progress& progress)
@@ -279,8 +254,10 @@ private:
 		});
 		detail::reportedLoop(count, progress.part(0.3, 1), sorting, [&](int i) {
 			surface.forEachOutgoing(vertices[i], [&](int h) {
-				if (h % 3 == 0) // each face once
-					sampleInside(h / 3, spacing, points);
+				if (h % 3 != 0) // each face once
+					return;
+				faces.push_back(h / 3);
+				sampleInside(h / 3, spacing, points);
 			});
 		});
 		return points;
@@ -312,6 +289,24 @@ private:
 				faceOfSample.push_back(face);
 			}
 		}
+	}
+
+	Hit closestNearSample(const Point3d& query) const
+	{
+		return closestFrom(query, faceOfSample[tree.nearest(query)]);
+	}
+
+	Hit exactFrom(const Point3d& query, const Hit& first) const
+	{
+		std::call_once(trianglesOnce, [&] {
+			triangles.corners.reserve(faces.size());
+			for (int face : faces)
+				triangles.corners.push_back(surface.triangle(face));
+			triangles.tree.emplace(surface.position, triangles.corners);
+		});
+		const TriangleTree::Closest found = triangles.tree->closest(query, first.distance);
+		return found.face < 0 ? first
+							  : Hit {found.point, found.distance, faces[size_t(found.face)]};
 	}
 
 	double signedDistance(const Point3d& query, const Hit& hit) const

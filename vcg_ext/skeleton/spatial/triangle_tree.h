@@ -132,49 +132,34 @@ public:
 	{
 		constexpr double rounding = 1e-9; // a segment through an edge must hit one of its triangles
 		const Point3d step = q - p;
-		Box3d segment;
-		segment.Add(p);
-		segment.Add(q);
-		forEachFaceIn(segment, [&](int f) {
-			const Point3d& a = corner(f, 0);
-			const Point3d e1 = corner(f, 1) - a, e2 = corner(f, 2) - a;
-			const Point3d across = step ^ e2;
-			const double determinant = e1 * across;
-			if (determinant == 0)
-				return;
-			const Point3d from = p - a;
-			const double u = (from * across) / determinant;
-			const Point3d aside = from ^ e1;
-			const double w = (step * aside) / determinant;
-			const double t = (e2 * aside) / determinant;
-			if (u >= -rounding && w >= -rounding && u + w <= 1 + rounding && t >= 0 && t <= 1)
-				visit(f, t, determinant < 0);
-		});
+		const Segment segment(p, step);
+		forEachLeaf([&](const Box3d& box) { return segment.meets(box); },
+			[&](int f) {
+				const Point3d& a = corner(f, 0);
+				const Point3d e1 = corner(f, 1) - a, e2 = corner(f, 2) - a;
+				const Point3d across = step ^ e2;
+				const double determinant = e1 * across;
+				if (determinant == 0)
+					return;
+				const Point3d from = p - a;
+				const double u = (from * across) / determinant;
+				const Point3d aside = from ^ e1;
+				const double w = (step * aside) / determinant;
+				const double t = (e2 * aside) / determinant;
+				if (u >= -rounding && w >= -rounding && u + w <= 1 + rounding && t >= 0 && t <= 1)
+					visit(f, t, determinant < 0);
+			});
 	}
 
-	/// Calls visit(face) for each triangle whose box meets a box.
+	/// Calls visit(face) for each triangle whose box meets a box, be it in their sides alone.
 	template <class Visit>
 	void forEachFaceIn(const Box3d& box, const Visit& visit) const
 	{
-		if (nodes.empty())
-			return;
-		std::array<int, 128> stack;
-		int top = 0;
-		stack[size_t(top++)] = 0;
-		while (top > 0) {
-			const int at = stack[size_t(--top)];
-			const Node& node = nodes[size_t(at)];
-			if (!node.box.Collide(box))
-				continue;
-			if (node.isLeaf()) {
-				for (int i = node.begin; i < node.end; ++i)
-					if (boxOf(ids[size_t(i)]).Collide(box))
-						visit(ids[size_t(i)]);
-				continue;
-			}
-			stack[size_t(top++)] = node.right;
-			stack[size_t(top++)] = at + 1;
-		}
+		forEachLeaf([&](const Box3d& own) { return meet(own, box); },
+			[&](int f) {
+				if (meet(boxOf(f), box))
+					visit(f);
+			});
 	}
 
 	Box3d boxOf(int f) const
@@ -193,6 +178,69 @@ private:
 	const std::vector<Triangle>& triangles;
 	std::vector<int> ids;
 	std::vector<Node> nodes;
+
+	static bool meet(const Box3d& a, const Box3d& b)
+	{
+		for (int k = 0; k < 3; ++k)
+			if (a.min[k] > b.max[k] || b.min[k] > a.max[k])
+				return false;
+		return true;
+	}
+
+	/// The segment p + t step, t in [0, 1], against boxes.
+	class Segment
+	{
+	public:
+		Segment(const Point3d& p, const Point3d& step) : p(p), step(step) {}
+
+		/// Whether they meet, to a rounding in favour of meeting.
+		bool meets(const Box3d& box) const
+		{
+			constexpr double margin = 1e-9; // as far as a crossing may be beyond its triangle
+			double first = -margin, last = 1 + margin;
+			for (int k = 0; k < 3; ++k) {
+				const double beyond =
+					margin * (box.max[k] - box.min[k]) + margin * std::abs(step[k]);
+				const double low = box.min[k] - beyond - p[k], high = box.max[k] + beyond - p[k];
+				if (step[k] == 0) {
+					if (low > 0 || high < 0)
+						return false;
+					continue;
+				}
+				const double a = low / step[k], b = high / step[k];
+				first = std::max(first, std::min(a, b));
+				last = std::min(last, std::max(a, b));
+			}
+			return first <= last;
+		}
+
+	private:
+		Point3d p, step;
+	};
+
+	/// Calls visit(face) for each triangle of the leaves down to which isNear(box) holds.
+	template <class IsNear, class Visit>
+	void forEachLeaf(const IsNear& isNear, const Visit& visit) const
+	{
+		if (nodes.empty())
+			return;
+		std::array<int, 128> stack;
+		int top = 0;
+		stack[size_t(top++)] = 0;
+		while (top > 0) {
+			const int at = stack[size_t(--top)];
+			const Node& node = nodes[size_t(at)];
+			if (!isNear(node.box))
+				continue;
+			if (node.isLeaf()) {
+				for (int i = node.begin; i < node.end; ++i)
+					visit(ids[size_t(i)]);
+				continue;
+			}
+			stack[size_t(top++)] = node.right;
+			stack[size_t(top++)] = at + 1;
+		}
+	}
 
 	static double squaredDistance(const Box3d& box, const Point3d& p)
 	{
