@@ -158,6 +158,27 @@ TEST(Mend, DropsAFin)
 	EXPECT_NEAR(enclosedVolume(surface), enclosedVolume(mended(shapes::sphere(3))), 1e-12);
 }
 
+/// An opened ball, and so many small ones beside it.
+shapes::Soup withBalls(int count, double radius)
+{
+	shapes::Soup soup = shapes::opened(shapes::sphere(3));
+	const shapes::Soup ball = shapes::scaled(shapes::sphere(1), radius);
+	for (int i = 0; i < count; ++i)
+		soup = shapes::joined({soup, shapes::moved(ball, {2, 0.04 * (i % 30), 0.04 * (i / 30)})});
+	return soup;
+}
+
+TEST(Mend, DropsClosedSpecksBesideABodyUnlessTheyAreTheSurface)
+{
+	const MendedSurface few = mended(withBalls(6, 0.009));
+	expectMended(few, {}, 1, 2);
+	EXPECT_EQ(few.report.piecesDropped, 6);
+	expectMended(mended(withBalls(6, 0.015)), {}, 7, 14);
+	const MendedSurface many = mended(withBalls(800, 0.009));
+	expectMended(many, {}, 801, 2 * 801);
+	EXPECT_EQ(many.report.piecesDropped, 0);
+}
+
 TEST(Mend, UnitesBoxesWithACommonWall)
 {
 	const shapes::Soup soup =

@@ -37,7 +37,7 @@ struct MendReport
 	int edgesParted = 0;     ///< with more than two faces
 	int verticesParted = 0;  ///< at which separate fans of faces met
 	int facesTurned = 0;     ///< against their neighbours
-	int piecesDropped = 0;   ///< open specks, and closed pieces without volume
+	int piecesDropped = 0;   ///< specks, and closed pieces without volume
 	int holesClosed = 0;
 	int holesLeft = 0; ///< too large, or not to be filled without crossing the surface
 	bool oneSided = false;
@@ -99,21 +99,24 @@ inline int removeBackToBack(std::vector<Triangle>& triangles)
 	return dropped;
 }
 
-/// Drops open pieces that are specks, unless the surface is made of them, and closed ones without volume.
+/// Drops open pieces that are small in area and closed ones that are small in size, unless the surface is made of
+/// them, and closed ones without volume.
 inline int dropSpecks(
 	const std::vector<Point3d>& points, std::vector<Triangle>& triangles, std::vector<int>& partner)
 {
-	constexpr double speck = 0.002;  // of the whole area
-	constexpr double mostAll = 0.05; // of the whole area: beyond, they are the surface
-	constexpr double flat = 1e-10;   // volume over area^1.5
+	constexpr double speck = 0.002;   // of the whole area
+	constexpr double smallest = 0.01; // diagonal, of that of the largest piece
+	constexpr double mostAll = 0.05;  // of the whole area: beyond, they are the surface
+	constexpr double flat = 1e-10;    // volume over area^1.5
 	const std::vector<int> piece = pieceOfFaces(partner);
 	struct Piece
 	{
 		double area = 0, volume = 0;
 		bool open = false;
+		Box3d box;
 	};
 	std::map<int, Piece> pieces;
-	double whole = 0;
+	double whole = 0, largest = 0;
 	const Point3d origin = points[size_t(triangles[0][0])];
 	for (size_t f = 0; f < triangles.size(); ++f) {
 		const Triangle& t = triangles[f];
@@ -124,18 +127,24 @@ inline int dropSpecks(
 		p.area += area;
 		whole += area;
 		p.volume += a * (b ^ c) / 6;
-		for (size_t k = 0; k < 3; ++k)
+		for (size_t k = 0; k < 3; ++k) {
 			p.open |= partner[3 * f + k] < 0;
+			p.box.Add(points[size_t(t[k])]);
+		}
+		largest = std::max(largest, p.box.Diag());
 	}
+	const auto isSpeck = [&](const Piece& p) {
+		return p.open ? p.area <= speck * whole : p.box.Diag() <= smallest * largest;
+	};
 	double specks = 0;
 	for (const auto& [first, p] : pieces)
-		if (p.open && p.area <= speck * whole)
+		if (isSpeck(p))
 			specks += p.area;
 	std::vector<char> drop(triangles.size(), 0);
 	int dropped = 0;
 	for (const auto& [first, p] : pieces)
-		if (p.open ? p.area <= speck * whole && specks <= mostAll * whole
-				   : std::abs(p.volume) <= flat * std::pow(p.area, 1.5)) {
+		if ((isSpeck(p) && specks <= mostAll * whole)
+			|| (!p.open && std::abs(p.volume) <= flat * std::pow(p.area, 1.5))) {
 			drop[size_t(first)] = 1;
 			++dropped;
 		}
