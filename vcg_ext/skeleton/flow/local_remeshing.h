@@ -339,9 +339,12 @@ inline void splitWideAngles(Stage& stage, const Parameters& parameters, MergeFor
 		stage.poleRadius.push_back(
 			sheet ? stage.poleRadius[a] * (1 - t) + stage.poleRadius[b] * t : -1);
 		stage.sheet.push_back(sheet);
-		if (!stage.epsilonLimit.empty())
+		if (!stage.epsilonLimit.empty()) {
+			// Rounding must not lead out of the range.
+			const double ofA = stage.epsilonLimit[a], ofB = stage.epsilonLimit[b];
 			stage.epsilonLimit.push_back(
-				stage.epsilonLimit[a] * (1 - t) + stage.epsilonLimit[b] * t);
+				std::clamp(ofA * (1 - t) + ofB * t, std::min(ofA, ofB), std::max(ofA, ofB)));
+		}
 		stage.fixed.push_back(held);
 		stage.held.push_back(held);
 		stage.component.push_back(stage.component[a]);

@@ -59,6 +59,13 @@ public:
 		return least;
 	}
 
+	/// Makes it no smaller than `least` at some vertices. @param vertices as above.
+	void raise(const std::vector<int>& vertices, double least)
+	{
+		for (int v : vertices)
+			ofVertex[v] = std::max(ofVertex[v], least);
+	}
+
 private:
 	const SurfaceMesh* surface = nullptr;
 	std::vector<double> ofVertex;

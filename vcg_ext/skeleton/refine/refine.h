@@ -303,6 +303,40 @@ inline std::vector<double> scaleOfVertices(const SurfaceMesh& surface,
 	return scale;
 }
 
+/**
+ * The smallest scale with which a curve has no more than 1500 nodes for each diagonal of its length and one
+ * besides: where it is thin all along, as in a needle, it needs no node every half radius.
+ * Complexity: O(E log V).
+ */
+inline double leastScale(const CurveSkeleton& curve, const ClosestSurface& closest,
+	const LocalScale& scale, double spacing)
+{
+	constexpr double nodesOfDiagonal = 1500;
+	constexpr int halvings = 30;
+	std::vector<std::pair<double, double>> pieces; // length, scale
+	double length = 0;
+	for (const auto& [a, b] : curve.edges) {
+		const Point3d &from = curve.position[a], &to = curve.position[b];
+		pieces.emplace_back(Distance(from, to), scale.at((from + to) / 2, closest));
+		length += pieces.back().first;
+	}
+	const auto nodes = [&](double least) {
+		double sum = 0;
+		for (const auto& [piece, own] : pieces)
+			sum += piece / (spacing * std::max(own, least));
+		return sum;
+	};
+	const double most = nodesOfDiagonal * (1 + length);
+	if (nodes(0) <= most)
+		return 0;
+	double low = 0, high = 1;
+	for (int i = 0; i < halvings; ++i) {
+		const double middle = (low + high) / 2;
+		(nodes(middle) > most ? low : high) = middle;
+	}
+	return high;
+}
+
 inline void addTo(RefineReport& report, Defect defect)
 {
 	++report.components;
@@ -316,28 +350,30 @@ inline void addTo(RefineReport& report, Defect defect)
 }
 
 /**
- * Refines the skeleton of one component and checks the result. What leaves the surface or grows too long is
- * tried again with closest points of which none is missed: where the shape is thinner than the samples of
- * its surface are apart, the fast ones take the wrong wall. Not if the curve has more than 10000 nodes: that
- * would take minutes.
+ * Refines the skeleton of one component and checks the result. What fails with lengths that follow the local
+ * thickness is tried again with the same everywhere; what then leaves the surface or grows too long, with
+ * closest points of which none is missed: where the shape is thinner than the samples of its surface are
+ * apart, the fast ones take the wrong wall. Not if the curve has more than 10000 nodes: that would take
+ * minutes.
  * @param refined  the unrefined curve; the refined one if there is no defect, else unchanged.
  */
 inline Defect refineChecked(CurveSkeleton& refined, ClosestSurface& surface,
 	const SurfaceComponent& component, const LocalScale& scale, const RefineParameters& parameters,
 	const Progress& progress)
 {
-	constexpr size_t mostNodesOfSecond = 10000;
+	constexpr size_t mostNodesOfExact = 10000;
+	constexpr double usual = 0.8,
+					 second = 0.9; // of the time: few shapes need more than one attempt
 	const CurveSkeleton unrefined = refined;
 	const InsideCheck inside(surface, component);
-	const double spacing = parameters.spacing * scale.least(component.vertices);
 	size_t nodes = 0;
-	const auto attempt = [&](double from, double to) {
+	const auto attempt = [&](const LocalScale& own, double from, double to) {
 		try {
 			CurveSkeleton curve = refineComponent(
-				unrefined, surface, component, scale, parameters, progress.part(from, to));
+				unrefined, surface, component, own, parameters, progress.part(from, to));
 			nodes = curve.position.size();
-			const Defect defect =
-				defectOf(curve, unrefined, spacing, inside, progress.part(to, to));
+			const Defect defect = defectOf(curve, unrefined,
+				parameters.spacing * own.least(component.vertices), inside, progress.part(to, to));
 			if (defect == Defect::None)
 				refined = std::move(curve);
 			return defect;
@@ -346,12 +382,14 @@ inline Defect refineChecked(CurveSkeleton& refined, ClosestSurface& surface,
 			return Defect::NotFinite;
 		}
 	};
-	constexpr double usual = 0.9; // of the time: few shapes need the second attempt
-	const Defect first = attempt(0, usual);
-	if ((first != Defect::Outside && first != Defect::TooLong) || nodes > mostNodesOfSecond)
-		return first;
-	surface.makeExact();
-	return attempt(usual, 1);
+	Defect defect = attempt(scale, 0, usual);
+	if (defect != Defect::None && !scale.isUniform())
+		defect = attempt(sameEverywhere, usual, second);
+	if ((defect == Defect::Outside || defect == Defect::TooLong) && nodes <= mostNodesOfExact) {
+		surface.makeExact();
+		defect = attempt(sameEverywhere, second, 1);
+	}
+	return defect;
 }
 
 } // namespace refining
@@ -431,7 +469,7 @@ inline Refinement refineChecked(const CurveSkeleton& curve, const SurfaceMesh& s
 	std::vector<std::pair<int, int>>
 		kept; // nodes of the result that are as they were, and what they were
 	constexpr double sampleSpacing = 0.01;
-	const refining::LocalScale scale(unit,
+	refining::LocalScale scale(unit,
 		refining::scaleOfVertices(
 			surface, component, components, frame, parameters, poles, progress.part(0.03, 0.03)));
 	const auto isThin = [&](int c) { return scale.least(vertices.ids[c]) < 1; };
@@ -451,6 +489,9 @@ inline Refinement refineChecked(const CurveSkeleton& curve, const SurfaceMesh& s
 			progress.part(0.03 + 0.97 * c / components, 0.03 + 0.97 * (c + 1) / components);
 		ClosestSurface closest(unit, vertices.ids[c], sampleSpacing, ofComponent.part(0, 0.1));
 		const refining::SurfaceComponent own = {unit, vertices.ids[c], vertices.place};
+		if (isThin(c))
+			scale.raise(
+				vertices.ids[c], refining::leastScale(part, closest, scale, parameters.spacing));
 		const refining::Defect defect = refining::refineChecked(part, closest, own,
 			isThin(c) ? scale : refining::sameEverywhere, parameters, ofComponent.part(0.1, 0.95));
 		refining::addTo(report, defect);

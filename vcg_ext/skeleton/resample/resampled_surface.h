@@ -52,7 +52,7 @@ inline std::vector<char> thinParts(const MeasuredSurface& surface, const Paramet
 }
 
 /// An adaptive mesh has at most this many vertices, or as many as its surface needs without the field.
-constexpr double maxVertices = 1e6;
+constexpr double maxVertices = 150000;
 
 /**
  * The sizing field to resample a surface with. Where its mesh would have more than maxVertices, the
