@@ -63,8 +63,7 @@ TEST(Skeletonize, IsFig4LineByLine)
 	Stage stage = startOfFlow(surface, poles, {}, parameters);
 	while (!stage.converged)
 		stage = step(stage, parameters);
-	const CurveSkeleton curve = broughtInsideInput(
-		refine(collapseInside(stage, parameters.epsilon), surface), surface, input);
+	const CurveSkeleton curve = refine(collapseInside(stage, parameters.epsilon), surface);
 
 	const Skeletonization result = run(soup, parameters);
 	expectSame(result.curve, curve);
@@ -74,24 +73,6 @@ TEST(Skeletonize, IsFig4LineByLine)
 	EXPECT_EQ(result.stage->iteration, stage.iteration);
 	EXPECT_TRUE(result.refined);
 	EXPECT_FALSE(result.sheets);
-}
-
-TEST(Skeletonize, TheCurveOfAResampledShapeIsInsideTheInput)
-{
-	// Resampled so coarsely that the resampled animal's inside is not within the input's.
-	const shapes::Soup soup = shapes::fromFile("animal450");
-	const SolidTest input(soup.points, soup.triangles);
-	Parameters parameters = coarse();
-	for (const bool refine : {false, true}) {
-		parameters.refine = refine;
-		const CurveSkeleton curve = run(soup, parameters).curve;
-		EXPECT_EQ(statistics(curve).components, 1);
-		EXPECT_EQ(statistics(curve).cycles, 0);
-		EXPECT_EQ(curve.radius.size(), curve.position.size());
-		for (const auto& [a, b] : curve.edges)
-			EXPECT_TRUE(input.segmentIsInside(
-				input.in(curve.position[a]), input.in(curve.position[b]), 1e-6));
-	}
 }
 
 TEST(Skeletonize, NodesOfTheInputAreNear)
@@ -161,10 +142,7 @@ TEST(Skeletonize, ReadsEveryParameter)
 	EXPECT_NE(voronoi.poles->centre, expected.poles->centre);
 	const Skeletonization unrefined = with([](Parameters& p) { p.refine = false; });
 	EXPECT_FALSE(unrefined.refined);
-	const SurfaceMesh input = checkedSurface(roundedCoordinates(soup.points), soup.triangles).mesh;
-	expectSame(unrefined.curve,
-		broughtInsideInput(
-			collapseInside(*expected.stage, coarse().epsilon), *expected.surface, input));
+	expectSame(unrefined.curve, collapseInside(*expected.stage, coarse().epsilon));
 }
 
 TEST(Skeletonize, DenoisesUnlessToldNotTo)
