@@ -191,9 +191,6 @@ inline Skeletonization skeletonize(const SurfaceInput& input, const Parameters& 
 		if (const std::string text = refined.report.text(); !text.empty())
 			note(text);
 	}
-	if (parameters.resample && !result.sheets && held.empty())
-		result.curve = broughtInsideInput(
-			std::move(result.curve), surface, *input.mesh, progress.part(0.99, 0.99));
 	result.seconds.refine = clock.end(Phase::Refine);
 
 	result.node = parameters.resample

@@ -13,10 +13,8 @@
 #include <skeleton/core/progress.h>
 #include <skeleton/flow/stage.h>
 #include <skeleton/graph/curve_skeleton.h>
-#include <skeleton/graph/skeleton_branches.h>
 #include <skeleton/graph/skeleton_radius.h>
 #include <skeleton/mesh/component_meshes.h>
-#include <skeleton/mesh/components.h>
 #include <skeleton/mesh/surface_mesh.h>
 #include <skeleton/spatial/solid_test.h>
 
@@ -25,10 +23,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numeric>
 #include <queue>
-#include <set>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -52,28 +47,21 @@ public:
 	{
 	}
 
-	/// For each node the vertices of the surface that have merged into it, where they are known.
+	/// For each node the vertices of the surface that have merged into it.
 	std::vector<std::vector<int>> merged;
 
 	const std::vector<Point3d>& places() const { return place; }
 	/// 1 for nodes that have moved or are new. New ones follow those that were given.
 	const std::vector<char>& changedNodes() const { return changed; }
 	const std::vector<std::array<int, 2>>& curveEdges() const { return edges; }
-	/// For each node itself, or the one that it went to with a branch that was removed.
-	const std::vector<int>& wentTo() const { return target; }
 
 	/**
-	 * Moves nodes that are outside, then bends the edges that are. Where the ways inside would make another
-	 * curve of it, by half longer and half a diagonal besides, its branches are not the shape's: the shortest
-	 * ones go, see withoutShortBranches(), until the ways of the others are short or a single chain is left.
-	 * Ways that cut a corner make a curve longer by a percent or two.
-	 * @return whether anything was outside. @throws SolverError if something still is; Cancelled.
+	 * Moves nodes that are outside, then bends the edges that are. @return whether anything was outside.
+	 * @throws SolverError if something still is; Cancelled.
 	 */
 	bool bringInside()
 	{
 		changed.assign(place.size(), 0);
-		target.resize(place.size());
-		std::iota(target.begin(), target.end(), 0);
 		std::vector<char> isOutside(place.size(), 0);
 		bool any = false;
 		for (size_t A = 0; A < place.size(); ++A) {
@@ -86,7 +74,6 @@ public:
 		};
 		if (!any && std::all_of(edges.begin(), edges.end(), isInside))
 			return false;
-		double longest = 1.5 * curveLength() + 0.5;
 		std::vector<std::vector<int>> neighbours(place.size());
 		for (const auto& [A, B] : edges) {
 			neighbours[A].push_back(B);
@@ -95,61 +82,22 @@ public:
 		for (size_t A = 0; A < place.size(); ++A)
 			if (isOutside[A])
 				moveInside(int(A), neighbours[A]);
-		bool isBent = bendInside(longest, false);
-		for (double left = longestOfOther; !isBent; left /= 2) {
-			constexpr double nothing = 1e-6;
-			const bool isLast =
-				!withoutShortBranches(left) && (left < curveLength() || left < nothing);
-			longest = isLast ? longestOfCurve * (curveLength() + 1) : longestOfCurve;
-			isBent = bendInside(longest, isLast);
-		}
-		while (target.size() < place.size())
-			target.push_back(int(target.size()));
-		return true;
-	}
-
-private:
-	using Path = std::vector<Point3d>;
-
-	/// Ways inside may make the last chain, and cycles, this many times as long as they and the diagonal
-	/// together, no longer; and what is left of a curve of which branches went so many diagonals.
-	static constexpr double longestOfCurve = 3;
-	/// Of a curve that they would make much longer branches go until it has so many diagonals.
-	static constexpr double longestOfOther = 2;
-
-	double curveLength() const
-	{
 		double length = 0;
 		for (const auto& [A, B] : edges)
 			length += Distance(place[A], place[B]);
-		return length;
-	}
-
-	/**
-	 * Bends edges that are outside. Nothing is changed where that would make the curve longer than `longest`,
-	 * unless edges `mayStayStraight` from there on.
-	 * @return whether it is bent. @throws SolverError if an edge is outside then.
-	 */
-	bool bendInside(double longest, bool mayStayStraight)
-	{
-		const size_t count = place.size();
-		double length = curveLength();
+		const double maxLength = longestOfCurve * (length + 1);
 		bool anyStraight = false;
 		std::vector<std::array<int, 2>> bent;
 		for (const auto& edge : edges) {
-			const Point3d from = place[edge[0]], to = place[edge[1]];
-			if (anyStraight || segmentIsInside(from, to)) {
+			if (isInside(edge)) {
 				bent.push_back(edge);
 				continue;
 			}
-			const Path way = inside(from, to);
-			length += lengthOf(way, from, to) - Distance(from, to);
-			if (!(length <= longest)) {
-				if (!mayStayStraight) {
-					place.resize(count);
-					changed.resize(count);
-					return false;
-				}
+			const Path way = inside(place[edge[0]], place[edge[1]]);
+			length += lengthOf(way, place[edge[0]], place[edge[1]])
+				- Distance(place[edge[0]], place[edge[1]]);
+			if (!(length <= maxLength)) {
+				length = maxLength;
 				anyStraight = true;
 				bent.push_back(edge);
 				continue;
@@ -165,90 +113,16 @@ private:
 			bent.push_back({last, edge[1]});
 		}
 		edges = std::move(bent);
-		if (!anyStraight
-			&& !std::all_of(edges.begin(), edges.end(), [&](const std::array<int, 2>& edge) {
-				   return segmentIsInside(place[edge[0]], place[edge[1]]);
-			   }))
+		if (!anyStraight && !std::all_of(edges.begin(), edges.end(), isInside))
 			throw SolverError("The curve could not be brought inside the shape.");
 		return true;
 	}
 
-	/**
-	 * Removes terminal branches, the shortest first, until the curve is no longer than so many
-	 * diagonals. What had merged into them goes to where they hung. Cycles stay, and the last chain.
-	 * @return whether any went.
-	 * Complexity: O(N + T^2) for T tips, beside the walks along branches that become longer.
-	 */
-	bool withoutShortBranches(double longest)
-	{
-		double length = curveLength();
-		bool any = false;
-		std::vector<std::set<int>> neighbours(place.size());
-		for (const auto& [A, B] : edges) {
-			neighbours[A].insert(B);
-			neighbours[B].insert(A);
-		}
-		struct Terminal
-		{
-			int tip, junction; ///< -1: there is none, the branch is a chain
-			double length;
-		};
-		const auto fromTip = [&](int tip) {
-			Terminal branch = {tip, -1, 0};
-			for (int last = -1, at = tip;;) {
-				const std::set<int>& around = neighbours[at];
-				if (around.size() > 2) {
-					branch.junction = at;
-					return branch;
-				}
-				const auto next =
-					std::find_if(around.begin(), around.end(), [&](int B) { return B != last; });
-				if (next == around.end())
-					return branch;
-				branch.length += Distance(place[at], place[*next]);
-				last = std::exchange(at, *next);
-			}
-		};
-		std::vector<Terminal> branches;
-		for (size_t A = 0; A < place.size(); ++A)
-			if (neighbours[A].size() == 1)
-				branches.push_back(fromTip(int(A)));
-		const auto isShorter = [](const Terminal& a, const Terminal& b) {
-			return std::make_tuple(a.junction < 0, a.length, a.tip)
-				< std::make_tuple(b.junction < 0, b.length, b.tip);
-		};
-		while (length > longest) {
-			report();
-			const auto shortest = std::min_element(branches.begin(), branches.end(), isShorter);
-			if (shortest == branches.end() || shortest->junction < 0)
-				break;
-			const Terminal gone = *shortest;
-			branches.erase(shortest);
-			length -= gone.length;
-			any = true;
-			for (int at = gone.tip; at != gone.junction;) {
-				const int next = *neighbours[at].begin();
-				neighbours[next].erase(at);
-				neighbours[at].clear();
-				target[at] = gone.junction;
-				at = next;
-			}
-			if (neighbours[gone.junction].size() == 2)
-				for (Terminal& branch : branches)
-					if (branch.junction == gone.junction)
-						branch = fromTip(branch.tip);
-		}
-		const auto isGone = [&](int A) { return target[A] != A; };
-		edges.erase(
-			std::remove_if(edges.begin(), edges.end(),
-				[&](const std::array<int, 2>& edge) { return isGone(edge[0]) || isGone(edge[1]); }),
-			edges.end());
-		// A junction may itself have gone with a longer branch later.
-		for (size_t A = 0; A < target.size(); ++A)
-			while (isGone(target[A]))
-				target[A] = target[target[A]];
-		return any;
-	}
+private:
+	using Path = std::vector<Point3d>;
+
+	/// Ways inside may make a curve this many times as long as itself and the diagonal together, no longer.
+	static constexpr double longestOfCurve = 3;
 
 	static double lengthOf(const Path& between, const Point3d& first, const Point3d& last)
 	{
@@ -266,7 +140,6 @@ private:
 	std::vector<std::array<int, 2>> edges;
 	const Progress& progress;
 	std::vector<char> changed;
-	std::vector<int> target;
 	/// The neighbours of each vertex of the surface, and its inward unit normal; made when they are needed.
 	std::vector<std::vector<int>> around;
 	std::vector<Point3d> inward;
@@ -483,19 +356,17 @@ private:
  * crosses itself may be turned inside out by it.
  *
  * @param surface     the vertices of all components, mesh units, and @param triangles between them.
- * @param component   of each vertex; @param ofNode of each node, follows the nodes.
- * @param node        of each vertex the node that it has merged into; empty: that is not known.
+ * @param component   of each vertex; @param ofNode of each node, grows with the nodes.
  * @return the curve; edges in order, new nodes last. Radii are not its business.
  * @post no node is outside by more than 5e-7 of the diagonal, and no edge, unless the ways inside would make
- *       cycles, or the last chain, longer than three times themselves and the diagonal, as where a surface
- *       runs into itself all over: edges then stay straight. A curve that these ways would make longer by
- *       more than a half and half a diagonal has lost its shortest branches.
+ *       the curve longer than three times itself and the diagonal, as where a surface runs into itself all
+ *       over: the last edges then stay straight.
  * @throws SolverError, Cancelled. Complexity: O(F) for a curve that is inside; at most O(F log F) for each
  *         edge that is not.
  */
 inline CurveSkeleton broughtInside(CurveSkeleton skeleton, const std::vector<Point3d>& surface,
 	const std::vector<Triangle>& triangles, const std::vector<int>& component, int components,
-	std::vector<int>& ofNode, const std::vector<int>& node, const Progress& progress = Progress())
+	std::vector<int>& ofNode, const Progress& progress = Progress())
 {
 	const Progress begin = progress.part(0, 0);
 	const ComponentVertices vertices(component, components, begin);
@@ -503,6 +374,7 @@ inline CurveSkeleton broughtInside(CurveSkeleton skeleton, const std::vector<Poi
 	for (const Triangle& t : triangles)
 		faces[component[t[0]]].push_back(
 			{vertices.place[t[0]], vertices.place[t[1]], vertices.place[t[2]]});
+	const std::vector<int>& node = skeleton.node;
 	std::vector<std::vector<int>> nodes(components);
 	std::vector<int> number(skeleton.position.size());
 	for (size_t A = 0; A < number.size(); ++A) {
@@ -513,8 +385,6 @@ inline CurveSkeleton broughtInside(CurveSkeleton skeleton, const std::vector<Poi
 	for (const auto& [A, B] : skeleton.edges)
 		edges[ofNode[A]].push_back({number[A], number[B]});
 	std::vector<std::array<int, 2>> all;
-	std::vector<int> target(skeleton.position.size()); // differs from the node for those that go
-	std::iota(target.begin(), target.end(), 0);
 	for (int c = 0; c < components; ++c) {
 		const Progress part = progress.part(double(c) / components, double(c + 1) / components);
 		std::vector<Point3d> points;
@@ -527,35 +397,24 @@ inline CurveSkeleton broughtInside(CurveSkeleton skeleton, const std::vector<Poi
 		const Progress bending = part.part(0.5, 1);
 		detail::CurveIntoSolid curve(solid, place, edges[c], bending);
 		curve.merged.resize(place.size());
-		for (size_t i = 0; i < points.size() && !node.empty(); ++i)
+		for (size_t i = 0; i < points.size(); ++i)
 			curve.merged[number[node[vertices.ids[c][i]]]].push_back(int(i));
-		if (curve.bringInside()) {
-			for (size_t i = nodes[c].size(); i < curve.places().size(); ++i) {
-				nodes[c].push_back(int(skeleton.position.size()));
-				skeleton.position.push_back(Point3d(0, 0, 0));
-				ofNode.push_back(c);
-				target.push_back(int(target.size()));
-			}
-			for (size_t i = 0; i < nodes[c].size(); ++i) {
+		if (curve.bringInside())
+			for (size_t i = 0; i < curve.places().size(); ++i) {
+				if (i >= nodes[c].size()) {
+					nodes[c].push_back(int(skeleton.position.size()));
+					skeleton.position.push_back(Point3d(0, 0, 0));
+					ofNode.push_back(c);
+				}
 				if (curve.changedNodes()[i])
 					skeleton.position[nodes[c][i]] = solid.out(curve.places()[i]);
-				target[nodes[c][i]] = nodes[c][curve.wentTo()[i]];
 			}
-		}
 		for (const auto& [i, j] : curve.curveEdges())
 			all.push_back({std::min(nodes[c][i], nodes[c][j]), std::max(nodes[c][i], nodes[c][j])});
 	}
 	std::sort(all.begin(), all.end());
 	skeleton.edges = std::move(all);
-	std::vector<int> ofLeft;
-	for (size_t A = 0; A < target.size(); ++A)
-		if (target[A] == int(A))
-			ofLeft.push_back(ofNode[A]);
-	if (ofLeft.size() == target.size())
-		return skeleton;
-	ofNode = std::move(ofLeft);
-	skeleton.radius.resize(skeleton.position.size(), 0);
-	return mergeNodes(skeleton, target);
+	return skeleton;
 }
 
 /**
@@ -575,41 +434,27 @@ inline CurveSkeleton collapseInside(
 	const int components = int(stage.diagonal.size());
 	const std::vector<int> component = componentOfSurfaceVertices(stage, progress.part(0, 0));
 	CurveSkeleton curve = collapseToCurve(std::move(stage), shortestEdge, progress.part(0, 0.95));
-	std::vector<int> ofNode = componentOfNodes(curve, component);
+	std::vector<int> ofNode(curve.position.size(), -1);
+	for (size_t s = 0; s < component.size(); ++s)
+		ofNode[curve.node[s]] = component[s];
+	// A node of split vertices only is of the component of its neighbours.
+	const std::vector<std::vector<int>> neighbours = curve.neighbours();
+	std::vector<int> told;
+	for (size_t A = 0; A < ofNode.size(); ++A)
+		if (ofNode[A] >= 0)
+			told.push_back(int(A));
+	for (size_t i = 0; i < told.size(); ++i)
+		for (int B : neighbours[told[i]])
+			if (ofNode[B] < 0) {
+				ofNode[B] = ofNode[told[i]];
+				told.push_back(B);
+			}
 	const std::vector<Point3d> before = curve.position;
-	const std::vector<int> node = curve.node;
 	curve = broughtInside(std::move(curve), *surface, *triangles, component, components, ofNode,
-		node, progress.part(0.95, 1));
+		progress.part(0.95, 1));
 	if (curve.position != before) {
 		curve.radius =
 			meanSurfaceDistance(curve.position, *surface, curve.node, progress.part(1, 1));
-		fillUnknownRadii(curve.radius, curve.neighbours());
-	}
-	return curve;
-}
-
-/**
- * Brings a curve that was made on a resampled surface inside the surface that was resampled: where edges of
- * the resampled one cut a corner, its inside reaches beyond that of the other by a part of an edge. What is
- * inside stays, to the last bit.
- * @param curve     of `resampled`, to whose vertices its `node` belongs.
- * @param resampled as resample() makes it from @param surface: its components, in their order.
- * @throws SolverError, Cancelled. Complexity: as broughtInside().
- */
-inline CurveSkeleton broughtInsideInput(CurveSkeleton curve, const SurfaceMesh& resampled,
-	const SurfaceMesh& surface, const Progress& progress = Progress())
-{
-	const Progress begin = progress.part(0, 0);
-	int components = 0;
-	const std::vector<int> component = connectedComponents(surface, &components, begin);
-	const std::vector<int> ofResampled = connectedComponents(resampled, nullptr, begin);
-	std::vector<int> ofNode = componentOfNodes(curve, ofResampled);
-	const std::vector<Point3d> before = curve.position;
-	curve = broughtInside(std::move(curve), surface.position, surface.triangles(begin), component,
-		components, ofNode, {}, progress);
-	if (curve.position != before) {
-		curve.radius = meanSurfaceDistance(
-			curve.position, resampled.position, curve.node, progress.part(1, 1));
 		fillUnknownRadii(curve.radius, curve.neighbours());
 	}
 	return curve;

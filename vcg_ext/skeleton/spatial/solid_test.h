@@ -105,13 +105,6 @@ public:
 		constexpr double negligible = 1e-9; // part of the segment
 		constexpr int samples = 16;         // besides: along a triangle a crossing may be missed
 		std::vector<double> at;
-		bool anyNear = false;
-		Box3d around;
-		around.Add(p);
-		around.Add(q);
-		tree->forEachFaceIn(around, [&](int) { anyNear = true; });
-		if (!anyNear) // mostly: the winding number is the same all along
-			return isInside(p, tolerance);
 		for (int i = 0; i <= samples; ++i)
 			at.push_back(double(i) / samples);
 		tree->forEachCrossing(p, q, [&](int, double t, bool) {
