@@ -120,17 +120,19 @@ private:
 
 /**
  * Computes the skeleton of a checked surface.
- * @param parameters all of them are read.
+ * @param given      all of them are read. What is too thin for a resampled surface to follow, see
+ *                   fieldOfResampling(), is not contracted and refined adaptively either.
  * @param refinement the knobs of refine(), where parameters.refine is set.
  * @throws InvalidParameter, InvalidInput, SolverError, Cancelled.
  * Complexity: O(V log V) and some 10 to 40 steps of the flow.
  */
-inline Skeletonization skeletonize(const SurfaceInput& input, const Parameters& parameters,
+inline Skeletonization skeletonize(const SurfaceInput& input, const Parameters& given,
 	const Progress& progress = Progress(), const Observer& observer = Observer(),
 	const RefineParameters& refinement = RefineParameters())
 {
-	parameters.check();
+	given.check();
 	refinement.check();
+	Parameters parameters = given;
 	const auto note = [&](const std::string& text) {
 		if (observer.onNote)
 			observer.onNote(text);
@@ -145,6 +147,7 @@ inline Skeletonization skeletonize(const SurfaceInput& input, const Parameters& 
 			resampledSurface(*input.mesh, parameters, progress.part(0, 0.13), observer.onNote);
 		result.surface = std::make_shared<const SurfaceMesh>(std::move(resampled.mesh));
 		result.noise = std::move(resampled.noise);
+		parameters.adaptive = parameters.adaptive && !resampled.isTooThin;
 		if (!held.empty())
 			held =
 				selectionOnResampled(*input.mesh, held, *result.surface, progress.part(0.13, 0.13));

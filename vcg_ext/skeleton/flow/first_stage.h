@@ -92,7 +92,7 @@ inline double cutsByField(const SurfaceMesh& mesh, const SizingField& field)
 /**
  * Stage::epsilonLimit for each vertex of a surface: epsilonOfField of the sizing field, at most
  * Parameters::maxEpsilon. Where edges are much longer than the shape is thick, as on a needle, the shape does
- * not change from one thickness to the next: the field is no smaller than what cuts edges a hundred times as
+ * not change from one thickness to the next: the field is no smaller than what cuts edges thirty times as
  * often as there are vertices.
  * @param poles of all vertices.
  * @return empty where epsilon is small enough everywhere, and without parameters.adaptive.
@@ -108,7 +108,7 @@ inline std::vector<double> epsilonLimits(const MeasuredSurface& surface, const P
 	for (double diagonal : surface.diagonals())
 		bound.push_back(parameters.epsilon / epsilonOfField * diagonal);
 	SizingField field = sizingField(surface, poles, parameters.relativeLength, bound, progress);
-	constexpr double cutsOfVertex = 100;
+	constexpr double cutsOfVertex = 30;
 	const double most = cutsOfVertex * surface.mesh().vertexCount();
 	const auto cuts = [&](const SizingField& raised) {
 		return cutsByField(surface.mesh(), raised);

@@ -22,6 +22,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -32,6 +33,8 @@ struct ResampledSurface
 {
 	SurfaceMesh mesh;
 	NoiseReport noise;
+	/// Whether to resolve what is thin would have taken too many vertices, see fieldOfResampling().
+	bool isTooThin = false;
 };
 
 /// Of the vertices of a surface those where it is so thin that the sizing field, see sizingField(), is below
@@ -51,16 +54,17 @@ inline std::vector<char> thinParts(const MeasuredSurface& surface, const Paramet
 	return thin;
 }
 
-/// An adaptive mesh has at most this many vertices, or as many as its surface needs without the field.
-constexpr double maxVertices = 150000;
+/// A mesh that follows the local thickness has at most this many vertices, and so many for each of the input, or as
+/// many as its surface needs anyway: a coarse mesh does not show how thin the shape is between its vertices.
+constexpr double maxVertices = 400000, maxVerticesOfVertex = 30;
 
 /**
- * The sizing field to resample a surface with. Where its mesh would have more than maxVertices, the
- * field is no smaller than what leaves it with so many; what is too thin for that is said.
+ * The sizing field to resample a surface with; none, and said, where its mesh would be too large, see
+ * maxVertices.
  * @param length of each component, see defaultTargetLength().
  * @throws Cancelled. Complexity: as medialPoles().
  */
-inline SizingField fieldOfResampling(const MeasuredSurface& surface,
+inline std::optional<SizingField> fieldOfResampling(const MeasuredSurface& surface,
 	const std::vector<double>& length, const Parameters& parameters,
 	const Progress& progress = Progress(), const NoteCallback& onNote = {})
 {
@@ -71,17 +75,19 @@ inline SizingField fieldOfResampling(const MeasuredSurface& surface,
 		return field;
 	const double expected = expectedVertices(surface, length, field);
 	const double most =
-		std::max(maxVertices, 1.01 * expectedVertices(surface, length, SizingField()));
+		std::max(std::min(maxVertices, maxVerticesOfVertex * surface.mesh().vertexCount()),
+			1.01 * expectedVertices(surface, length, SizingField()));
 	if (expected > most) {
-		const double least = raiseToCost(field, *std::max_element(length.begin(), length.end()),
-			most,
-			[&](const SizingField& raised) { return expectedVertices(surface, length, raised); });
 		if (onNote)
-			onNote(detail::sentence(3, "To resolve all of the shape would take ", expected / 1e6,
-				" million vertices: parts with a radius below ", least / parameters.relativeLength,
-				" mesh units may be left out or simplified."));
+			onNote(detail::sentence(3, "Parts of the shape are thin. To resolve them would take ",
+				expected / 1e6, " million vertices, more than ",
+				surface.mesh().vertexCount() * maxVerticesOfVertex < maxVertices
+					? "30 for each of the mesh"
+					: "0.4 million",
+				": lengths are the same everywhere, and such parts may be left out or simplified."));
+		return std::nullopt;
 	}
-	else if (onNote)
+	if (onNote)
 		onNote(detail::sentence(3, "Parts of the shape are thin: edges are down to ",
 			*std::min_element(field.begin(), field.end()), " mesh units long there, about ",
 			std::llround(expected), " vertices in all."));
@@ -119,11 +125,13 @@ inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Paramete
 	const auto resampled = [&](const MeasuredSurface& calm) {
 		const double from = smooth ? 0.35 : 0.15;
 		const std::vector<double> length = defaultTargetLength(calm, parameters);
-		const SizingField field = parameters.adaptive && parameters.resampleIterations > 0
-			? fieldOfResampling(calm, length, parameters, progress.part(from, from + 0.15), onNote)
-			: SizingField();
-		return resample(
-			calm, length, parameters.resampleIterations, progress.part(from + 0.15, 1), field);
+		std::optional<SizingField> field = SizingField();
+		if (parameters.adaptive && parameters.resampleIterations > 0)
+			field = fieldOfResampling(
+				calm, length, parameters, progress.part(from, from + 0.15), onNote);
+		result.isTooThin = !field;
+		return resample(calm, length, parameters.resampleIterations, progress.part(from + 0.15, 1),
+			field ? *field : SizingField());
 	};
 	if (smooth)
 		result.mesh =
