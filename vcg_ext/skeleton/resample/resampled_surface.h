@@ -33,7 +33,7 @@ struct ResampledSurface
 {
 	SurfaceMesh mesh;
 	NoiseReport noise;
-	/// Whether to resolve what is thin would have taken too many vertices, see fieldOfResampling().
+	/// Whether to resolve what is thin would take too many vertices, see fieldOfResampling().
 	bool isTooThin = false;
 };
 
@@ -54,13 +54,13 @@ inline std::vector<char> thinParts(const MeasuredSurface& surface, const Paramet
 	return thin;
 }
 
-/// A mesh that follows the local thickness has at most this many vertices, and so many for each of the input, or as
-/// many as its surface needs anyway: a coarse mesh does not show how thin the shape is between its vertices.
+/// A mesh that follows the local thickness has at most this many vertices, or as many as its surface needs anyway,
+/// and so many for each of the input: a coarse mesh does not show how thin the shape is between its vertices.
 constexpr double maxVertices = 400000, maxVerticesOfVertex = 30;
 
 /**
- * The sizing field to resample a surface with; none, and said, where its mesh would be too large, see
- * maxVertices.
+ * The sizing field to resample a surface with; none where its mesh would be too large, see maxVertices. It is
+ * said if that leaves parts out.
  * @param length of each component, see defaultTargetLength().
  * @throws Cancelled. Complexity: as medialPoles().
  */
@@ -68,22 +68,22 @@ inline std::optional<SizingField> fieldOfResampling(const MeasuredSurface& surfa
 	const std::vector<double>& length, const Parameters& parameters,
 	const Progress& progress = Progress(), const NoteCallback& onNote = {})
 {
+	const double resolved = maxVerticesOfVertex * surface.mesh().vertexCount();
+	const double anyway = expectedVertices(surface, length, SizingField());
+	if (anyway > resolved)
+		return std::nullopt;
 	SizingField field =
 		sizingField(surface, medialPoles(surface.mesh(), PoleMethod::Balls, progress.part(0, 0.8)),
 			parameters.relativeLength, length, progress.part(0.8, 1));
 	if (field.empty())
 		return field;
 	const double expected = expectedVertices(surface, length, field);
-	const double most =
-		std::max(std::min(maxVertices, maxVerticesOfVertex * surface.mesh().vertexCount()),
-			1.01 * expectedVertices(surface, length, SizingField()));
+	const double most = std::min(std::max(maxVertices, 1.01 * anyway), resolved);
 	if (expected > most) {
 		if (onNote)
 			onNote(detail::sentence(3, "Parts of the shape are thin. To resolve them would take ",
 				expected / 1e6, " million vertices, more than ",
-				surface.mesh().vertexCount() * maxVerticesOfVertex < maxVertices
-					? "30 for each of the mesh"
-					: "0.4 million",
+				resolved < maxVertices ? "30 for each of the mesh" : "0.4 million",
 				": lengths are the same everywhere, and such parts may be left out or simplified."));
 		return std::nullopt;
 	}
