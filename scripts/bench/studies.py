@@ -20,6 +20,7 @@ from curve import Curve, mean_distance, read_curve
 from damage import DAMAGES, damaged
 from meshes import read_mesh, subdivided, write_mesh
 from quality import Shape, measure
+from stability import NEAR, matched, variants
 
 SPACING = 0.001  # of the diagonal, at which skeletons are compared
 SIZES = (3_000, 400_000)  # vertices of the copies in the study of the resolution
@@ -285,8 +286,30 @@ def damage(bench: Bench, mesh: Path) -> str:
                  rows)
 
 
+def stability(bench: Bench, mesh: Path) -> str:
+    """Which terminal branches the copies of a mesh agree on, see stability.variants()."""
+    points, triangles = read_mesh(mesh)
+    size = diagonal(points)
+    tips = []
+    for variant in variants(points, triangles):
+        run = bench.run(write_mesh(bench.folder / "variant.ply", variant.points, variant.triangles),
+                        *variant.options)
+        curve = run.curve
+        tips.append(variant.back(curve.points[curve.degree == 1]))
+    counts = [len(own) for own in tips]
+    usual = max(counts.count(n) for n in counts)
+    branches = matched(tips, NEAR * size)
+    stable = sum(len(members) == len(tips) for members in branches)
+    others = sorted(len(members) for members in branches if len(members) < len(tips))
+    return table(["mesh", "variants", "tips", "with the usual number", "branches", "in all variants",
+                  "variants that have the others"],
+                 [[mesh.stem, str(len(tips)), f"{min(counts)} to {max(counts)}", str(usual),
+                   str(len(branches)), str(stable), ", ".join(map(str, others)) or "-"]])
+
+
 STUDIES = {"known answers": known, "damage": damage, "resolution": resolution, "noise": noise,
-           "invariance": invariance, "weights": weights, "trees": trees}
+           "invariance": invariance, "weights": weights, "trees": trees,
+           "stability": stability}
 
 
 def study_table(name: str, program: Path, meshes: list[Path], folder: Path) -> str:

@@ -162,6 +162,78 @@ def lattice(cells: int = 2, radius: float = 0.05, edge: float = 4.0) -> Centreli
     return line
 
 
+def creature(seed: int) -> Centreline:
+    """A body with a head, ears, eyes, limbs that end in feet or fingers, and a tail, most of them by chance.
+
+    What is in pairs is mirrored at y = 0, so that the shape is symmetric but for its triangles.
+    """
+    rng = np.random.default_rng(seed)
+    line = Centreline()
+    mirror = np.array([1.0, -1.0, 1.0])
+
+    def chain(start: int, points: list[Array], radii: list[float], paired: bool) -> list[int]:
+        """Round cones one after another from a node into the open; the last node of each copy."""
+        ends = []
+        for sign in ([np.ones(3), mirror] if paired else [np.ones(3)]):
+            at = start
+            for point, radius in zip(points, radii):
+                at = line.add(point * sign, radius, at)
+            ends.append(at)
+        return ends
+
+    # The body: two or three balls along x, the last one the chest.
+    count, thick = int(rng.integers(2, 4)), rng.uniform(0.7, 1.3)
+    spine = [line.add(np.zeros(3), thick)]
+    for k in range(1, count):
+        spine.append(line.add(np.array([1.6 * k, 0.0, rng.uniform(-0.2, 0.2)]),
+                              thick * rng.uniform(0.75, 1.15), spine[-1]))
+    hip, chest = line.nodes[spine[0]], line.nodes[spine[-1]]
+    # The head, on a neck.
+    skull = rng.uniform(0.5, 0.9)
+    neck = chest[:3] + np.array([rng.uniform(0.6, 1.4), 0.0, rng.uniform(0.8, 2.0)])
+    face = chest[:3] + (neck - chest[:3]) * (1 + 1.1 * skull / np.linalg.norm(neck - chest[:3]))
+    head = chain(spine[-1], [neck, face], [0.6 * skull, skull], False)[0]
+    if rng.random() < 0.7:  # snout
+        chain(head, [face + np.array([skull * rng.uniform(1.4, 2.2), 0.0, -0.2 * skull])],
+              [skull * rng.uniform(0.3, 0.5)], False)
+    for sort, chance in (("ears", 0.8), ("eyes", 0.5), ("horns", 0.3)):
+        if rng.random() > chance:
+            continue
+        up, wide = {"ears": (1.0, 0.7), "eyes": (0.35, 0.45), "horns": (1.0, 0.25)}[sort]
+        way = np.array([0.75 if sort == "eyes" else -0.1, wide, up])
+        way /= np.linalg.norm(way)
+        reach = {"ears": (1.5, 2.2), "eyes": (1.05, 1.2), "horns": (1.8, 2.8)}[sort]
+        thin = {"ears": 0.2, "eyes": 0.17, "horns": 0.1}[sort]
+        chain(head, [face + way * skull * rng.uniform(*reach)], [thin * skull], True)
+    # Legs, arms, or wings.
+    for place, chance in ((spine[0], 1.0), (spine[-1], 0.9)):
+        if rng.random() > chance:
+            continue
+        body = line.nodes[place]
+        r, length = body[3] * rng.uniform(0.2, 0.4), body[3] * rng.uniform(1.2, 2.5)
+        out = np.array([rng.uniform(-0.4, 0.4), rng.uniform(0.4, 1.2), -1.0])
+        knee = body[:3] + out / np.linalg.norm(out) * (body[3] + length / 2)
+        foot = knee + np.array([rng.uniform(-0.3, 0.3), 0.1, -1.0]) * length / 2
+        ends = chain(place, [knee, foot], [r, 0.8 * r], True)
+        kind = rng.integers(0, 3)
+        if kind == 1:  # a foot that points forward
+            toe = foot + np.array([r * rng.uniform(1.5, 3.0), 0.0, -0.1 * r])
+            for end, sign in zip(ends, (np.ones(3), mirror)):
+                line.add(toe * sign, 0.7 * r, end)
+        if kind == 2:  # fingers
+            for k in range(int(rng.integers(2, 5))):
+                way = np.array([1.2 * np.cos(1.5 * k - 0.5), np.sin(1.5 * k - 0.5), -1.0])
+                tip = foot + way * r * rng.uniform(1.3, 2.5)
+                for end, sign in zip(ends, (np.ones(3), mirror)):
+                    line.add(tip * sign, 0.3 * r, end)
+    if rng.random() < 0.7:  # tail
+        r = hip[3] * rng.uniform(0.1, 0.3)
+        root = hip[:3] - np.array([hip[3] * 0.7, 0.0, 0.0])
+        tip = root - np.array([rng.uniform(0.8, 2.5), 0.0, rng.uniform(-1.0, 1.0)])
+        chain(spine[0], [root, tip], [r, 0.5 * r], False)
+    return line
+
+
 def surface_of(line: Centreline, sides: int = 16) -> tuple[Array, Array, int]:
     """The union of the round cones: vertices, faces, genus. Needs manifold3d."""
     from manifold3d import Manifold, OpType
@@ -224,4 +296,5 @@ FAMILIES: dict[str, Callable[[int], Centreline]] = {
     "neuron": lambda seed: neuron(seed),
     "arterial": lambda seed: arterial(seed),
     "lattice": lambda seed: lattice(2 + seed % 3),
+    "creature": lambda seed: creature(seed),
 }
