@@ -20,13 +20,11 @@ QString menuName(const char* name)
 
 QString helpPage(const QString& whatItDoes)
 {
+	// Short: MeshLab 2020.09 shows all of it above the parameters, in a dialog that cannot be scrolled.
 	return whatItDoes
-		+ "<br><br>See:<br>"
-		  "<i>Andrea Tagliasacchi, Ibraheem Alhashim, Matt Olson, Hao Zhang</i><br>"
-		  "<b>\"Mean Curvature Skeletons\"</b><br>"
-		  "Computer Graphics Forum (Symposium on Geometry Processing), 31(5), 2012. "
-		  "DOI <a href=\"https://doi.org/10.1111/j.1467-8659.2012.03178.x\">"
-		  "10.1111/j.1467-8659.2012.03178.x</a>";
+		+ "<br>See Tagliasacchi, Alhashim, Olson, Zhang, \"Mean Curvature Skeletons\", SGP 2012, "
+		  "<a href=\"https://doi.org/10.1111/j.1467-8659.2012.03178.x\">"
+		  "doi 10.1111/j.1467-8659.2012.03178.x</a>.";
 }
 
 ParameterSpec targetLengthParameter()

@@ -152,15 +152,11 @@ FilterSpec fullSkeletonizeFilter()
 	parameters.push_back(sheetThresholdParameter());
 	return {"generate_curve_skeleton_mcf", menuName("Full Skeletonize"),
 		helpPage(
-			"Computes the curve skeleton (centerline, centreline, thinned medial axis) of a surface: "
-			"a graph of nodes and edges in the middle of the shape, with one component for each of its components and one cycle for "
-			"each of its handles. Resamples the surface, finds its medial poles, contracts it until "
-			"no volume is left, collapses the result to curves and refines these; each is a filter of "
-			"its own, too.<br><br>"
-			"New layers: the resampled surface, the last (or every k-th) stage of the contraction, and "
-			"the skeleton. The skeleton's vertex quality is the local thickness; the vertex attribute "
-			"<i>mcfskel_node</i> of the surfaces tells the skeleton vertex of each of their "
-			"vertices."),
+			"Computes the curve skeleton (centerline, centreline, thinned medial axis): a graph in the "
+			"middle of the shape, with a component for each of its components and a cycle for each "
+			"handle. New layers: the resampled surface, the last (or every k-th) stage of the "
+			"contraction, and the skeleton, whose quality is the local thickness; the attribute "
+			"<i>mcfskel_node</i> of the surfaces is the skeleton vertex of each of their vertices."),
 		FilterCategory::Remeshing, MeshModel::MM_FACENUMBER, parameters, run};
 }
 

@@ -240,6 +240,8 @@ class Window:
         self.call("xdotool", "type", "--delay", "25", "--", text)
 
     def click(self, widget: Widget) -> None:
+        if not all(0 <= at < size for at, size in zip(widget.centre, SIZE)):
+            raise AssertionError(f"{widget.role} {widget.name} at {widget.centre} is not on the screen")
         self.call("xdotool", "mousemove", *map(str, widget.centre), "click", "1")
 
     def turn(self, right: int, down: int) -> None:
