@@ -3,6 +3,7 @@
 
 #include "meshlab_2020.h"
 
+#include "scrolling_dialog.h"
 #include "translate.h"
 
 using namespace mcfskel;
@@ -54,6 +55,8 @@ void FilterMcfskelPlugin::initParameterSet(
 	QAction* action, MeshDocument& document, RichParameterList& list)
 {
 	host::addParameters(list, host::filterOf(ID(action)), document);
+	if (host::hasWindow())
+		host::scrollDialogWhereTooHigh(filterName(ID(action)));
 }
 
 bool FilterMcfskelPlugin::applyFilter(QAction* action, MeshDocument& document,

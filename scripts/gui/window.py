@@ -298,16 +298,25 @@ class Window:
         raise AssertionError(f"{label} does not take {value}")
 
     def press(self, dialog: str, button: str) -> None:
-        """Presses a button of a window."""
-        def find() -> Optional[Widget]:
+        """Presses a button of a window; where that scrolls, after turning the wheel until it shows."""
+        def find() -> Optional[tuple[Widget, Widget]]:
             view = self.view()
             for frame in view:
                 if frame.role in ("frame", "dialog", "alert") and re.match(dialog, frame.name):
                     buttons = view.within(frame).all("push button", re.escape(button) + "$")
                     if buttons:
-                        return buttons[0]
+                        return frame, buttons[0]
             return None
-        self.click(self.wait(find, f"the button {button}"))
+
+        for _ in range(20):
+            frame, found = self.wait(find, f"the button {button}")
+            left, top, _, height = frame.box
+            if found.centre[1] < top + height:
+                break
+            # Over the labels: a turn over a field changes its value.
+            self.call("xdotool", "mousemove", str(left + 12), str(top + height // 2),
+                      "click", "--repeat", "5", "5")
+        self.click(found)
 
     def close(self, dialog: str) -> None:
         """Closes a filter dialog."""
