@@ -7,7 +7,8 @@
 /// With --cancel in place of the outputs each filter is first cancelled at its first report of progress,
 /// then at its second, and so on, until it comes to its end; from the 200th on it is at reports further and
 /// further apart, by chance. A document, or a file to write, that a cancelled filter has changed is an error.
-/// The number of cancellings is printed.
+/// The number of cancellings is printed. A layer as a parameter is then counted from the last one, which is 0,
+/// since the numbers of layers depend on how often filters were cancelled.
 
 #include <common/filterscript.h>
 #include <common/globals.h>
@@ -25,6 +26,7 @@
 #include <random>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace {
 
@@ -73,6 +75,17 @@ std::string fileContents(const FilterNameParameterValuesPair& step)
 	return "";
 }
 
+/// The number of a layer that is counted from the last one.
+int layerFromLast(const MeshDocument& document, int count)
+{
+	std::vector<int> ids;
+	for (const MeshModel& layer : document.meshIterator())
+		ids.push_back(int(layer.id()));
+	if (count < 0 || count >= int(ids.size()))
+		throw MLException("no layer " + QString::number(count) + " from the last");
+	return ids[ids.size() - 1 - size_t(count)];
+}
+
 /// The reports that are left until a filter is cancelled; none: it is not.
 int reportsLeft = 0;
 
@@ -96,7 +109,11 @@ void runScript(const QString& file, MeshDocument& document, GLLogStream& log, bo
 		filter->setLog(&log);
 		RichParameterList parameters = filter->initParameterList(action, document);
 		for (const RichParameter& given : step.second)
-			parameters.setValue(given.name(), given.value());
+			if (cancelling && given.stringType() == "RichMesh")
+				parameters.setValue(
+					given.name(), IntValue(layerFromLast(document, given.value().getInt())));
+			else
+				parameters.setValue(given.name(), given.value());
 		unsigned int changed = 0;
 		const std::string before = contents(document) + fileContents(step);
 		int cancelled = 0, at = 0;

@@ -19,7 +19,7 @@ STEPS = {
         ("Contraction Step", {"steps": ("RichInt", 40)}), ("Collapse to Curve", {}),
         ("Refine Skeleton", {}), ("Save Skeleton", {"file": ("RichSaveFile", "FOLDER/s.json")}),
         ("Prune Skeleton", {}), ("Resample and Smooth Skeleton", {}),
-        ("Compare Skeletons", {"other": ("RichMesh", 4)}), ("Measure Skeleton", {}),
+        ("Compare Skeletons", {"other": ("RichMesh", 1)}), ("Measure Skeleton", {}),
         ("Parts of the Surface", {}), ("Medial Balls", {})]),
     "poles by balls": ("bent_tube", [
         ("Medial Poles", {"pole_method": ("RichEnum", 1)}), ("Medial Axis", {})]),
