@@ -5,6 +5,7 @@
 
 pygel     local separators at several scales (Baerentzen and Rotenberg 2021), from PyGEL3D
 skeletor  its implementation of mean curvature skeletons, without splits and medial term
+atc08     mesh contraction (Au et al. 2008), all three steps: see atc08.py
 """
 
 from __future__ import annotations
@@ -17,6 +18,8 @@ from pathlib import Path
 
 import numpy as np
 import trimesh
+
+from atc08 import atc08
 
 
 def pygel(mesh: trimesh.Trimesh) -> tuple[np.ndarray, np.ndarray]:
@@ -40,7 +43,12 @@ def skeletor(mesh: trimesh.Trimesh) -> tuple[np.ndarray, np.ndarray]:
     return np.array(skeleton.vertices), np.array(skeleton.edges, int).reshape(-1, 2)
 
 
-PEERS = {"pygel": pygel, "skeletor": skeletor}
+def mesh_contraction(mesh: trimesh.Trimesh) -> tuple[np.ndarray, np.ndarray]:
+    skeleton, _, _ = atc08(np.asarray(mesh.vertices, float), np.asarray(mesh.faces, int))
+    return skeleton.points, skeleton.edges
+
+
+PEERS = {"pygel": pygel, "skeletor": skeletor, "atc08": mesh_contraction}
 
 
 def parse_arguments() -> argparse.Namespace:
