@@ -61,7 +61,7 @@ Results run(FilterRun& run)
 	if (surfaceInput.poles)
 		run.log("Taking the medial poles that the layer carries.");
 
-	KeptStages kept; // the last one is always among them
+	std::optional<KeptStages> kept(std::in_place); // the last one is always among them
 	std::optional<KeptStages::FlowShare> share;
 	mcf::Observer observer;
 	observer.onNote = noteLog(run);
@@ -69,8 +69,9 @@ Results run(FilterRun& run)
 	if (keepStages > 0) {
 		observer.every = keepStages;
 		observer.onStage = [&](mcf::Stage stage) {
-			kept.add(std::make_shared<const mcf::Stage>(std::move(stage)));
+			kept->add(std::make_shared<const mcf::Stage>(std::move(stage)));
 		};
+		observer.onStartOver = [&] { kept.emplace(); };
 		observer.onPhase = [&](mcf::Phase ended) {
 			if (ended == mcf::Phase::Poles)
 				share.emplace();
@@ -80,22 +81,24 @@ Results run(FilterRun& run)
 	}
 	const mcf::Skeletonization result =
 		mcf::skeletonize(surfaceInput, parameters, run.progress.part(0.02, 0.99), observer);
-	if (kept.empty() || kept.last()->iteration != result.stage->iteration)
-		kept.add(result.stage);
+	if (kept->empty() || kept->last()->iteration != result.stage->iteration)
+		kept->add(result.stage);
 
 	DocumentEdit edit(run.document);
 	MeshModel& input = run.layer();
 	const QString name = baseName(input);
 	MeshModel* surface = &input;
 	SurfaceLayer contracted = read;
-	const bool isInput = !parameters.resample && !solid.isRepaired();
+	// A resampled surface that is too thin is not the one that was contracted.
+	const bool isResampled = result.surface != surfaceInput.mesh;
+	const bool isInput = !isResampled && !solid.isRepaired();
 	if (!isInput) {
-		surface = &edit.addSurface(input, name + (parameters.resample ? "_resampled" : "_solid"),
+		surface = &edit.addSurface(input, name + (isResampled ? "_resampled" : "_solid"),
 			*result.surface, run.progress.part(0.99, 0.99));
 		contracted = compactSurface(result.surface);
 	}
 	const SurfaceLink link = linkTo(*surface, contracted);
-	addStages(edit, input, kept, link, run.progress.part(0.99, 1));
+	addStages(edit, input, *kept, link, run.progress.part(0.99, 1));
 	if (result.sheets)
 		edit.addMesoSkeleton(input, name + "_skeleton", result.sheets->skeleton);
 	else

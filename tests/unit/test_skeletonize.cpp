@@ -401,3 +401,36 @@ TEST(Skeletonize, OnAShapeOfOneScaleAdaptingChangesNothing)
 	EXPECT_EQ(result.curve.edges, plain.curve.edges);
 	EXPECT_TRUE(result.stage->epsilonLimit.empty());
 }
+
+TEST(Skeletonize, APlateThinnerThanItsResampledEdgesIsContractedAsItIs)
+{
+	constexpr double breadth = 1, depth = 0.8, thickness = 0.001; // 0.08 % of the diagonal
+	shapes::Soup soup = shapes::box(breadth, depth, thickness);
+	for (int i = 0; i < 3; ++i)
+		soup = shapes::subdivided(soup);
+	Observer observer;
+	std::vector<int> kept;
+	std::string notes;
+	observer.onStage = [&](const Stage& stage) { kept.push_back(stage.iteration); };
+	observer.onStartOver = [&] { kept.clear(); };
+	observer.onNote = [&](const std::string& note) { notes += note; };
+	const Skeletonization result = run(soup, Parameters(), observer);
+	EXPECT_EQ(result.refined, 1);
+	EXPECT_NE(notes.find("as it is"), std::string::npos);
+	EXPECT_EQ(result.surface->vertexCount(), int(soup.points.size()));
+	ASSERT_EQ(int(kept.size()), result.stage->iteration);
+	for (size_t i = 0; i < kept.size(); ++i)
+		EXPECT_EQ(kept[i], int(i) + 1);
+	const SkeletonStatistics counts = statistics(result.curve);
+	EXPECT_EQ(counts.components, 1);
+	EXPECT_EQ(counts.cycles, 0);
+	EXPECT_LT(counts.length, 3 * std::hypot(breadth, depth));
+	vcg::Box3d bounds;
+	for (const Point3d& p : soup.points)
+		bounds.Add(p);
+	for (const Point3d& p : result.curve.position)
+		for (int k = 0; k < 3; ++k) {
+			EXPECT_GT(p[k], bounds.min[k]);
+			EXPECT_LT(p[k], bounds.max[k]);
+		}
+}

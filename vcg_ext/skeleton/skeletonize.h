@@ -40,6 +40,17 @@ enum class Phase { Check, Resample, Poles, Contraction, Collapse, Refine };
 struct PhaseSeconds
 {
 	double check = 0, resample = 0, poles = 0, contraction = 0, collapse = 0, refine = 0;
+
+	PhaseSeconds& operator+=(const PhaseSeconds& other)
+	{
+		check += other.check;
+		resample += other.resample;
+		poles += other.poles;
+		contraction += other.contraction;
+		collapse += other.collapse;
+		refine += other.refine;
+		return *this;
+	}
 };
 
 /// Callbacks invoked during skeletonize(), beside those of the contraction. Unset ones cost nothing.
@@ -49,6 +60,8 @@ struct Observer : StageObserver
 	NoteCallback onNote;
 	/// A phase has ended, or was left out.
 	std::function<void(Phase)> onPhase;
+	/// The contraction starts over on another surface, see skeletonize(): stages so far count no more.
+	std::function<void()> onStartOver;
 };
 
 /// A surface that has been checked, and what is known of it.
@@ -81,6 +94,8 @@ struct Skeletonization
 	NoiseReport noise;
 	/// Fraction of the components whose curve is refined; 0 if it was not asked for.
 	double refined = 0;
+	/// What became of each component in the refinement.
+	RefineReport refinement;
 	/// What was done to the triangles to make them those of a solid.
 	SolidReport solid;
 	PhaseSeconds seconds;
@@ -118,26 +133,18 @@ private:
 
 } // namespace detail
 
-/**
- * Computes the skeleton of a checked surface.
- * @param given      all of them are read. What is too thin for a resampled surface to follow, see
- *                   fieldOfResampling(), is not contracted and refined adaptively either.
- * @param refinement the knobs of refine(), where parameters.refine is set.
- * @throws InvalidParameter, InvalidInput, SolverError, Cancelled.
- * Complexity: O(V log V) and some 10 to 40 steps of the flow.
- */
-inline Skeletonization skeletonize(const SurfaceInput& input, const Parameters& given,
-	const Progress& progress = Progress(), const Observer& observer = Observer(),
-	const RefineParameters& refinement = RefineParameters())
+namespace detail {
+
+/// skeletonize(), on the surface that the parameters say, whatever comes out.
+inline Skeletonization skeletonizeOnce(const SurfaceInput& input, const Parameters& given,
+	const Progress& progress, const Observer& observer, const RefineParameters& refinement)
 {
-	given.check();
-	refinement.check();
 	Parameters parameters = given;
 	const auto note = [&](const std::string& text) {
 		if (observer.onNote)
 			observer.onNote(text);
 	};
-	detail::PhaseClock clock(observer);
+	PhaseClock clock(observer);
 	Skeletonization result;
 
 	result.surface = input.mesh;
@@ -191,14 +198,90 @@ inline Skeletonization skeletonize(const SurfaceInput& input, const Parameters& 
 			parameters.poleMethod == PoleMethod::Balls ? result.poles.get() : nullptr);
 		result.curve = std::move(refined.skeleton);
 		result.refined = refined.report.fraction();
-		if (const std::string text = refined.report.text(); !text.empty())
-			note(text);
+		result.refinement = refined.report;
 	}
 	result.seconds.refine = clock.end(Phase::Refine);
 
 	result.node = parameters.resample
 		? transferredNodes(surface, result.nodeOfSurface(), *input.mesh, progress.part(0.99, 1))
 		: result.nodeOfSurface();
+	return result;
+}
+
+/// Whether a skeleton of the surface as it is replaces one of the resampled surface that could not be refined.
+inline bool isBetter(const Skeletonization& asItIs, const Skeletonization& resampled)
+{
+	constexpr double muchShorter = 0.5;
+	if (asItIs.refined != resampled.refined)
+		return asItIs.refined > resampled.refined;
+	return !asItIs.sheets
+		&& statistics(asItIs.curve).length < muchShorter * statistics(resampled.curve).length;
+}
+
+} // namespace detail
+
+/**
+ * Computes the skeleton of a checked surface.
+ *
+ * A surface that is thinner than the edges of its resampling is cut off, or crosses itself, when it is resampled.
+ * That shows in the end: its curve cannot be refined, since that would leave the surface. Then the surface is
+ * contracted as it is as well, and the better curve is taken, which is said.
+ *
+ * @param given      all of them are read. What is too thin for a resampled surface to follow, see
+ *                   fieldOfResampling(), is not contracted and refined adaptively either.
+ * @param refinement the knobs of refine(), where parameters.refine is set.
+ * @throws InvalidParameter, InvalidInput, SolverError, Cancelled.
+ * Complexity: O(V log V) and some 10 to 40 steps of the flow; twice that for what is too thin.
+ */
+inline Skeletonization skeletonize(const SurfaceInput& input, const Parameters& given,
+	const Progress& progress = Progress(), const Observer& observer = Observer(),
+	const RefineParameters& refinement = RefineParameters())
+{
+	constexpr int maxVerticesAsItIs = 100000;
+	constexpr double once = 0.97; // of the time: it is seldom that both are needed
+	given.check();
+	refinement.check();
+	Skeletonization result =
+		detail::skeletonizeOnce(input, given, progress.part(0, once), observer, refinement);
+	const bool isDoubtful = given.resample && given.refine && !result.sheets && input.held.empty()
+		&& result.refined < 1 && result.stage->converged
+		&& input.mesh->vertexCount() <= maxVerticesAsItIs;
+	std::vector<Stage> stages;
+	bool isAsItIs = false;
+	if (isDoubtful) {
+		Parameters asItIs = given;
+		asItIs.resample = false;
+		Observer ofOther;
+		ofOther.every = observer.every;
+		if (observer.onStage)
+			ofOther.onStage = [&](Stage stage) { stages.push_back(std::move(stage)); };
+		try {
+			Skeletonization other =
+				detail::skeletonizeOnce(input, asItIs, progress.part(once, 1), ofOther, refinement);
+			isAsItIs = detail::isBetter(other, result);
+			other.noise = result.noise;
+			result.seconds += other.seconds;
+			other.seconds = result.seconds;
+			if (isAsItIs)
+				result = std::move(other);
+		}
+		catch (const SolverError&) {
+			// Then there is nothing to choose from.
+		}
+	}
+	const auto note = [&](const std::string& text) {
+		if (observer.onNote && !text.empty())
+			observer.onNote(text);
+	};
+	if (isAsItIs) {
+		note(
+			"The shape is too thin for its resampled surface: the skeleton is that of the surface as it is.");
+		if (observer.onStartOver)
+			observer.onStartOver();
+		for (Stage& stage : stages)
+			observer.onStage(std::move(stage));
+	}
+	note(result.refinement.text());
 	return result;
 }
 
