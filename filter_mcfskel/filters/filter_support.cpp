@@ -68,6 +68,15 @@ std::vector<ParameterSpec> adaptiveParameters()
 	};
 }
 
+ParameterSpec detailParameter(double standard)
+{
+	return {ParameterKind::Real, "detail", standard, "Detail",
+		"How small the branches may be that the skeleton has, 0 to 1: those stay whose "
+		"<i>mcfskel_significance</i> is at least 1 - detail. 0 leaves the trunk, 1 all; at 0.5 limbs stay "
+		"that stand out by the radius of the ball that they hang on. Less detail only leaves out "
+		"branches: what stays is the same."};
+}
+
 ParameterSpec poleMethodParameter()
 {
 	return {ParameterKind::Choice, "pole_method", double(mcf::Parameters().poleMethod),

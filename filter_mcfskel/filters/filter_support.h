@@ -31,6 +31,7 @@ ParameterSpec resampleIterationsParameter();
 ParameterSpec denoiseParameter();
 /// adaptive and relative_length.
 std::vector<ParameterSpec> adaptiveParameters();
+ParameterSpec detailParameter(double standard);
 ParameterSpec poleMethodParameter();
 ParameterSpec repairParameter();
 std::vector<ParameterSpec> weightParameters();

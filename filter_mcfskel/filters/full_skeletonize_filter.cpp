@@ -40,6 +40,7 @@ Results run(FilterRun& run)
 	mcf::Parameters parameters;
 	parameters.resample = run.parameters.flag("resample");
 	parameters.refine = run.parameters.flag("refine");
+	parameters.detail = run.parameters.real("detail");
 	readSheets(run.parameters, parameters);
 	readResampling(run.parameters, parameters);
 	readAdaptive(run.parameters, parameters);
@@ -150,6 +151,7 @@ FilterSpec fullSkeletonizeFilter()
 		"Goes beyond the paper at the end: removes spurs, samples the branches evenly, centres and "
 		"smooths them, extends the tips to the ends of their features, and grows branches into limbs "
 		"that the curve lacks. Without, the skeleton is the paper's own. Also a filter of its own."});
+	parameters.push_back(detailParameter(defaults.detail));
 	parameters.push_back(fixSelectedParameter());
 	parameters.push_back(keepSheetsParameter());
 	parameters.push_back(sheetThresholdParameter());

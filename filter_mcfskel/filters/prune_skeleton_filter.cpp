@@ -20,6 +20,7 @@ Results run(FilterRun& run)
 	const double diagonal = referenceDiagonal(run.layer());
 	mcf::PruneParameters parameters;
 	parameters.spurProminence = run.parameters.real("spur_prominence");
+	parameters.detail = run.parameters.real("detail");
 	parameters.shortestBranch = run.parameters.fraction("min_length") * diagonal;
 	parameters.leastRadius = run.parameters.fraction("min_radius") * diagonal;
 	parameters.mergeJunctions = run.parameters.flag("merge_junctions");
@@ -63,8 +64,8 @@ FilterSpec pruneSkeletonFilter()
 		helpPage(
 			"Removes branches of the current skeleton that end in a tip and merges junctions that are "
 			"one, as a new layer NAME_pruned: first the sure spurs, whose end lies within the ball at "
-			"the junction that they hang from, then branches that are too short, then those that are "
-			"too thin. Cycles and components stay as they are.<br><br>"
+			"the junction that they hang from, then branches below the detail, then those that are too "
+			"short, then those that are too thin. Cycles and components stay as they are.<br><br>"
 			"What had merged into a removed branch goes to its junction: <i>mcfskel_node</i> of the "
 			"surface follows."),
 		FilterCategory::Remeshing, MeshModel::MM_NONE,
@@ -72,6 +73,7 @@ FilterSpec pruneSkeletonFilter()
 			 "A terminal branch whose end ball sticks out of the ball at its junction by less than this "
 			 "part of the latter's radius is a spur, 0 to 1. 0 keeps all; 0.1 removes what describes "
 			 "nothing; more removes small features."},
+			detailParameter(defaults.detail),
 			{ParameterKind::Length, "min_length", 0, "Shortest branch",
 				"Terminal branches shorter than this go, mesh units or percent of the diagonal; the "
 				"shortest first. 0: none; sane are up to 10 %."},

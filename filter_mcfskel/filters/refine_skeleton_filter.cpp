@@ -23,6 +23,7 @@ Results run(FilterRun& run)
 	mcf::RefineParameters parameters;
 	parameters.spurProminence = run.parameters.real("spur_prominence");
 	parameters.smoothing = run.parameters.real("smoothing");
+	parameters.detail = run.parameters.real("detail");
 	parameters.adaptive = run.parameters.flag("adaptive");
 	parameters.relativeLength = run.parameters.real("relative_length");
 	parameters.check();
@@ -53,12 +54,14 @@ FilterSpec refineSkeletonFilter()
 			"Components and cycles stay as they are, and nothing leaves the shape: a component for which "
 			"that cannot be had keeps its curve as it is. The log says so, and the result "
 			"<i>refined</i> is the fraction of the components that are refined.<br><br>"
-			"The surface's <i>mcfskel_node</i> follows. This stage goes beyond the paper."),
+			"Its <i>mcfskel_significance</i> tells how much of the shape the branch of each node stands for. The "
+			"surface's <i>mcfskel_node</i> follows. This stage goes beyond the paper."),
 		FilterCategory::Remeshing, MeshModel::MM_NONE,
 		{surfaceParameter("The surface that the skeleton is refined in."),
 			{ParameterKind::Real, "smoothing", defaults.smoothing, "Smoothness",
 				"How smooth the branches become, against how well centred; at least 0, sane are 4 to "
 				"400."},
+			detailParameter(defaults.detail),
 			ParameterSpec {ParameterKind::Real, "spur_prominence", defaults.spurProminence,
 				"Spur prominence",
 				"A terminal branch whose end ball sticks out of the ball at its junction by less than "

@@ -61,6 +61,7 @@ Results run(FilterRun& run)
 		{"branch_radius_mean", column(n, [&](size_t i) { return branches[i].meanRadius; })},
 		{"branch_radius_min", column(n, [&](size_t i) { return branches[i].leastRadius; })},
 		{"branch_radius_max", column(n, [&](size_t i) { return branches[i].greatestRadius; })},
+		{"branch_significance", column(n, [&](size_t i) { return branches[i].significance; })},
 		{"branch_area", column(n, [&](size_t i) { return area[i]; })},
 		{"branch_first_kind", column(n, [&](size_t i) { return int(branches[i].first); })},
 		{"branch_last_kind", column(n, [&](size_t i) { return int(branches[i].last); })},
@@ -81,7 +82,8 @@ FilterSpec surfacePartsFilter()
 			"borders short and smooth. The vertex quality of the surface becomes the local thickness, "
 			"the distance of each vertex to its branch.<br><br>"
 			"Numbers for each branch, in that order: <i>branch_length</i>, <i>branch_radius_mean</i>, "
-			"<i>_min</i>, <i>_max</i>, <i>branch_area</i> of its part, and what its two ends are, "
+			"<i>_min</i>, <i>_max</i>, <i>branch_significance</i> (1 where it is not known), <i>branch_area</i> "
+			"of its part, and what its two ends are, "
 			"<i>branch_first_kind</i> and <i>branch_last_kind</i>: 0 a tip, 1 a junction, 2 the branch "
 			"itself, a ring. A short branch between two junctions may have no part."),
 		FilterCategory::Quality, MeshModel::MM_NONE,

@@ -84,6 +84,8 @@ void fillStage(MeshModel& layer, std::shared_ptr<const mcf::Stage> stage, const 
 void fillCurve(MeshModel& layer, const CurveLayer& curve, double diagonal)
 {
 	fillCurve(layer, curve.skeleton.position, curve.skeleton.edges, curve.skeleton.radius);
+	if (!curve.skeleton.significance.empty())
+		writeScalars(layer, significanceAttribute, curve.skeleton.significance);
 	LayerState state;
 	state.curve = std::make_shared<const CurveLayer>(curve);
 	state.diagonal = diagonal;

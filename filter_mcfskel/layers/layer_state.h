@@ -32,6 +32,7 @@ constexpr char poleRadiusAttribute[] = "mcfskel_pole_radius";
 constexpr char fixedAttribute[] = "mcfskel_fixed";
 constexpr char heldAttribute[] = "mcfskel_held";
 constexpr char radiusAttribute[] = "mcfskel_radius";
+constexpr char significanceAttribute[] = "mcfskel_significance";
 constexpr char nodeAttribute[] = "mcfskel_node";
 constexpr char kindAttribute[] = "mcfskel_kind";
 constexpr char stateAttribute[] = "mcfskel_state";
@@ -125,7 +126,7 @@ inline void requireOwnAttributes(const MeshModel& layer)
 {
 	requireType<Point3m>(layer, layer.cm.vert_attr, poleAttribute);
 	for (const char* name : {poleRadiusAttribute, fixedAttribute, heldAttribute, radiusAttribute,
-			 nodeAttribute, kindAttribute})
+			 significanceAttribute, nodeAttribute, kindAttribute})
 		requireType<Scalarm>(layer, layer.cm.vert_attr, name);
 	requireType<StateMark>(layer, layer.cm.vert_attr, stateAttribute);
 }

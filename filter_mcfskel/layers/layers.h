@@ -60,8 +60,8 @@ struct StageLayer
 /// A skeleton as found on a layer.
 struct CurveLayer
 {
-	/// Exact where the layer still is what a filter made; else what the layer shows, the radius from
-	/// its attribute or empty. `node` is empty where the correspondence is not known.
+	/// Exact where the layer still is what a filter made; else what the layer shows, radius and
+	/// significance from their attributes or empty. `node` is empty where the correspondence is not known.
 	vcg::tri::mcf::CurveSkeleton skeleton;
 	/// The surface whose vertices `skeleton.node` counts.
 	SurfaceLink surface;

@@ -221,6 +221,7 @@ CurveLayer readCurve(const MeshModel& layer)
 	const std::string label = "'" + layer.label().toStdString() + "'";
 	const CMeshO& mesh = layer.cm;
 	const auto* radius = findAttribute(mesh.vert_attr, radiusAttribute);
+	const auto* significance = findAttribute(mesh.vert_attr, significanceAttribute);
 	if (mesh.fn > 0)
 		throw mcf::InvalidInput("The layer " + label
 			+ " has faces, it is no curve skeleton: make a layer of nodes and edges current.");
@@ -235,7 +236,13 @@ CurveLayer readCurve(const MeshModel& layer)
 		curve.skeleton.position.push_back(toDouble(mesh.vert[size_t(slot)].cP()));
 		if (radius && isOfType<Scalarm>(*radius))
 			curve.skeleton.radius.push_back(double(valuesOf<Scalarm>(*radius)[slot]));
+		if (significance && isOfType<Scalarm>(*significance))
+			curve.skeleton.significance.push_back(double(valuesOf<Scalarm>(*significance)[slot]));
 	}
+	const auto isSignificance = [](double value) { return value >= 0 && value <= 1; };
+	auto& shown = curve.skeleton.significance;
+	if (!std::all_of(shown.begin(), shown.end(), isSignificance))
+		shown.clear(); // somebody else's
 	auto& edges = curve.skeleton.edges;
 	for (const CEdgeO& e : mesh.edge) {
 		if (e.IsD())

@@ -43,10 +43,12 @@ def to_networkx(skeleton: Skeleton, arrays: bool) -> Any:
     graph = networkx.Graph(**{name: value for name, value in skeleton.results.items()
                               if isinstance(value, (bool, int, float, str))})
     sources = skeleton.surface_vertices() if len(skeleton.correspondence) else None
-    radius = skeleton.radius.tolist()
+    radius, significance = skeleton.radius.tolist(), skeleton.significance.tolist()
     for node, (x, y, z) in enumerate(skeleton.nodes.tolist()):
         graph.add_node(node, radius=radius[node])
         values = graph.nodes[node]
+        if significance:
+            values["significance"] = significance[node]
         if arrays:
             values["position"] = (x, y, z)
         else:
@@ -74,6 +76,8 @@ def to_pyvista(skeleton: Skeleton) -> Any:
     if len(skeleton.faces):
         mesh.faces = np.column_stack([np.full(len(skeleton.faces), 3), skeleton.faces]).ravel()
     mesh.point_data["radius"] = skeleton.radius
+    if len(skeleton.significance):
+        mesh.point_data["significance"] = skeleton.significance
     mesh.cell_data["branch"] = np.concatenate(
         [np.arange(len(branches)), np.full(len(skeleton.faces), -1)]).astype(np.int64)
     return mesh

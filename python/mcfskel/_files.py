@@ -28,7 +28,7 @@ PLY_TYPES = {"char": "i1", "uchar": "u1", "short": "<i2", "ushort": "<u2", "int"
              "uint": "<u4", "float": "<f4", "double": "<f8", "int8": "i1", "uint8": "u1",
              "int16": "<i2", "uint16": "<u2", "int32": "<i4", "uint32": "<u4", "float32": "<f4",
              "float64": "<f8"}
-Parts = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+Parts = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 
 
 def suffix_of(path: Path, known: tuple[str, ...]) -> str:
@@ -52,6 +52,8 @@ def save(skeleton: Skeleton, path: Path, options: dict[str, Any]) -> None:
     layers = pymeshlab.MeshSet()
     layer = pymeshlab.Mesh(vertex_matrix=skeleton.nodes, edge_matrix=skeleton.edges.astype(np.int32))
     layer.add_vertex_custom_scalar_attribute(skeleton.radius, "mcfskel_radius")
+    if len(skeleton.significance):
+        layer.add_vertex_custom_scalar_attribute(skeleton.significance, "mcfskel_significance")
     layers.add_mesh(layer, "skeleton")
     if suffix == ".glb" and (skeleton.surface is None or not len(skeleton.correspondence)):
         raise SkeletonError(f"'{path}': .glb holds the surface, which a skeleton from a file does not "
@@ -113,14 +115,14 @@ def write_sheets(skeleton: Skeleton, path: Path) -> None:
 
 
 def load(path: Path) -> Parts:
-    """Nodes, edges, radius, correspondence and faces from a file."""
+    """Nodes, edges, radius, correspondence, faces and significance from a file."""
     suffix = suffix_of(path, READ)
     if suffix in (".swc", ".cg"):
         layer = (layers := open_mesh(str(path))).current_mesh()
         radius = np.zeros(layer.vertex_number())
         if layer.has_vertex_scalar():
             radius = layer.vertex_custom_scalar_attribute_array("mcfskel_radius")
-        parts = (layer.vertex_matrix(), layer.edge_matrix(), radius, [], [])
+        parts = (layer.vertex_matrix(), layer.edge_matrix(), radius, [], [], [])
         del layers
         return checked(path, *parts)
     readers = {".json": read_json, ".graphml": read_graphml, ".vtp": read_vtp, ".ply": read_ply}
@@ -136,7 +138,8 @@ def load(path: Path) -> Parts:
     return checked(path, *parts)
 
 
-def checked(path: Path, nodes: Any, edges: Any, radius: Any, correspondence: Any, faces: Any) -> Parts:
+def checked(path: Path, nodes: Any, edges: Any, radius: Any, correspondence: Any, faces: Any,
+            significance: Any) -> Parts:
     """The arrays of a skeleton, each as it has to be."""
     def fail(what: str) -> None:
         raise SkeletonError(f"'{path}' cannot be read: {what}.")
@@ -146,6 +149,7 @@ def checked(path: Path, nodes: Any, edges: Any, radius: Any, correspondence: Any
     edges = np.asarray(edges, np.int64).reshape(-1, 2)
     faces = np.asarray(faces, np.int64).reshape(-1, 3)
     correspondence = np.asarray(correspondence, np.int64)
+    significance = np.asarray(significance, float)
     if not len(nodes):
         fail("it has no nodes")
     if len(radius) != len(nodes):
@@ -154,13 +158,16 @@ def checked(path: Path, nodes: Any, edges: Any, radius: Any, correspondence: Any
         fail(f"node {int(np.argmin(np.isfinite(nodes).all(axis=1)))} is not finite")
     if not (np.isfinite(radius) & (radius >= 0)).all():
         fail(f"the radius of node {int(np.argmin(np.isfinite(radius) & (radius >= 0)))} cannot be")
+    if len(significance) not in (0, len(nodes)) or not ((significance >= 0) & (significance <= 1)).all():
+        fail(f"the significance is not a number from 0 to 1 for each of the {len(nodes)} nodes")
     for name, ids, lowest in [("an edge", edges, 0), ("a face", faces, 0),
                               ("a surface vertex", correspondence, -1)]:
         if ids.size and (ids.min() < lowest or ids.max() >= len(nodes)):
             fail(f"{name} has a node that does not exist")
     if (edges[:, 0] == edges[:, 1]).any():
         fail("an edge goes from a node to itself")
-    return nodes, np.unique(np.sort(edges, axis=1), axis=0), radius, correspondence, faces
+    return (nodes, np.unique(np.sort(edges, axis=1), axis=0), radius, correspondence, faces,
+            significance)
 
 
 def correspondence_of(sources: list[list[int]], count: int | None) -> np.ndarray:
@@ -185,7 +192,8 @@ def read_json(path: Path) -> tuple:
     return ([node["position"] for node in graph["nodes"]],
             [(row[link["source"]], row[link["target"]]) for link in links],
             [node.get("radius", 0) for node in graph["nodes"]],
-            correspondence_of(sources, graph.get("graph", {}).get("surface_vertices")), [])
+            correspondence_of(sources, graph.get("graph", {}).get("surface_vertices")), [],
+            [node["significance"] for node in graph["nodes"] if "significance" in node])
 
 
 def read_graphml(path: Path) -> tuple:
@@ -209,7 +217,8 @@ def read_graphml(path: Path) -> tuple:
             [(row[edge.get("source")], row[edge.get("target")])
              for edge in graph.findall(f"{space}edge")],
             [float(node.get("radius", 0)) for node in of_node],
-            correspondence_of(sources, None if count is None else int(count)), [])
+            correspondence_of(sources, None if count is None else int(count)), [],
+            [float(node["significance"]) for node in of_node if "significance" in node])
 
 
 def read_vtp(path: Path) -> tuple:
@@ -234,7 +243,8 @@ def read_vtp(path: Path) -> tuple:
     radius = numbers("Piece/PointData", float, "MaximumInscribedSphereRadius")
     return (nodes, np.column_stack([chain[:-1], chain[1:]])[inner],
             radius if len(radius) else np.zeros(len(nodes)),
-            numbers("FieldData", np.int64, "mcfskel_node"), [])
+            numbers("FieldData", np.int64, "mcfskel_node"), [],
+            numbers("Piece/PointData", float, "mcfskel_significance"))
 
 
 def read_ply(path: Path) -> tuple:
@@ -275,4 +285,6 @@ def read_ply(path: Path) -> tuple:
     return (np.column_stack([vertex[axis] for axis in "xyz"]),
             np.column_stack([edge["vertex1"], edge["vertex2"]]), radius,
             tables["mcfskel_surface"]["node"] if "mcfskel_surface" in tables else [],
-            tables["face"]["vertex_indices"] if "face" in tables else [])
+            tables["face"]["vertex_indices"] if "face" in tables else [],
+            vertex["mcfskel_significance"]
+            if "mcfskel_significance" in (vertex.dtype.names or ()) else [])

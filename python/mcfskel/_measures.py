@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 def branch_measures(skeleton: Skeleton) -> dict[str, np.ndarray]:
     rows = [_measures(skeleton, branch) for branch in skeleton.branches]
     names = ("first", "last", "length", "chord", "tortuosity", "curvature", "radius_min", "radius_mean",
-             "radius_max")
+             "radius_max", "significance")
     table = {name: np.array([row[name] for row in rows]) for name in names}
     table["angle_first"], table["angle_last"] = _angles(skeleton)
     table["strahler"] = _strahler(skeleton)
@@ -35,6 +35,7 @@ def _measures(skeleton: Skeleton, branch: np.ndarray) -> dict[str, float]:
     return {"first": branch[0], "last": branch[-1], "length": length, "chord": chord,
             "tortuosity": length / chord - 1 if chord > 0 else np.inf,
             "curvature": turns.sum() / length if length > 0 else 0.0,
+            "significance": skeleton.significance[branch].min() if len(skeleton.significance) else np.nan,
             "radius_min": radius.min(), "radius_max": radius.max(),
             "radius_mean": np.average((radius[1:] + radius[:-1]) / 2, weights=lengths)
                            if length > 0 else radius.mean()}

@@ -55,6 +55,9 @@ class Skeleton:
         faces: The triangles of the sheets as nodes, (F, 3), if ``keep_sheets`` was set and there are
             any; their sides are not among ``edges``.
         surface: The mesh that the skeleton was made from, for pictures; None after ``load()``.
+        significance: How much of the shape the branch of each node stands for, (N,), 0 to 1; those
+            with at least 1 - d are the skeleton of the detail d. Empty if it is not known, as for a
+            skeleton that is not refined or from a .swc file.
     """
 
     nodes: npt.NDArray[np.float64]
@@ -64,6 +67,7 @@ class Skeleton:
     results: dict[str, Any] = field(default_factory=dict)
     faces: npt.NDArray[np.int64] = field(default_factory=_no_faces)
     surface: Surface | None = None
+    significance: npt.NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
 
     def __repr__(self) -> str:
         counts = [(len(self.nodes), "node"), (len(self.edges), "edge"),
@@ -124,7 +128,8 @@ class Skeleton:
         Columns: first and last (nodes); length and chord, mesh units; tortuosity, length / chord - 1,
         infinite where a branch ends where it begins; curvature, the angle by which the branch turns
         over its length, radians a mesh unit (of an unrefined curve much of it is roughness);
-        radius_min, radius_mean (over the length), radius_max; angle_first and angle_last, degrees, the
+        radius_min, radius_mean (over the length), radius_max; significance, NaN where it is not known;
+        angle_first and angle_last, degrees, the
         smallest angle to another branch at that junction, each taken towards the point where it leaves
         the junction's ball, NaN at other ends; strahler, the order after Strahler (1957) with the
         thickest end of a branch as the root, 0 in a component with cycles. For a table:
@@ -135,7 +140,7 @@ class Skeleton:
     def to_networkx(self, *, arrays: bool = False) -> networkx.Graph:
         """The skeleton as a graph, sides of sheets included; the results are the graph's attributes.
 
-        Nodes have x, y, z, radius and, where the correspondence is known, surface_vertices, ids with
+        Nodes have x, y, z, radius and, where they are known, significance and surface_vertices, ids with
         blanks between; edges have length and, where there are sheets, sheet. All of these are numbers
         and texts, so that every writer of networkx takes them.
 
@@ -146,8 +151,8 @@ class Skeleton:
         return _convert.to_networkx(self, arrays)
 
     def to_pyvista(self) -> pyvista.PolyData:
-        """A polyline for each branch and the sheets' triangles; point data radius, cell data branch
-        (-1 on a sheet)."""
+        """A polyline for each branch and the sheets' triangles; point data radius and, if it is known,
+        significance, cell data branch (-1 on a sheet)."""
         return _convert.to_pyvista(self)
 
     def to_trimesh(self) -> trimesh.path.Path3D:
@@ -253,14 +258,14 @@ def check_options(**options: Any) -> None:
 def load(path: str | os.PathLike[str]) -> Skeleton:
     """Reads a skeleton that ``Skeleton.save()`` or the filter Save Skeleton has written.
 
-    Radius and correspondence are those that the format keeps; .cg has neither (the radius is then 0),
-    .swc has no correspondence. SWC and curve graphs from elsewhere are read as well.
+    Radius, significance and correspondence are those that the format keeps; .cg has none (the radius is
+    then 0), .swc only the radius. SWC and curve graphs from elsewhere are read as well.
 
     Raises:
         SkeletonError: The file cannot be read; the text says where it is wrong.
     """
-    nodes, edges, radius, correspondence, faces = _files.load(Path(path))
-    return Skeleton(nodes, edges, radius, correspondence, {}, faces)
+    nodes, edges, radius, correspondence, faces, significance = _files.load(Path(path))
+    return Skeleton(nodes, edges, radius, correspondence, {}, faces, None, significance)
 
 
 def _document(vertices: Any, faces: Any) -> pymeshlab.MeshSet:
@@ -292,7 +297,12 @@ def _from_layer(layer: pymeshlab.Mesh, mesh: pymeshlab.Mesh, results: dict[str, 
     edges = np.sort(layer.edge_matrix().astype(np.int64).reshape(-1, 2), axis=1)
     edges = edges[np.lexsort((edges[:, 1], edges[:, 0]))]
     faces = layer.face_matrix().astype(np.int64).reshape(-1, 3)
-    return Skeleton(layer.vertex_matrix(), edges, radius, correspondence, results, faces, surface)
+    try:
+        significance = layer.vertex_custom_scalar_attribute_array("mcfskel_significance")
+    except pymeshlab.PyMeshLabException:  # it is not refined
+        significance = np.empty(0)
+    return Skeleton(layer.vertex_matrix(), edges, radius, correspondence, results, faces, surface,
+                    significance)
 
 
 def _array(values: Any, name: str, kind: type) -> np.ndarray:

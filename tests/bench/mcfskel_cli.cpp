@@ -30,6 +30,7 @@ namespace {
 const char* const usage =
 	"usage: mcfskel_cli MESH [options]\n"
 	"  --skeleton FILE           write the skeleton, as OBJ\n"
+	"  --significance FILE       write that of each node of a refined skeleton, a line each\n"
 	"  --surface FILE            write the surface that was contracted\n"
 	"  --stage FILE              write the last stage of the contraction\n"
 	"  --no-resample             contract the mesh as it is\n"
@@ -51,6 +52,7 @@ const char* const usage =
 	"  --no-refine               leave the curve as the flow made it\n"
 	"  --spacing PCT             distance of the refined nodes, in % of the diagonal\n"
 	"  --smoothing K             smoothness of the refined branches\n"
+	"  --detail D                how small branches may be, 0 (the trunk) to 1\n"
 	"  --spur-prominence R       tips that stick out less are removed\n"
 	"  --junction-prominence R   junctions that stick out less are merged\n"
 	"  --tip-distinctness R      branches into corners that gain less are removed\n"
@@ -59,7 +61,7 @@ const char* const usage =
 
 struct Options
 {
-	std::string mesh, skeleton, surface, stage;
+	std::string mesh, skeleton, significance, surface, stage;
 	bool resampleOnly = false, solidOnly = false;
 	bool verbose = false;
 	bool progressGaps = false;
@@ -106,6 +108,7 @@ Options parse(int argc, char** argv)
 	using Text = const std::string&;
 	const std::map<std::string, std::function<void(Text)>> values = {
 		{"--skeleton", [&](Text t) { options.skeleton = t; }},
+		{"--significance", [&](Text t) { options.significance = t; }},
 		{"--surface", [&](Text t) { options.surface = t; }},
 		{"--stage", [&](Text t) { options.stage = t; }},
 		{"--target-length", [&](Text t) { p.targetLength = std::stod(t) / 100; }},
@@ -121,6 +124,7 @@ Options parse(int argc, char** argv)
 		{"--sheet-threshold", [&](Text t) { p.sheetThreshold = std::stod(t); }},
 		{"--max-iterations", [&](Text t) { p.maxIterations = std::stoi(t); }},
 		{"--spacing", [&](Text t) { r.spacing = std::stod(t) / 100; }},
+		{"--detail", [&](Text t) { p.detail = std::stod(t); }},
 		{"--smoothing", [&](Text t) { r.smoothing = std::stod(t); }},
 		{"--spur-prominence", [&](Text t) { r.spurProminence = std::stod(t); }},
 		{"--tip-distinctness", [&](Text t) { r.tipDistinctness = std::stod(t); }},
@@ -252,6 +256,8 @@ void addSkeleton(const mcf::Skeletonization& result, const Options& options, ben
 		.add("skeleton_length", counts.length);
 	if (result.sheets)
 		report.add("sheet_faces", curve.faces.size());
+	if (!options.significance.empty())
+		bench::writeNumbers(result.curve.significance, options.significance);
 	if (!options.stage.empty())
 		bench::writeMesh(stage.mesh, options.stage);
 	if (!options.skeleton.empty())

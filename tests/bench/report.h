@@ -155,6 +155,17 @@ inline void writeObj(const Curve& curve, const std::string& path)
 		throw std::runtime_error("cannot write " + path);
 }
 
+/// Writes numbers, a line each.
+inline void writeNumbers(const std::vector<double>& numbers, const std::string& path)
+{
+	std::ofstream out(path);
+	out << std::setprecision(17);
+	for (double number : numbers)
+		out << number << '\n';
+	if (!out.flush())
+		throw std::runtime_error("cannot write " + path);
+}
+
 /// Runs a program's work; returns its exit status: 2 for std::invalid_argument, which is about how it
 /// was called, 1 for any other exception.
 template <class Work>

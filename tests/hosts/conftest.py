@@ -89,7 +89,7 @@ def attributes(mesh: pymeshlab.Mesh) -> dict[str, np.ndarray]:
     """All attributes of the project's that a layer carries."""
     found = {}
     for name in ["mcfskel_pole_radius", "mcfskel_fixed", "mcfskel_held", "mcfskel_radius",
-                 "mcfskel_node", "mcfskel_kind"]:
+                 "mcfskel_significance", "mcfskel_node", "mcfskel_kind"]:
         try:
             found[name] = scalars(mesh, name)
         except pymeshlab.PyMeshLabException:

@@ -88,7 +88,7 @@ class TestDefaults:
         values = opened("capsule").filter_parameter_values(FULL)
         expected = {"resample": True, "resample_iterations": 5, "w_l": 1.0, "w_h": 20.0, "w_m": 40.0,
                     "split_angle": 110.0, "keep_stages": 0, "max_iterations": 500, "refine": True,
-                    "denoise": True, "adaptive": True, "relative_length": pytest.approx(0.6)}
+                    "denoise": True, "adaptive": True, "relative_length": pytest.approx(0.6), "detail": pytest.approx(0.9)}
         assert {name: values[name] for name in expected} == expected
 
     def test_epsilon_is_a_fifth_of_a_percent_of_the_diagonal(self):

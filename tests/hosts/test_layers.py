@@ -289,7 +289,7 @@ class TestDeletedElements:
         failing(layers, COLLAPSE)
 
 
-SCALARS = ["mcfskel_pole_radius", "mcfskel_fixed", "mcfskel_radius", "mcfskel_node"]
+SCALARS = ["mcfskel_pole_radius", "mcfskel_fixed", "mcfskel_radius", "mcfskel_significance", "mcfskel_node"]
 
 
 def spoil(mesh: pymeshlab.Mesh, name: str) -> None:

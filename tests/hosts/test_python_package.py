@@ -89,7 +89,8 @@ def test_skeletonize_arrays_and_trimesh_alike(run):
         same = all(np.array_equal(getattr(s, k), getattr(t, k))
                    for k in ("nodes", "edges", "radius", "correspondence"))
         answer = {"same": same, "units": len(u.nodes) / len(s.nodes),
-                  "shapes": [s.nodes.shape, s.edges.shape, s.radius.shape, s.correspondence.shape],
+                  "shapes": [s.nodes.shape, s.edges.shape, s.radius.shape, s.correspondence.shape,
+                             s.significance.shape],
                   "vertices": len(mesh.vertices), "results": s.results,
                   "range": [int(s.correspondence.min()), int(s.correspondence.max())],
                   "radius": [float(s.radius.min()), float(s.radius.max()), extent],
@@ -99,7 +100,8 @@ def test_skeletonize_arrays_and_trimesh_alike(run):
     """)
     assert answer["same"]
     assert answer["units"] == pytest.approx(1, rel=0.2)
-    nodes, edges, radius, correspondence = answer["shapes"]
+    nodes, edges, radius, correspondence, significance = answer["shapes"]
+    assert significance == radius
     assert nodes == [radius[0], 3] and edges[1] == 2
     assert edges[0] - nodes[0] + 1 == 3 == answer["results"]["cycles"]
     assert correspondence == [answer["vertices"]] and answer["sources"] == answer["vertices"]
@@ -233,7 +235,7 @@ def test_vtk_reads_vtp(run):
                   "names": sorted(v.cell_data.keys()),
                   "node": bool(np.array_equal(v.field_data["mcfskel_node"], s.correspondence)),
                   "again": all(np.array_equal(getattr(s, k), getattr(t, k)) for k in
-                               ("nodes", "edges", "radius", "correspondence"))}
+                               ("nodes", "edges", "radius", "correspondence", "significance"))}
     """)
     assert answer["branches"] and answer["points"] and answer["radius"] and answer["node"]
     assert answer["groups"] == list(range(answer["count"])) and answer["again"]
@@ -377,7 +379,7 @@ def test_save_and_load(run, tmp_path):
         cg, swc = mcfskel.load("s.cg"), mcfskel.load("s.swc")
         all_of_it = [np.array_equal(getattr(s, k), getattr(mcfskel.load("s." + kind), k))
                      for kind in ("graphml", "json", "vtp", "ply")
-                     for k in ("nodes", "edges", "radius", "correspondence")]
+                     for k in ("nodes", "edges", "radius", "correspondence", "significance")]
         g = networkx.node_link_graph(json.load(open("s.json")), edges="edges")
         answer = {"warnings": [str(w.message) for w in caught], "all": all_of_it,
                   "cg": bool(np.array_equal(cg.nodes, s.nodes) and np.array_equal(cg.edges, s.edges)),
@@ -388,7 +390,7 @@ def test_save_and_load(run, tmp_path):
     """)
     assert len(answer["warnings"]) == 1 and "cycle cut between" in answer["warnings"][0]
     assert answer["cg"] and answer["swc"] == [True, 1] and answer["radius"] and answer["json"]
-    assert all(answer["all"]) and len(answer["all"]) == 16
+    assert all(answer["all"]) and len(answer["all"]) == 20
 
 
 ERRORS = {

@@ -119,6 +119,9 @@ class TestParts:
         for low, mean, high in zip(results["branch_radius_min"], results["branch_radius_mean"],
                                    results["branch_radius_max"]):
             assert low < mean < high
+        significance = scalars(curve, "mcfskel_significance")
+        assert significance.max() == 1 and 0.5 < significance.min() < 1
+        assert sorted(results["branch_significance"]) == [significance.min(), 1, 1], "one arm and the trunk"
         ends = {frozenset(kinds) for kinds in zip(results["branch_first_kind"],
                                                   results["branch_last_kind"])}
         assert ends == {frozenset({TIP, JUNCTION})}
@@ -205,6 +208,24 @@ class TestPrune:
         results = layers.apply_filter(PRUNE, spur_prominence=0,
                                       min_radius=pymeshlab.PureValue(0.02))
         assert results["terminals"] == 2
+
+    def test_by_detail_it_is_what_the_full_run_gives(self):
+        layers = skeletonized("hand")
+        whole = layers.current_mesh().vertex_matrix()
+        significance = scalars(layers.current_mesh(), "mcfskel_significance")
+        few = layers.apply_filter(PRUNE, spur_prominence=0, merge_junctions=False, detail=0)
+        assert few["terminals"] == 2
+        pruned = layers.current_mesh()
+        assert np.array_equal(pruned.vertex_matrix(), whole[significance == 1])
+        assert (scalars(pruned, "mcfskel_significance") == 1).all()
+        again = opened("hand")
+        again.apply_filter(FULL, **COARSE, detail=0)
+        assert np.array_equal(again.current_mesh().vertex_matrix(), pruned.vertex_matrix())
+        for label in ["hand.off", "hand_resampled"]:
+            assert np.array_equal(scalars(layer(again, label), "mcfskel_node"),
+                                  scalars(layer(layers, label), "mcfskel_node"))
+        assert np.array_equal(scalars(again.current_mesh(), "mcfskel_radius"),
+                              scalars(pruned, "mcfskel_radius"))
 
     def test_cycles_stay_whatever_is_asked_for(self):
         layers = skeletonized("plate3")
@@ -518,6 +539,7 @@ class TestErrors:
 
     @pytest.mark.parametrize("name, options, said", [
         (PRUNE, {"spur_prominence": 2}, "spur_prominence"),
+        (PRUNE, {"detail": -0.1}, "detail"),
         (RESAMPLE_SKELETON, {"longest_edge": percent(0)}, "longest_edge"),
         (BALLS, {"voxel": percent(0)}, "voxel"),
         (TUBES, {"radius": percent(0)}, "radius"),

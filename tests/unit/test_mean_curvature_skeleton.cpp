@@ -141,6 +141,7 @@ TEST(MeanCurvatureSkeleton, DoGivesTheBitsOfTheLibrary)
 	EXPECT_EQ(places(skeleton), expected.curve.position);
 	EXPECT_EQ(edges(skeleton), expected.curve.edges);
 	EXPECT_EQ(scalars(skeleton, "mcfskel_radius"), expected.curve.radius);
+	EXPECT_EQ(scalars(skeleton, "mcfskel_significance"), expected.curve.significance);
 	for (size_t v = 0; v < skeleton.vert.size(); ++v)
 		EXPECT_EQ(skeleton.vert[v].Q(), expected.curve.radius[v]);
 	EXPECT_EQ(scalars(mesh, "mcfskel_node"), asDoubles(expected.node));

@@ -108,6 +108,9 @@ public:
 		mcf::Repair repair = mcf::Repair::Auto;
 		/// Refine the curve: spurs, centring, smoothness, tips. Without, it is the paper's own.
 		bool refine = true;
+		/// With `refine`, how small branches may be, in [0, 1]: those stay whose significance is at least
+		/// 1 - detail. 0: the trunk alone; 1: all.
+		double detail = mcf::Parameters().detail;
 		/// Selected vertices of the surface stay where they are; the curve is then not refined.
 		bool fix_selected = false;
 		/// Flat parts become sheets, faces of the skeleton mesh; it is then not refined.
@@ -126,7 +129,9 @@ public:
 	 *                 belongs to, -1 for vertices that no face uses.
 	 * @param skeleton any mesh with vertices and edges, and with faces if params.keep_sheets is set;
 	 *                 what was in it goes. The local thickness, the mean distance to the surface, is
-	 *                 its per-vertex attribute `mcfskel_radius`, and its vertex quality where it has one.
+	 *                 its per-vertex attribute `mcfskel_radius`, and its vertex quality where it has one; if the
+	 *                 curve was refined, `mcfskel_significance` is how much of the shape its branch
+	 *                 stands for, 0 to 1.
 	 * @param params   see Params.
 	 * @param cb       progress callback of VCG, or null; to return false cancels.
 	 * @throws mcf::InvalidInput, mcf::InvalidParameter, mcf::SolverError, mcf::Cancelled; std::bad_alloc.
@@ -228,6 +233,7 @@ public:
 		mcf::RefineParameters refinement;
 		refinement.adaptive = parameters.adaptive;
 		refinement.relativeLength = parameters.relativeLength;
+		refinement.detail = parameters.detail;
 		mcf::Refinement refined = mcf::refineChecked(*curve, *contracted, refinement, progress,
 			parameters.poleMethod == mcf::PoleMethod::Balls ? poles.get() : nullptr);
 		curve = std::move(refined.skeleton);
@@ -287,6 +293,7 @@ public:
 private:
 	static constexpr const char* nodeAttribute = "mcfskel_node";
 	static constexpr const char* radiusAttribute = "mcfskel_radius";
+	static constexpr const char* significanceAttribute = "mcfskel_significance";
 
 	/// A surface as the library takes it.
 	struct Surface
@@ -362,6 +369,7 @@ private:
 		result.poleMethod = params.pole_method;
 		result.repair = params.repair;
 		result.refine = params.refine;
+		result.detail = params.detail;
 		result.keepSheets = params.keep_sheets;
 		result.sheetThreshold = params.sheet_threshold;
 		result.check();
@@ -411,6 +419,12 @@ private:
 		const std::vector<double>& radius = sheets ? sheets->skeleton.radius : curve.radius;
 		mcf::writeScalarAttribute(
 			skeleton, radiusAttribute, [&](size_t slot) { return radius[slot]; });
+		if (!sheets && !curve.significance.empty())
+			mcf::writeScalarAttribute(skeleton, significanceAttribute,
+				[&](size_t slot) { return curve.significance[slot]; });
+		else if (tri::HasPerVertexAttribute(
+					 skeleton, significanceAttribute)) // of an earlier skeleton
+			tri::Allocator<SkeletonMesh>::DeletePerVertexAttribute(skeleton, significanceAttribute);
 		if (tri::HasPerVertexQuality(skeleton))
 			for (size_t v = 0; v < radius.size(); ++v)
 				skeleton.vert[v].Q() = typename SkeletonMesh::VertexType::QualityType(radius[v]);

@@ -194,6 +194,7 @@ inline Skeletonization skeletonizeOnce(const SurfaceInput& input, const Paramete
 		RefineParameters scaled = refinement;
 		scaled.adaptive = parameters.adaptive && refinement.adaptive;
 		scaled.relativeLength = parameters.relativeLength;
+		scaled.detail = parameters.detail;
 		Refinement refined = refineChecked(result.curve, surface, scaled, progress.part(0.9, 0.99),
 			parameters.poleMethod == PoleMethod::Balls ? result.poles.get() : nullptr);
 		result.curve = std::move(refined.skeleton);

@@ -62,6 +62,25 @@ TEST(Json, HasEveryNodeEdgeAndAttribute)
 	EXPECT_EQ(countOf(text, "\"cycles\": 1,"), 1u);
 }
 
+TEST(GraphFormats, HaveTheSignificanceWhereItIsKnown)
+{
+	CurveSkeleton s = ringWithTailAndY();
+	for (const std::string& text : {graphml(s), json(s)})
+		EXPECT_EQ(countOf(text, "significance"), 0u);
+	s.significance.assign(s.position.size(), 1);
+	s.significance[6] = 0.375;
+	EXPECT_EQ(countOf(graphml(s), "<data key=\"significance\">"), 11u);
+	EXPECT_EQ(countOf(graphml(s), "<data key=\"significance\">0.375</data>"), 1u);
+	EXPECT_EQ(countOf(json(s), "\"significance\": "), 11u);
+	EXPECT_EQ(countOf(json(s), "\"significance\": 0.375"), 1u);
+	for (double value : {-0.1, 1.1, double(NAN)}) {
+		s.significance[6] = value;
+		EXPECT_THROW(graphml(s), InvalidInput);
+	}
+	s.significance.resize(3);
+	EXPECT_THROW(json(s), InvalidInput);
+}
+
 TEST(GraphFormats, LeaveOutWhatIsNotKnown)
 {
 	CurveSkeleton s = ringWithTailAndY();

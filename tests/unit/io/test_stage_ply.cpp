@@ -314,9 +314,11 @@ TEST(StagePly, DamagedFilesAreReadOrRefused)
 
 TEST(SkeletonPly, ReadsBackToTheLastBit)
 {
-	const CurveSkeleton s = ringWithTailAndY();
+	CurveSkeleton s = ringWithTailAndY();
+	s.significance = {1, 1, 1, 1, 1, 1.0 / 3, 1.0 / 3, 1, 0.7, 1, 1};
 	std::istringstream in(written([&](std::ostream& out) { writeSkeletonPly(out, s); }));
 	const SkeletonFile file = readSkeletonPly(readBinaryPly(in));
+	EXPECT_TRUE(sameBits(file.skeleton.significance, s.significance));
 	EXPECT_TRUE(sameBits(file.skeleton.position, s.position));
 	EXPECT_TRUE(sameBits(file.skeleton.radius, s.radius));
 	EXPECT_EQ(file.skeleton.edges, s.edges);
@@ -326,8 +328,9 @@ TEST(SkeletonPly, ReadsBackToTheLastBit)
 TEST(SkeletonPly, RefusesValuesThatCannotBe)
 {
 	const auto with = [](const std::string& element, const std::string& column, double value) {
-		std::istringstream in(
-			written([](std::ostream& out) { writeSkeletonPly(out, ringWithTailAndY()); }));
+		CurveSkeleton skeleton = ringWithTailAndY();
+		skeleton.significance.assign(skeleton.position.size(), 1);
+		std::istringstream in(written([&](std::ostream& out) { writeSkeletonPly(out, skeleton); }));
 		PlyFile ply = readBinaryPly(in);
 		for (PlyElement& e : ply.elements)
 			for (PlyColumn& c : e.columns)
@@ -344,6 +347,12 @@ TEST(SkeletonPly, RefusesValuesThatCannotBe)
 	EXPECT_EQ(with("vertex", "mcfskel_radius", 0), "");
 	for (double value : {-1.0, -1e-300, double(NAN), double(INFINITY), 1e37})
 		EXPECT_NE(with("vertex", "mcfskel_radius", value).find("row 2: 'mcfskel_radius' is"),
+			std::string::npos)
+			<< value;
+	EXPECT_EQ(with("vertex", "mcfskel_significance", 0), "");
+	for (double value : {-1e-300, 1.1, double(NAN), double(INFINITY)})
+		EXPECT_NE(
+			with("vertex", "mcfskel_significance", value).find("row 2: 'mcfskel_significance' is"),
 			std::string::npos)
 			<< value;
 	for (double value : {1e37, -1e228, double(NAN), -double(INFINITY)})

@@ -58,9 +58,11 @@ TEST(Vtp, LinesHoldEachEdgeOnce)
 
 TEST(Vtp, NumbersAreWrittenToTheLastBit)
 {
-	const CurveSkeleton s = ringWithTailAndY();
+	CurveSkeleton s = ringWithTailAndY();
+	s.significance = {1, 1, 1, 1, 1, 1.0 / 3, 1.0 / 3, 1, 0.7, 1, 1};
 	const std::string file = vtp(s);
 	EXPECT_EQ(numbers(file, "MaximumInscribedSphereRadius"), s.radius);
+	EXPECT_EQ(numbers(file, "mcfskel_significance"), s.significance);
 	const std::vector<double> points = numbers(file, "Points");
 	ASSERT_EQ(points.size(), 3 * s.position.size());
 	for (size_t i = 0; i < points.size(); ++i)
@@ -88,6 +90,7 @@ TEST(Vtp, WhatIsNotKnownIsLeftOutAndWhatCannotBeIsRefused)
 	const std::string file = vtp(s);
 	EXPECT_EQ(file.find("MaximumInscribedSphereRadius"), file.npos);
 	EXPECT_EQ(file.find("mcfskel_node"), file.npos);
+	EXPECT_EQ(file.find("PointData"), file.npos);
 	s.position[4][1] = std::numeric_limits<double>::infinity();
 	EXPECT_THROW(vtp(s), InvalidInput);
 }

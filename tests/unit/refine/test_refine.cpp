@@ -242,6 +242,40 @@ TEST(Refine, RemovesASpurAndHandsOnWhatHadMergedThere)
 		}
 }
 
+TEST(Refine, OfLessDetailIsAPartOfMore)
+{
+	// An animal's head, legs and tail have ears, hooves and a tip of their own.
+	const SurfaceMesh surface = shapes::fromFile("animal450").mesh();
+	Parameters coarse;
+	coarse.targetLength = 0.012;
+	const MeasuredSurface measured(surface);
+	const SurfaceMesh mesh =
+		resample(measured, defaultTargetLength(measured, coarse), coarse.resampleIterations);
+	const CurveSkeleton curve =
+		collapseToCurve(contractToSkeleton(firstStage(mesh, coarse), coarse));
+	RefineParameters parameters;
+	parameters.detail = 1;
+	const CurveSkeleton all = refine(curve, mesh, parameters);
+	ASSERT_EQ(all.significance.size(), all.position.size());
+	EXPECT_EQ(statistics(all).terminals, 8);
+	std::vector<double> values(all.significance);
+	std::sort(values.begin(), values.end());
+	EXPECT_EQ(values.back(), 1);
+	EXPECT_LT(values.front(), 0.9);
+	for (double detail : {1 - values.front() - 1e-9, 0.25, 0.0}) {
+		parameters.detail = detail;
+		const CurveSkeleton part = refine(curve, mesh, parameters);
+		EXPECT_EQ(checks::skeletonError(part), "");
+		EXPECT_LT(statistics(part).terminals, 8);
+		std::vector<Point3d> expected;
+		for (size_t v = 0; v < all.position.size(); ++v)
+			if (all.significance[v] >= 1 - detail)
+				expected.push_back(all.position[v]);
+		EXPECT_EQ(part.position, expected) << "the detail " << detail;
+	}
+	EXPECT_EQ(statistics(refine(curve, mesh, parameters)).terminals, 2) << "the trunk";
+}
+
 TEST(Refine, KeepsASpurIfToldSo)
 {
 	const SurfaceMesh mesh = barWithArm(2).mesh();

@@ -69,6 +69,10 @@ struct Parameters
 	bool denoise = true;
 	/// Refine the curve at the end: see refine.h. Without, it is the paper's own.
 	bool refine = true;
+	/// With `refine`, how small branches may be, in [0, 1]: those stay whose significance is at least
+	/// 1 - detail, see nestedBranches(). 0: the trunk alone; 1: all.
+	double detail = defaultDetail;
+	static constexpr double defaultDetail = 0.9;
 	/// For meshes that do not bound a solid.
 	Repair repair = Repair::Auto;
 
@@ -86,6 +90,7 @@ struct Parameters
 		require(targetLength >= 0 && targetLength <= 0.5, "target_length",
 			"between 0 and 50 % of the diagonal");
 		require(relativeLength > 0 && relativeLength <= 2, "relative_length", "between 0 and 2");
+		require(detail >= 0 && detail <= 1, "detail", "between 0 and 1");
 		require(resampleIterations >= 0, "resample_iterations", "at least 0");
 		require(poleMethod != PoleMethod::Voronoi || hasQhull, "pole_method",
 			"'balls': this program is built without Qhull, which finds the poles of 'voronoi'");

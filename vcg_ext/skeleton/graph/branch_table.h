@@ -30,6 +30,8 @@ struct BranchRecord
 	double meanRadius = 0;
 	double leastRadius = 0, greatestRadius = 0;
 	BranchEnd first = BranchEnd::Tip, last = BranchEnd::Tip;
+	/// The least of its nodes', see CurveSkeleton; 1 where it is not known.
+	double significance = 1;
 };
 
 /// The records of `branches`, in their order. Complexity: O(V + E).
@@ -48,6 +50,9 @@ inline std::vector<BranchRecord> branchTable(
 		record.first = endAt(branch.first());
 		record.last = endAt(branch.last());
 		record.leastRadius = record.greatestRadius = skeleton.radius[branch.first()];
+		if (!skeleton.significance.empty())
+			for (int v : branch.nodes)
+				record.significance = std::min(record.significance, skeleton.significance[v]);
 		double weighted = 0, plain = 0;
 		for (size_t i = 1; i < branch.nodes.size(); ++i) {
 			const int a = branch.nodes[i - 1], b = branch.nodes[i];

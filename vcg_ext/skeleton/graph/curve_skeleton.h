@@ -26,6 +26,9 @@ struct CurveSkeleton
 	std::vector<std::array<int, 2>> edges;
 	/// The correspondence: for each surface vertex the node it has merged into.
 	std::vector<int> node;
+	/// How much of the shape the branch of each node stands for, in [0, 1]: see nestedBranches(). Empty
+	/// where it is not known.
+	std::vector<double> significance;
 
 	/// The neighbours of each node, ascending.
 	std::vector<std::vector<int>> neighbours() const

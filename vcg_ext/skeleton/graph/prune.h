@@ -8,6 +8,7 @@
 #define VCG_MCF_PRUNE_H
 
 #include "curve_skeleton.h"
+#include "significance.h"
 #include "skeleton_branches.h"
 
 #include <skeleton/core/errors.h>
@@ -142,6 +143,8 @@ struct PruneParameters
 	double shortestBranch = 0;
 	/// Terminal branches whose mean radius is less than this go; >= 0.
 	double leastRadius = 0;
+	/// Branches stay whose significance is at least 1 - detail, see nestedBranches(); in [0, 1], 1: all.
+	double detail = 1;
 	/// Whether two junctions that are closer to each other than the larger one's radius, along their
 	/// branch, become one.
 	bool mergeJunctions = true;
@@ -150,6 +153,7 @@ struct PruneParameters
 	void check() const
 	{
 		require(spurProminence >= 0 && spurProminence <= 1, "spur_prominence", "between 0 and 1");
+		require(detail >= 0 && detail <= 1, "detail", "between 0 and 1");
 		require(shortestBranch >= 0 && std::isfinite(shortestBranch), "min_length", "at least 0");
 		require(leastRadius >= 0 && std::isfinite(leastRadius), "min_radius", "at least 0");
 	}
@@ -176,14 +180,14 @@ inline double meanTerminalRadius(const CurveSkeleton& skeleton, const Branch& fr
 }
 
 /**
- * Prunes a skeleton: first the sure spurs, by prominence(), then the terminal branches that are too
- * short, then those that are too thin, at last merges junctions and looks for spurs again. The
- * number of cycles and of components never changes.
+ * Prunes a skeleton: first the sure spurs, by prominence(), then what is below the detail, then the terminal
+ * branches that are too short, then those that are too thin, at last merges junctions and looks for spurs
+ * again. The number of cycles and of components never changes.
  *
  * @param skeleton  its radius should be the distance to the surface; the mean distance to the surface
  *                  vertices that merged into a node does as well.
- * @return nodes of `skeleton` that are left, in their order, in their places, with their radii; `node`
- *         leads to where what was removed hung.
+ * @return nodes of `skeleton` that are left, in their order, in their places, with their radii and their
+ *         significance; `node` leads to where what was removed hung.
  * @throws InvalidParameter, Cancelled.
  * Complexity: O(removed branches * (V + E log E + surface vertices)).
  * Source: ours.
@@ -198,6 +202,8 @@ inline CurveSkeleton prune(const CurveSkeleton& skeleton, const PruneParameters&
 											 : s;
 	};
 	CurveSkeleton pruned = withoutSpurs(skeleton, 0, 0.2);
+	const NestedBranches nested = nestedBranches(pruned, progress.part(0.2, 0.2));
+	pruned = significantPart(std::move(pruned), nested, 1 - parameters.detail);
 	pruned = withoutTerminalBranches(
 		std::move(pruned), parameters.shortestBranch, branchLength, progress.part(0.2, 0.4));
 	pruned = withoutTerminalBranches(
@@ -212,6 +218,7 @@ inline CurveSkeleton prune(const CurveSkeleton& skeleton, const PruneParameters&
 			progress.part(0.6, 0.8));
 		pruned = withoutSpurs(std::move(pruned), 0.8, 1);
 	}
+	pruned.significance = nestedBranches(pruned, progress.part(1, 1)).significance;
 	progress.report(1, "Pruning the skeleton");
 	return pruned;
 }

@@ -7,6 +7,7 @@
 #ifndef VCG_MCF_RESAMPLE_SKELETON_H
 #define VCG_MCF_RESAMPLE_SKELETON_H
 
+#include "branch_table.h"
 #include "curve_skeleton.h"
 #include "skeleton_branches.h"
 
@@ -194,6 +195,7 @@ inline CurveSkeleton resampledSkeleton(const CurveSkeleton& skeleton, double lon
 		throw InvalidParameter("Parameter smoothing must be at least 0.");
 	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
 	const std::vector<Branch> branches = skeletonBranches(skeleton);
+	const std::vector<BranchRecord> table = branchTable(skeleton, branches);
 	double length = 0;
 	std::map<std::pair<int, int>, int> parallel;
 	for (const Branch& branch : branches) {
@@ -209,12 +211,15 @@ inline CurveSkeleton resampledSkeleton(const CurveSkeleton& skeleton, double lon
 			+ std::to_string(length / mostNodes) + " mesh units.");
 
 	CurveSkeleton result;
+	const bool knowsSignificance = !skeleton.significance.empty();
 	std::vector<int> place(skeleton.position.size(), -1);
 	const auto keep = [&](int v) {
 		if (place[v] < 0) {
 			place[v] = int(result.position.size());
 			result.position.push_back(skeleton.position[v]);
 			result.radius.push_back(skeleton.radius[v]);
+			if (knowsSignificance)
+				result.significance.push_back(skeleton.significance[v]);
 		}
 	};
 	for (size_t v = 0; v < place.size(); ++v)
@@ -252,6 +257,8 @@ inline CurveSkeleton resampledSkeleton(const CurveSkeleton& skeleton, double lon
 			ids.push_back(int(result.position.size()));
 			result.position.push_back(line.points[k]);
 			result.radius.push_back(line.radii[k]);
+			if (knowsSignificance)
+				result.significance.push_back(table[b].significance);
 		}
 		ids.push_back(place[branch.last()]);
 		for (size_t k = 1; k < ids.size(); ++k)

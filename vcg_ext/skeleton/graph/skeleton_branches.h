@@ -100,8 +100,8 @@ inline double prominence(const CurveSkeleton& skeleton, int end, int root)
 
 /**
  * Merges nodes: node v goes into node target[v], which must be a node that goes into itself. Edges
- * within a merged node vanish, double edges become one. Positions and radii are those of the
- * targets; the correspondence follows.
+ * within a merged node vanish, double edges become one. Positions, radii and significance are those of
+ * the targets; the correspondence follows.
  * Complexity: O(V + E log E + surface vertices).
  */
 inline CurveSkeleton mergeNodes(const CurveSkeleton& skeleton, const std::vector<int>& target)
@@ -113,6 +113,8 @@ inline CurveSkeleton mergeNodes(const CurveSkeleton& skeleton, const std::vector
 			number[v] = int(merged.position.size());
 			merged.position.push_back(skeleton.position[v]);
 			merged.radius.push_back(skeleton.radius[v]);
+			if (!skeleton.significance.empty())
+				merged.significance.push_back(skeleton.significance[v]);
 		}
 	for (const auto& [a, b] : skeleton.edges) {
 		const int A = number[target[a]], B = number[target[b]];

@@ -34,8 +34,8 @@ inline std::string xmlText(const std::string& text)
 } // namespace detail
 
 /**
- * Writes a skeleton as GraphML: nodes 0, 1, ... with the numbers x, y, z and radius (mesh units) and
- * the text surface_vertices (ids from 0, blanks between); edges with their length;
+ * Writes a skeleton as GraphML: nodes 0, 1, ... with the numbers x, y, z and radius (mesh units),
+ * significance and the text surface_vertices (ids from 0, blanks between); edges with their length;
  * the graph with the name of the surface and, as surface_vertices, how many vertices it has. What is not
  * known is left out.
  * @param surfaceName what the mesh is called whose vertices surface_vertices counts, in UTF-8.
@@ -46,6 +46,7 @@ inline void writeGraphml(
 {
 	requireWritable(skeleton);
 	const bool hasRadius = !skeleton.radius.empty(), hasSources = !skeleton.node.empty();
+	const bool hasSignificance = !skeleton.significance.empty();
 	const auto key = [&](const char* name, const char* of, const char* type) {
 		out << "  <key id=\"" << name << "\" for=\"" << of << "\" attr.name=\"" << name
 			<< "\" attr.type=\"" << type << "\"/>\n";
@@ -59,6 +60,8 @@ inline void writeGraphml(
 		key(axis, "node", "double");
 	if (hasRadius)
 		key("radius", "node", "double");
+	if (hasSignificance)
+		key("significance", "node", "double");
 	if (hasSources)
 		key("surface_vertices", "node", "string");
 	key("length", "edge", "double");
@@ -87,6 +90,8 @@ inline void writeGraphml(
 		data("z", numberText(p[2]));
 		if (hasRadius)
 			data("radius", numberText(skeleton.radius[v]));
+		if (hasSignificance)
+			data("significance", numberText(skeleton.significance[v]));
 		if (hasSources) {
 			std::string list;
 			for (int s : sources[v])

@@ -46,10 +46,16 @@ inline bool isUsableRadius(double radius)
 	return radius >= 0 && radius <= maxCoordinate;
 }
 
+/// Whether a number can be the significance of a node.
+inline bool isUsableSignificance(double significance)
+{
+	return significance >= 0 && significance <= 1;
+}
+
 /**
  * Checks that a skeleton can be written, read again and worked with: coordinates that are finite and not
- * too large, edges between two of its nodes, a radius >= 0 for each node or none at all, source nodes
- * that exist (or -1). Every reader's skeleton passes.
+ * too large, edges between two of its nodes, a radius >= 0 for each node or none at all, a significance
+ * likewise, from 0 to 1, source nodes that exist (or -1). Every reader's skeleton passes.
  * @throws InvalidInput that names the first culprit.
  */
 inline void requireWritable(const CurveSkeleton& skeleton)
@@ -66,6 +72,13 @@ inline void requireWritable(const CurveSkeleton& skeleton)
 		if (!isUsableRadius(skeleton.radius[v]))
 			throw InvalidInput("Node " + std::to_string(v) + " has the radius "
 				+ numberText(skeleton.radius[v]) + ", which is " + outsideOfRadii() + ".");
+	if (!skeleton.significance.empty() && int(skeleton.significance.size()) != n)
+		throw InvalidInput("The skeleton has " + std::to_string(n) + " nodes, but "
+			+ std::to_string(skeleton.significance.size()) + " of them have a significance.");
+	for (size_t v = 0; v < skeleton.significance.size(); ++v)
+		if (!isUsableSignificance(skeleton.significance[v]))
+			throw InvalidInput("Node " + std::to_string(v) + " has the significance "
+				+ numberText(skeleton.significance[v]) + ", which is not between 0 and 1.");
 	for (const auto& [a, b] : skeleton.edges)
 		if (a < 0 || b < 0 || a >= n || b >= n || a == b)
 			throw InvalidInput("Edge " + std::to_string(a) + " " + std::to_string(b)

@@ -15,7 +15,7 @@
 namespace vcg::tri::mcf {
 
 /**
- * Writes a skeleton: elements vertex (position, radius, and quality for MeshLab), edge (vertex1,
+ * Writes a skeleton: elements vertex (position, radius, significance, and quality for MeshLab), edge (vertex1,
  * vertex2) and mcfskel_surface (for each surface vertex its node).
  * @throws InvalidInput: see requireWritable().
  */
@@ -28,6 +28,8 @@ inline void writeSkeletonPly(std::ostream& out, const CurveSkeleton& skeleton)
 		vertex.add("quality", PlyType::Float, skeleton.radius);
 		vertex.add("mcfskel_radius", PlyType::Double, skeleton.radius);
 	}
+	if (!skeleton.significance.empty())
+		vertex.add("mcfskel_significance", PlyType::Double, skeleton.significance);
 	PlyElement edge {"edge", skeleton.edges.size(), {}};
 	for (size_t end = 0; end < 2; ++end) {
 		std::vector<int> ends;
@@ -42,9 +44,9 @@ inline void writeSkeletonPly(std::ostream& out, const CurveSkeleton& skeleton)
 
 /**
  * Reads a skeleton that writeSkeletonPly() wrote, or any binary PLY of vertices and edges. What the
- * file does not have (radius, correspondence) stays empty.
+ * file does not have (radius, significance, correspondence) stays empty.
  * @throws FormatError: see readBinaryPly(); also for a coordinate that is not finite or beyond
- *         maxCoordinate, a radius that is or is below 0, an edge or a surface vertex whose node does not
+ *         maxCoordinate, a radius that is or is below 0, a significance that is not from 0 to 1, an edge or a surface vertex whose node does not
  *         exist, an edge from a vertex to itself.
  */
 inline SkeletonFile readSkeletonPly(const PlyFile& ply)
@@ -64,6 +66,13 @@ inline SkeletonFile readSkeletonPly(const PlyFile& ply)
 			throw vertex.error(v,
 				"'mcfskel_radius' is " + numberText(skeleton.radius[v]) + ", " + outsideOfRadii()
 					+ ".");
+	if (vertex.has("mcfskel_significance"))
+		skeleton.significance = vertex.anyReals("mcfskel_significance");
+	for (size_t v = 0; v < skeleton.significance.size(); ++v)
+		if (!isUsableSignificance(skeleton.significance[v]))
+			throw vertex.error(v,
+				"'mcfskel_significance' is " + numberText(skeleton.significance[v])
+					+ ", not between 0 and 1.");
 	const std::vector<int> first = edge.integers("vertex1", 0, last);
 	const std::vector<int> second = edge.integers("vertex2", 0, last);
 	for (size_t e = 0; e < first.size(); ++e) {

@@ -15,10 +15,12 @@
 #include "refine_tips.h"
 
 #include <skeleton/core/errors.h>
+#include <skeleton/core/parameters.h>
 #include <skeleton/core/progress.h>
 #include <skeleton/core/ticker.h>
 #include <skeleton/flow/stage.h>
 #include <skeleton/graph/curve_skeleton.h>
+#include <skeleton/graph/significance.h>
 #include <skeleton/graph/skeleton_branches.h>
 #include <skeleton/graph/skeleton_radius.h>
 #include <skeleton/mesh/component_meshes.h>
@@ -79,6 +81,8 @@ struct RefineParameters
 	bool adaptive = true;
 	/// @see Parameters::relativeLength
 	double relativeLength = 0.6;
+	/// @see Parameters::detail
+	double detail = Parameters::defaultDetail;
 
 	/// @throws InvalidParameter naming the first parameter that is out of its range.
 	void check() const
@@ -95,6 +99,7 @@ struct RefineParameters
 		require(featureHeight >= 0 && std::isfinite(featureHeight), "feature_height", "at least 0");
 		require(featureGain > 0 && featureGain <= 1, "feature_gain", "in (0, 1]");
 		require(relativeLength > 0 && relativeLength <= 2, "relative_length", "between 0 and 2");
+		require(detail >= 0 && detail <= 1, "detail", "between 0 and 1");
 		require(tipRadius > 0 && std::isfinite(tipRadius), "tip_radius", "greater than 0");
 	}
 
@@ -337,6 +342,18 @@ inline double leastScale(const CurveSkeleton& curve, const ClosestSurface& close
 	return high;
 }
 
+/// The branches of a component's skeleton, see nestedBranches(), from its distances to the surface.
+/// @throws Cancelled. Complexity: O(N log V).
+inline NestedBranches nestedIn(
+	const ClosestSurface& surface, CurveSkeleton skeleton, const Progress& progress)
+{
+	tri::mcf::detail::reportedLoop(
+		int(skeleton.position.size()), progress, "Refining the skeleton", [&](int v) {
+			skeleton.radius[v] = std::max(surface.clearance(skeleton.position[v]), 0.0);
+		});
+	return nestedBranches(skeleton, progress);
+}
+
 inline void addTo(RefineReport& report, Defect defect)
 {
 	++report.components;
@@ -403,7 +420,9 @@ inline Defect refineChecked(CurveSkeleton& refined, ClosestSurface& surface,
  * Nodes that were outside are moved in where possible. What is promised is checked on each component's
  * result: all nodes and edges are inside, components and cycles are as they were, and it is no longer than
  * CurveBounds allow. A component for which that cannot be had keeps its curve as it is, positions, radii and
- * correspondence, whether or not that is inside; the report counts them. The result depends on the shape of each component only, not
+ * correspondence, whether or not that is inside, and all its branches; the report counts them. At last the
+ * branches go that are below the detail: nothing else depends on it, so that a skeleton of less detail is a
+ * part of one of more. The result depends on the shape of each component only, not
  * on its size and place. Each surface vertex goes to the nearest node along the part of the graph
  * where the node it had went; the radius is measured anew, as the mean distance to these vertices.
  *
@@ -504,22 +523,29 @@ inline Refinement refineChecked(const CurveSkeleton& curve, const SurfaceMesh& s
 		}
 
 		const std::vector<std::vector<int>> neighbours = part.neighbours();
+		const std::vector<int>& ids = vertices.ids[c];
+		std::vector<int> ofVertex(ids.size(), -1);
+		detail::reportedLoop(int(ofVertex.size()), ofComponent.part(0.95, 1), what, [&](int i) {
+			const int s = ids[i];
+			if (curve.node[s] < 0)
+				return;
+			const int node = part.node[number[curve.node[s]]];
+			ofVertex[i] =
+				isRefined ? refining::nearestAlong(part, neighbours, node, unit.position[s]) : node;
+		});
+		part.node = std::move(ofVertex);
+		const NestedBranches nested = refining::nestedIn(closest, part, ofComponent.part(1, 1));
+		part = significantPart(std::move(part), nested, isRefined ? 1 - parameters.detail : 0);
 		const int first = int(refined.position.size());
-		detail::reportedLoop(
-			int(vertices.ids[c].size()), ofComponent.part(0.95, 1), what, [&](int i) {
-				const int s = vertices.ids[c][i];
-				if (curve.node[s] < 0)
-					return;
-				const int node = part.node[number[curve.node[s]]];
-				refined.node[s] = first
-					+ (isRefined ? refining::nearestAlong(part, neighbours, node, unit.position[s])
-								 : node);
-			});
+		for (size_t i = 0; i < ids.size(); ++i)
+			if (part.node[i] >= 0)
+				refined.node[ids[i]] = first + part.node[i];
 		for (int v = 0; v < int(part.position.size()); ++v) {
 			if (!isRefined)
 				kept.emplace_back(first + v, nodes[c][v]);
 			refined.position.push_back(
 				isRefined ? fromUnit(part.position[v], c) : curve.position[nodes[c][v]]);
+			refined.significance.push_back(part.significance[v]);
 		}
 		for (const auto& [a, b] : part.edges)
 			refined.edges.push_back({first + a, first + b});
