@@ -41,6 +41,8 @@ def parse_arguments(arguments: list[str] | None = None) -> argparse.Namespace:
     parser.add_argument("output", nargs="?", type=Path, default=Path("out"), metavar="OUTPUT_FOLDER",
                         help="where the results go (default: out)")
     flow = parser.add_argument_group("the skeletonization")
+    flow.add_argument("--preset", choices=["default", "paper"],
+                      help="paper: the paper's algorithm and nothing else, to compare with")
     flow.add_argument("--w-l", type=float, metavar="W", help="smoothness weight (1)")
     flow.add_argument("--w-h", type=float, metavar="W", help="velocity weight (20)")
     flow.add_argument("--w-m", type=float, metavar="W", help="medial weight (40)")
@@ -62,7 +64,7 @@ def parse_arguments(arguments: list[str] | None = None) -> argparse.Namespace:
     flow.add_argument("--relative-length", type=float, metavar="K",
                       help="longest edge in local thicknesses (0.6)")
     flow.add_argument("--no-refine", dest="refine", action="store_const", const=False,
-                      help="leave the curve as the paper has it")
+                      help="leave the curve as the contraction made it")
     flow.add_argument("--pole-method", choices=["voronoi", "balls"], help="how poles are found")
     flow.add_argument("--max-iterations", type=int, metavar="N", help="cap of the contraction (500)")
     results = parser.add_argument_group("the results")
@@ -89,7 +91,7 @@ def filter_parameters(options: argparse.Namespace) -> dict[str, Any]:
     import pymeshlab
     kinds = {"percent": pymeshlab.PercentageValue, "units": pymeshlab.PureValue}
     parameters = {}
-    for name in ["w_l", "w_h", "w_m", "epsilon", "split_angle", "resample", "target_length",
+    for name in ["preset", "w_l", "w_h", "w_m", "epsilon", "split_angle", "resample", "target_length",
                  "resample_iterations", "denoise", "adaptive", "relative_length", "refine", "repair",
                  "pole_method", "max_iterations",
                  "keep_stages"]:

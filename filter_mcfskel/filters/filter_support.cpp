@@ -102,13 +102,13 @@ std::vector<ParameterSpec> weightParameters()
 	const mcf::Parameters defaults;
 	return {
 		{ParameterKind::Real, "w_l", defaults.wL, "Smoothness weight w_L",
-			"Weight of the smoothing, in the paper's units, above 0. A larger one contracts in fewer "
-			"steps and straightens the skeleton; sane are 0.5 to 4."},
+			"Weight of the smoothing, above 0; 1 is half the published one. A larger one "
+			"contracts in fewer steps and straightens the skeleton; sane are 0.5 to 4."},
 		{ParameterKind::Real, "w_h", defaults.wH, "Velocity weight w_H",
-			"Weight that holds each vertex where it was, in the paper's units, above 0. A larger one "
+			"Weight that holds each vertex where it was, as published, above 0. A larger one "
 			"makes smaller steps, and more of them; sane are 10 to 50."},
 		{ParameterKind::Real, "w_m", defaults.wM, "Medial weight w_M",
-			"Weight that draws each vertex to its medial pole, in the paper's units. A larger one "
+			"Weight that draws each vertex to its medial pole, as published. A larger one "
 			"centres the skeleton better and keeps more branches; 0 is the mean curvature flow alone; "
 			"sane are 0 to 80."},
 	};

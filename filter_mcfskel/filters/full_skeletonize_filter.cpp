@@ -47,6 +47,8 @@ Results run(FilterRun& run)
 	readFlow(run.parameters, parameters);
 	parameters.poleMethod = readPoleMethod(run.parameters);
 	parameters.maxIterations = run.parameters.integer("max_iterations");
+	if (run.parameters.integer("preset") == 1)
+		parameters.apply(mcf::Preset::Paper);
 	parameters.check();
 	const int keepStages = run.parameters.integer("keep_stages");
 	if (keepStages < 0)
@@ -146,11 +148,16 @@ FilterSpec fullSkeletonizeFilter()
 		"does after 10 to 40."}
 							 .asAdvanced());
 	parameters.push_back(poleMethodParameter().asAdvanced());
+	parameters.push_back(ParameterSpec {ParameterKind::Choice, "preset",
+		double(mcf::Preset::Default), "Preset",
+		"'paper': the paper's algorithm and nothing else, to compare with. 'pole_method', 'denoise', "
+		"'adaptive' and 'refine' are then not used; it is slower, and curves are rougher.",
+		{"default", "paper"}}.asAdvanced());
 	parameters.push_back({ParameterKind::Boolean, "refine", double(defaults.refine),
 		"Refine the skeleton",
 		"Goes beyond the paper at the end: removes spurs, samples the branches evenly, centres and "
 		"smooths them, extends the tips to the ends of their features, and grows branches into limbs "
-		"that the curve lacks. Without, the skeleton is the paper's own. Also a filter of its own."});
+		"that the curve lacks. Also a filter of its own."});
 	parameters.push_back(detailParameter(defaults.detail));
 	parameters.push_back(fixSelectedParameter());
 	parameters.push_back(keepSheetsParameter());

@@ -215,7 +215,7 @@ def skeletonize(vertices: Any, faces: npt.ArrayLike | None = None, *,
         epsilon: Edges shorter than this are collapsed; by default 0.2 % of the diagonal. A length is
             a number of mesh units, or a text such as ``"0.2%"`` of the bounding box diagonal.
         **options: Further parameters of the filter Full Skeletonize, by their names in pymeshlab:
-            ``w_l``, ``w_h``, ``w_m``, ``resample``, ``denoise``, ``refine``, ``pole_method``,
+            ``w_l``, ``w_h``, ``w_m``, ``resample``, ``denoise``, ``refine``, ``preset``, ``pole_method``,
             ``max_iterations``, ``keep_sheets``, ... None stands for the default.
 
     Returns:

@@ -246,7 +246,7 @@ class Job:
         self.step("", FULL, self.curve)
 
     def job_raw(self) -> None:
-        """As it is, unrefined: the paper's own curve; then the tools on it."""
+        """As it is, unrefined; then the tools on it."""
         self.step("", FULL, self.curve, resample=False, refine=False)
         raw = self.layers.current_mesh_id()
         own = polyline_length(self.layers.current_mesh())

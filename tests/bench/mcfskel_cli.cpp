@@ -29,6 +29,7 @@ namespace {
 
 const char* const usage =
 	"usage: mcfskel_cli MESH [options]\n"
+	"  --preset NAME             default or paper: the paper's algorithm and nothing else\n"
 	"  --skeleton FILE           write the skeleton, as OBJ\n"
 	"  --significance FILE       write that of each node of a refined skeleton, a line each\n"
 	"  --surface FILE            write the surface that was contracted\n"
@@ -43,12 +44,17 @@ const char* const usage =
 	"  --repair CHOICE           auto, mend or off: what is done with what does not bound a solid\n"
 	"  --solid-only              stop after the repair\n"
 	"  --pole-method METHOD      voronoi or balls\n"
-	"  --w-l W  --w-h W  --w-m W weights of Eq. 6, in the paper's units\n"
+	"  --w-l W  --w-h W  --w-m W weights of Eq. 6\n"
 	"  --epsilon PCT             edges shorter than this are collapsed, in % of the diagonal\n"
 	"  --split-angle DEGREES     edges opposite wider angles are split\n"
 	"  --max-iterations N        stop the flow after this many\n"
 	"  --keep-sheets             flat parts become sheets: faces of the skeleton\n"
 	"  --sheet-threshold S       how flat they have to be, 0 to 1\n"
+	"  --cotangent-factor F      what the sums of the cotangents are multiplied with\n"
+	"  --no-coarsen              start the flow on all vertices\n"
+	"  --keep-outward-poles      be drawn to poles that lie outwards, too\n"
+	"  --direct-solver           solve by a Cholesky factorisation\n"
+	"  --no-tidy                 leave the curve as the last collapse made it\n"
 	"  --no-refine               leave the curve as the flow made it\n"
 	"  --spacing PCT             distance of the refined nodes, in % of the diagonal\n"
 	"  --smoothing K             smoothness of the refined branches\n"
@@ -89,6 +95,15 @@ mcf::Repair repair(const std::string& name)
 	throw std::invalid_argument("unknown repair " + name);
 }
 
+mcf::Preset preset(const std::string& name)
+{
+	if (name == "default")
+		return mcf::Preset::Default;
+	if (name == "paper")
+		return mcf::Preset::Paper;
+	throw std::invalid_argument("unknown preset " + name);
+}
+
 Options parse(int argc, char** argv)
 {
 	Options options;
@@ -101,12 +116,17 @@ Options parse(int argc, char** argv)
 		{"--solid-only", [&] { options.solidOnly = true; }},
 		{"--no-denoise", [&] { p.denoise = false; }},
 		{"--no-adaptive", [&] { p.adaptive = false; }},
+		{"--no-coarsen", [&] { p.coarsen = false; }},
+		{"--keep-outward-poles", [&] { p.dropOutwardPoles = false; }},
+		{"--direct-solver", [&] { p.directSolver = true; }},
+		{"--no-tidy", [&] { p.tidyCurve = false; }},
 		{"--no-refine", [&] { p.refine = false; }},
 		{"--keep-sheets", [&] { p.keepSheets = true; }},
 		{"--verbose", [&] { options.verbose = true; }},
 	};
 	using Text = const std::string&;
 	const std::map<std::string, std::function<void(Text)>> values = {
+		{"--preset", [&](Text t) { p.apply(preset(t)); }},
 		{"--skeleton", [&](Text t) { options.skeleton = t; }},
 		{"--significance", [&](Text t) { options.significance = t; }},
 		{"--surface", [&](Text t) { options.surface = t; }},
@@ -119,6 +139,7 @@ Options parse(int argc, char** argv)
 		{"--w-l", [&](Text t) { p.wL = std::stod(t); }},
 		{"--w-h", [&](Text t) { p.wH = std::stod(t); }},
 		{"--w-m", [&](Text t) { p.wM = std::stod(t); }},
+		{"--cotangent-factor", [&](Text t) { p.cotangentFactor = std::stod(t); }},
 		{"--epsilon", [&](Text t) { p.epsilon = std::stod(t) / 100; }},
 		{"--split-angle", [&](Text t) { p.splitAngle = std::stod(t); }},
 		{"--sheet-threshold", [&](Text t) { p.sheetThreshold = std::stod(t); }},

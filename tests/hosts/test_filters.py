@@ -91,6 +91,9 @@ class TestDefaults:
                     "denoise": True, "adaptive": True, "relative_length": pytest.approx(0.6), "detail": pytest.approx(0.9)}
         assert {name: values[name] for name in expected} == expected
 
+    def test_preset(self):
+        assert opened("capsule").filter_parameter_values(FULL)["preset"] == 0
+
     def test_epsilon_is_a_fifth_of_a_percent_of_the_diagonal(self):
         layers = opened("capsule")
         expected = 0.002 * diagonal(layers.mesh(0).vertex_matrix())
@@ -109,6 +112,16 @@ class TestDefaults:
         layers = opened("capsule")
         assert layers.filter_parameter_values(STEP)["steps"] == 1
         assert layers.filter_parameter_values(POLES)["create_layer"] is False
+
+
+def test_the_preset_of_the_paper_is_not_changed_by_what_it_does_not_have():
+    curves = []
+    for options in [{}, {"denoise": False, "adaptive": False, "refine": False, "pole_method": "voronoi"}]:
+        layers = opened("capsule")
+        results = layers.apply_filter(FULL, preset="paper", **COARSE, **options)
+        assert results["refined"] == 0 and results["converged"] == 1
+        curves.append(layers.current_mesh().vertex_matrix())
+    assert np.array_equal(*curves)
 
 
 class TestResample:

@@ -341,3 +341,27 @@ TEST(MeanCurvatureSkeleton, StagesOutOfOrderAreRefused)
 	Allocator<DoubleMesh>::AddVertex(mesh, Point3d(0, 0, 0));
 	EXPECT_THROW(run.WriteNodes(mesh), mcf::InvalidInput);
 }
+
+TEST(MeanCurvatureSkeleton, TakesThePresetOfThePaper)
+{
+	if (!mcf::hasQhull)
+		return;
+	const shapes::Soup soup = shapes::capsule();
+	mcf::Parameters parameters;
+	parameters.targetLength = 0.03;
+	parameters.apply(mcf::Preset::Paper);
+	const mcf::Skeletonization expected = mcf::skeletonize(soup.points, soup.triangles, parameters);
+	DoubleMesh surface, skeleton, stepwise;
+	fill(surface, soup);
+	auto params = coarse<DoubleMesh>();
+	params.preset = mcf::Preset::Paper;
+	MeanCurvatureSkeleton<DoubleMesh>::Do(surface, skeleton, params);
+	EXPECT_EQ(places(skeleton), expected.curve.position);
+	MeanCurvatureSkeleton<DoubleMesh> run(surface, params);
+	run.Resample();
+	while (run.Step())
+		;
+	run.Collapse();
+	run.GetSkeleton(stepwise);
+	EXPECT_EQ(places(stepwise), expected.curve.position);
+}

@@ -434,3 +434,25 @@ TEST(Skeletonize, APlateThinnerThanItsResampledEdgesIsContractedAsItIs)
 			EXPECT_LT(p[k], bounds.max[k]);
 		}
 }
+
+TEST(Skeletonize, ThePapersPresetIsFig4AndNothingElse)
+{
+	const shapes::Soup soup = shapes::fromFile("animal450");
+	Parameters parameters = coarse();
+	parameters.apply(Preset::Paper);
+	if (!hasQhull) {
+		EXPECT_THROW(run(soup, parameters), InvalidParameter);
+		return;
+	}
+	const SurfaceMesh input = checkedSurface(roundedCoordinates(soup.points), soup.triangles).mesh;
+	const SurfaceMesh surface = resampledSurface(input, parameters).mesh;
+	Stage stage = initialStage(surface, medialPoles(surface, PoleMethod::Voronoi)); // every vertex
+	while (!stage.converged)
+		stage = step(stage, parameters);
+	const Skeletonization result = run(soup, parameters);
+	expectSame(result.curve, collapseToCurve(stage, parameters.epsilon, Progress(), false));
+	EXPECT_EQ(result.refined, 0);
+	EXPECT_EQ(statistics(result.curve).components, 1);
+	EXPECT_EQ(statistics(result.curve).cycles, 0);
+	EXPECT_TRUE(differ(result.curve, run(soup, coarse()).curve));
+}

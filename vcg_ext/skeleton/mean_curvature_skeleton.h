@@ -72,6 +72,9 @@ public:
 	 */
 	struct Params
 	{
+		/// `Paper`: the paper's algorithm and nothing else, whatever `pole_method`, `denoise`, `adaptive` and
+		/// `refine` say, with weights in the published unit; see mcf::Parameters::apply().
+		mcf::Preset preset = mcf::Preset::Default;
 		/// Cover the surface with even triangles first, as in the paper.
 		bool resample = true;
 		/// Their edge length, in [0, 0.5]; 0: chosen from the mesh. Recommended: 0.003 to 0.015.
@@ -84,11 +87,12 @@ public:
 		bool adaptive = true;
 		/// With `adaptive`, the longest edge in local thicknesses, in (0, 2]. Recommended: 0.4 to 1.
 		double relative_length = mcf::Parameters().relativeLength;
-		/// Smoothness weight w_L (Eq. 6), > 0, in the paper's units as the next two. Recommended: 0.5 to 4.
+		/// Smoothness weight w_L (Eq. 6), > 0; 1 is half the published weight unless `preset` is `Paper`.
+		/// Recommended: 0.5 to 4.
 		double w_l = 1;
-		/// Velocity weight w_H, > 0. A larger one makes smaller steps. Recommended: 10 to 50.
+		/// Velocity weight w_H, > 0, as published. A larger one makes smaller steps. Recommended: 10 to 50.
 		double w_h = 20;
-		/// Medial weight w_M, >= 0. A larger one centres better and keeps more branches; 0: mean
+		/// Medial weight w_M, >= 0, as published. A larger one centres better and keeps more branches; 0: mean
 		/// curvature flow alone. Recommended: 0 to 80.
 		double w_m = 40;
 		/// Edges shorter than this are collapsed, in [0, 0.1]; 0: the default, 0.002.
@@ -106,7 +110,7 @@ public:
 		/// A mesh that does not bound a solid: `Auto` mends small defects, and wraps the surface where that
 		/// is not enough; `Mend` does no more than the former; `Off` refuses it.
 		mcf::Repair repair = mcf::Repair::Auto;
-		/// Refine the curve: spurs, centring, smoothness, tips. Without, it is the paper's own.
+		/// Refine the curve: spurs, centring, smoothness, tips.
 		bool refine = true;
 		/// With `refine`, how small branches may be, in [0, 1]: those stay whose significance is at least
 		/// 1 - detail. 0: the trunk alone; 1: all.
@@ -212,7 +216,9 @@ public:
 		Begin();
 		if (stage->hasSheets())
 			return CollapseKeepingSheets();
-		curve = mcf::collapseInside(*stage, parameters.epsilon, progress);
+		curve = parameters.tidyCurve
+			? mcf::collapseInside(*stage, parameters.epsilon, progress)
+			: mcf::collapseToCurve(*stage, parameters.epsilon, progress, false);
 		sheets.reset();
 	}
 
@@ -372,6 +378,8 @@ private:
 		result.detail = params.detail;
 		result.keepSheets = params.keep_sheets;
 		result.sheetThreshold = params.sheet_threshold;
+		if (params.preset != mcf::Preset::Default)
+			result.apply(params.preset);
 		result.check();
 		if (params.keep_stages < 0)
 			throw mcf::InvalidParameter("Parameter keep_stages must be at least 0.");

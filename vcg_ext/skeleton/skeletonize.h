@@ -182,8 +182,10 @@ inline Skeletonization skeletonizeOnce(const SurfaceInput& input, const Paramete
 	if (stage.hasSheets())
 		result.sheets = collapseWithSheets(
 			stage, parameters.epsilon, progress.part(0.85, 0.9), observer.onNote);
-	else
+	else if (parameters.tidyCurve)
 		result.curve = collapseInside(stage, parameters.epsilon, progress.part(0.85, 0.9));
+	else
+		result.curve = collapseToCurve(stage, parameters.epsilon, progress.part(0.85, 0.9), false);
 	result.seconds.collapse = clock.end(Phase::Collapse);
 
 	if (parameters.refine && result.sheets)

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 #include "mesh_checks.h"
+#include "read_off.h"
 #include "shapes.h"
 
 #include <skeleton/collapse/collapse_to_curve.h>
@@ -262,4 +263,15 @@ TEST(CollapseToCurve, ProgressGoesForwardAndCancels)
 	EXPECT_GT(calls, 1);
 	EXPECT_THROW(
 		collapseToCurve(stage, 1e-4, Progress([](int, const char*) { return false; })), Cancelled);
+}
+
+TEST(CollapseToCurve, IsLeftAsTheCollapsesMakeItWhereItIsNotTidied)
+{
+	const Stage stage = stageAfter(shapes::fromFile("y_tube"), 500);
+	const CurveSkeleton tidy = collapseToCurve(stage, 1e-4);
+	const CurveSkeleton rough = collapseToCurve(stage, 1e-4, Progress(), false);
+	expectTopology(stage, rough, 1, 0);
+	EXPECT_GE(statistics(rough).terminals, statistics(tidy).terminals);
+	EXPECT_GT(statistics(rough).length, statistics(tidy).length); // it zigzags
+	EXPECT_EQ(rough.radius.size(), rough.position.size());
 }

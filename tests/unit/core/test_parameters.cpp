@@ -104,3 +104,39 @@ TEST(Parameters, AreCheckedBeforeAnythingIsDone)
 	parameters.wL = -1;
 	EXPECT_THROW(step(initialStage(mesh, poles), parameters), InvalidParameter);
 }
+
+TEST(Parameters, ThePapersPresetLeavesTheShapesParametersAlone)
+{
+	Parameters parameters;
+	parameters.wL = 1.5;
+	parameters.epsilon = 0.003;
+	parameters.targetLength = 0.01;
+	parameters.repair = Repair::Off;
+	parameters.maxIterations = 7;
+	parameters.apply(Preset::Paper);
+	EXPECT_EQ(parameters.wL, 1.5);
+	EXPECT_EQ(parameters.epsilon, 0.003);
+	EXPECT_EQ(parameters.targetLength, 0.01);
+	EXPECT_EQ(parameters.repair, Repair::Off);
+	EXPECT_EQ(parameters.maxIterations, 7);
+	EXPECT_EQ(parameters.poleMethod, PoleMethod::Voronoi);
+	EXPECT_FALSE(parameters.denoise || parameters.adaptive || parameters.coarsen
+		|| parameters.refine || parameters.tidyCurve || parameters.dropOutwardPoles);
+	EXPECT_TRUE(parameters.directSolver);
+}
+
+TEST(Parameters, TheDefaultPresetIsWhatTheyAreAnyway)
+{
+	Parameters parameters;
+	parameters.apply(Preset::Paper);
+	parameters.apply(Preset::Default);
+	const Parameters p;
+	EXPECT_EQ(parameters.poleMethod, p.poleMethod);
+	EXPECT_EQ(parameters.cotangentFactor, p.cotangentFactor);
+	EXPECT_EQ(parameters.directSolver, p.directSolver);
+	EXPECT_TRUE(
+		p.denoise && p.adaptive && p.coarsen && p.refine && p.tidyCurve && p.dropOutwardPoles);
+	EXPECT_TRUE(parameters.denoise && parameters.adaptive && parameters.coarsen && parameters.refine
+		&& parameters.tidyCurve && parameters.dropOutwardPoles);
+	EXPECT_NE(refusal([](Parameters& changed) { changed.cotangentFactor = 0; }), "");
+}

@@ -393,3 +393,105 @@ TEST(Contraction, CanBeCancelled)
 	EXPECT_THROW(
 		contract(stage, Parameters(), Progress([](int, const char*) { return false; })), Cancelled);
 }
+
+namespace {
+
+/// Eq. 6 as it is printed, with the published weights in the unit that belongs to cot(alpha) + cot(beta):
+/// (w_L, 0.1, 0.2) for (w_L, 20, 40). Nothing of it is taken from the library.
+struct PrintedEnergy
+{
+	const Stage& start;
+	double wL;
+	std::vector<std::vector<std::pair<int, double>>> neighbours; ///< and cot(alpha) + cot(beta)
+
+	PrintedEnergy(const Stage& start, double wL) :
+			start(start), wL(wL), neighbours(start.mesh.position.size())
+	{
+		for (int f = 0; f < start.mesh.faceSlots(); ++f) {
+			const Triangle t = start.mesh.triangle(f);
+			for (int k = 0; k < 3; ++k) {
+				const int i = t[k], j = t[(k + 1) % 3], apex = t[(k + 2) % 3];
+				const Point3d u = start.mesh.position[i] - start.mesh.position[apex];
+				const Point3d v = start.mesh.position[j] - start.mesh.position[apex];
+				const double cotangent = 1 / std::tan(std::acos(u * v / (u.Norm() * v.Norm())));
+				neighbours[i].emplace_back(j, cotangent);
+				neighbours[j].emplace_back(i, cotangent);
+			}
+		}
+	}
+
+	double operator()(const std::vector<Point3d>& x) const
+	{
+		double sum = 0;
+		for (size_t v = 0; v < x.size(); ++v) {
+			Point3d Lx(0, 0, 0);
+			for (const auto& [w, cotangent] : neighbours[v])
+				Lx += (x[v] - x[w]) * cotangent;
+			sum += wL * wL * Lx.SquaredNorm()
+				+ 0.1 * 0.1 * vcg::SquaredDistance(x[v], start.mesh.position[v])
+				+ 0.2 * 0.2 * vcg::SquaredDistance(x[v], start.pole[v]);
+		}
+		return sum;
+	}
+};
+
+/// How much the energy falls at most when the vertices move on along the move that was made, in parts of it: 0
+/// where the move ends at the least energy of its line, as it must at the least of all.
+double overshoot(const PrintedEnergy& energy, const Stage& end)
+{
+	const auto at = [&](double part) {
+		std::vector<Point3d> x = energy.start.mesh.position;
+		for (size_t v = 0; v < x.size(); ++v)
+			x[v] += (end.mesh.position[v] - energy.start.mesh.position[v]) * part;
+		return energy(x);
+	};
+	const double before = at(0), half = at(0.5), full = at(1);
+	// The parabola through the three.
+	const double curvature = 2 * (before - 2 * half + full), slope = full - before - curvature;
+	return -slope / (2 * curvature) - 1;
+}
+
+} // namespace
+
+TEST(Contraction, ThePresetOfThePaperHasItsWeights)
+{
+	const Stage start = stageWithPoles(shapes::torus(1, 0.3, 40, 14));
+	Parameters paper;
+	paper.apply(Preset::Paper);
+	Stage end = start;
+	contract(end, paper);
+	const PrintedEnergy energy(start, 1);
+	EXPECT_LT(std::abs(overshoot(energy, end)), 1e-3); // weights are at least 1e-3
+	const double least = energy(end.mesh.position);
+	std::mt19937 random(3);
+	for (int trial = 0; trial < 20; ++trial) {
+		std::vector<Point3d> other = end.mesh.position;
+		for (Point3d& p : other)
+			for (int k = 0; k < 3; ++k)
+				p[k] += 1e-3 * (2.0 * random() / double(std::mt19937::max()) - 1);
+		EXPECT_GT(energy(other), least);
+	}
+}
+
+TEST(Contraction, TheDefaultSmoothnessWeightIsHalfThePublishedOne)
+{
+	const Stage start = stageWithPoles(shapes::torus(1, 0.3, 40, 14));
+	Stage end = start;
+	Parameters parameters;
+	parameters.directSolver = true;
+	contract(end, parameters);
+	EXPECT_LT(std::abs(overshoot(PrintedEnergy(start, 0.5), end)), 1e-3);
+	EXPECT_GT(std::abs(overshoot(PrintedEnergy(start, 1), end)), 1e-2);
+}
+
+TEST(Contraction, APoleThatLiesOutwardsPullsWhereItIsNotDropped)
+{
+	Stage outwards = stageWithPoles(shapes::sphere(2));
+	outwards.pole[3] = outwards.mesh.position[3] * 1.5;
+	Stage dropped = outwards;
+	Parameters parameters;
+	contract(dropped, parameters);
+	parameters.dropOutwardPoles = false;
+	contract(outwards, parameters);
+	EXPECT_GT(outwards.mesh.position[3].Norm(), dropped.mesh.position[3].Norm() + 0.01);
+}

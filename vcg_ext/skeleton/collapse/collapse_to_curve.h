@@ -175,8 +175,8 @@ inline void straightenZigzag(GluedComplex& complex, const Stage& stage, double s
 } // namespace detail
 
 /**
- * Turns a stage into its curve skeleton: repeatedly collapses the shortest edge that has faces, then
- * straightens the zigzag that this leaves and removes the spurs. Lengths are compared in the shape's
+ * Turns a stage into its curve skeleton: repeatedly collapses the shortest edge that has faces, then, with
+ * `tidy`, straightens the zigzag that this leaves and removes the spurs. Lengths are compared in the shape's
  * own coordinates, see StageFrames.
  *
  * The stage need not have converged; its sheets and volumes become curves too. The result has a
@@ -185,17 +185,19 @@ inline void straightenZigzag(GluedComplex& complex, const Stage& stage, double s
  *
  * @param shortestEdge edges shorter than this fraction of the component's diagonal, or than
  *        Stage::epsilonLimit where that is smaller, are contracted at the end, where no cycle vanishes by it.
+ * @param tidy         without, the curve is what the collapses leave, as in the paper.
  * @throws SolverError, Cancelled. Complexity: O(V log V).
  */
-inline CurveSkeleton collapseToCurve(
-	Stage stage, double shortestEdge = 1e-4, const Progress& progress = Progress())
+inline CurveSkeleton collapseToCurve(Stage stage, double shortestEdge = 1e-4,
+	const Progress& progress = Progress(), bool tidy = true)
 {
 	StageFrames frames(stage, progress.part(0, 0));
 	frames.enter(stage);
 	GluedComplex complex(stage.mesh, stage.held);
 	detail::contractAllFaces(complex, progress.part(0, 0.9));
 
-	detail::straightenZigzag(complex, stage, shortestEdge);
+	if (tidy)
+		detail::straightenZigzag(complex, stage, shortestEdge);
 	detail::contractShortCurveEdges(complex, stage, shortestEdge);
 
 	const char* const what = "Collapsing to curves";
@@ -220,8 +222,9 @@ inline CurveSkeleton collapseToCurve(
 
 	constexpr double spurProminence = 0.12; // some more than a tenth: balls reach to vertices only
 	skeleton.radius.assign(skeleton.position.size(), 0);
-	skeleton = detail::withoutSpurs(
-		std::move(skeleton), stage, component, held, spurProminence, progress.part(0.95, 1));
+	if (tidy)
+		skeleton = detail::withoutSpurs(
+			std::move(skeleton), stage, component, held, spurProminence, progress.part(0.95, 1));
 
 	// A node of split vertices only has no surface vertex: it takes the mean of its neighbours' radii.
 	skeleton.radius =

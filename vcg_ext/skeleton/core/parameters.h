@@ -28,6 +28,12 @@ enum class Repair {
 	Off   ///< it is refused, but for what checkedSurface() repairs
 };
 
+/// A set of values for the parameters that are about the method, not about the shape: see Parameters::apply().
+enum class Preset {
+	Default, ///< what gives the best skeletons
+	Paper    ///< the paper's algorithm and nothing else
+};
+
 /**
  * What the user may choose. Lengths are fractions of the bounding box diagonal of a connected
  * component, so that each component of a scene is treated as it would be alone. The box is that along
@@ -35,7 +41,8 @@ enum class Repair {
  */
 struct Parameters
 {
-	/// Smoothness weight w_L (Eq. 6), in the paper's units; > 0.
+	/// Smoothness weight w_L (Eq. 6), of the Laplacian whose weights are `cotangentFactor` times the sums of the
+	/// cotangents; > 0.
 	double wL = 1;
 	/// Velocity weight w_H (Eq. 6), in the paper's units; > 0. Larger: smaller steps, more of them.
 	double wH = 20;
@@ -67,19 +74,47 @@ struct Parameters
 	int resampleIterations = 5;
 	/// Measure the noise of the surface and smooth it before the resampling: see noise.h.
 	bool denoise = true;
-	/// Refine the curve at the end: see refine.h. Without, it is the paper's own.
+	/// Refine the curve at the end: see refine.h.
 	bool refine = true;
 	/// With `refine`, how small branches may be, in [0, 1]: those stay whose significance is at least
 	/// 1 - detail, see nestedBranches(). 0: the trunk alone; 1: all.
 	double detail = defaultDetail;
 	static constexpr double defaultDetail = 0.9;
+	/// What the sums of the cotangents are multiplied with, > 0. The published weights belong to 1.
+	double cotangentFactor = 0.5;
+	/// Merge edges up to two epsilon before the flow, and halve those far too long: see firstStage().
+	bool coarsen = true;
+	/// Leave out the medial term where the pole lies outwards, where the flow has passed the medial axis.
+	bool dropOutwardPoles = true;
+	/// Solve the linear systems by a direct Cholesky factorisation in double, instead of to a hundredth by
+	/// conjugate gradients in single precision.
+	bool directSolver = false;
+	/// Straighten the zigzag of the curve that the last collapse leaves, take its spurs off, and bring inside
+	/// what is outside.
+	bool tidyCurve = true;
 	/// For meshes that do not bound a solid.
 	Repair repair = Repair::Auto;
+
+	/**
+	 * Sets the parameters that make the method what it is: poleMethod, adaptive, denoise, coarsen,
+	 * cotangentFactor, dropOutwardPoles, directSolver, tidyCurve and refine. Weights, lengths, iterations,
+	 * sheets and repair stay as they are.
+	 */
+	void apply(Preset preset)
+	{
+		const bool isPaper = preset == Preset::Paper;
+		poleMethod = isPaper ? PoleMethod::Voronoi : PoleMethod::Balls;
+		cotangentFactor = isPaper ? 1 : 0.5;
+		directSolver = isPaper;
+		adaptive = denoise = coarsen = dropOutwardPoles = tidyCurve = refine = !isPaper;
+	}
 
 	/// @throws InvalidParameter naming the first parameter that is out of its range.
 	void check() const
 	{
 		require(wL > 0 && std::isfinite(wL), "w_l", "greater than 0");
+		require(cotangentFactor > 0 && std::isfinite(cotangentFactor), "cotangent_factor",
+			"greater than 0");
 		require(wH > 0 && std::isfinite(wH), "w_h", "greater than 0");
 		require(wM >= 0 && std::isfinite(wM), "w_m", "at least 0");
 		require(

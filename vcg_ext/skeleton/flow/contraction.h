@@ -13,6 +13,7 @@
 #include <skeleton/core/parallel.h>
 #include <skeleton/core/parameters.h>
 #include <skeleton/core/progress.h>
+#include <skeleton/solver/biharmonic_cholesky.h>
 #include <skeleton/solver/biharmonic_pcg.h>
 
 #include <algorithm>
@@ -27,7 +28,9 @@ namespace detail {
 /// the others, the smaller is the part of the energy that smooth moves have, so that they come last.
 inline double solverTolerance(const Parameters& parameters)
 {
-	const auto stiffness = [](const Parameters& p) { return p.wL / std::hypot(p.wH, p.wM); };
+	const auto stiffness = [](const Parameters& p) {
+		return p.cotangentFactor * p.wL / std::hypot(p.wH, p.wM);
+	};
 	return 1e-2 * std::min(1.0, stiffness(Parameters()) / stiffness(parameters));
 }
 
@@ -39,9 +42,9 @@ inline double solverTolerance(const Parameters& parameters)
  *   |w_L L v|^2 + w_H^2 sum_i |v_i - v_i^t|^2 + w_M^2 sum_i |v_i - mu(v_i)|^2      (Eq. 6)
  *
  * Fixed vertices are known values, not unknowns with a large weight; the Laplacian rows are those
- * of the free vertices. The medial term is left out for a vertex without a pole and where the pole
- * lies outwards, (mu(v) - v) . n > 0: there the flow has passed the medial axis, and the term would
- * blow the surface up again. Vertices of sheets (Stage::sheet) have a weight of their own and keep it.
+ * of the free vertices. The medial term is left out for a vertex without a pole and, with
+ * parameters.dropOutwardPoles, where the pole lies outwards, (mu(v) - v) . n > 0: there the flow has passed
+ * the medial axis, and the term would blow the surface up again. Vertices of sheets (Stage::sheet) have a weight of their own and keep it.
  *
  * Weights are squared (Eq. 5 does, Eq. 6 does not; the published values belong to the square).
  * Connected components are independent linear systems, solved in parallel. The result for a component is
@@ -57,8 +60,10 @@ inline void contract(
 	SurfaceMesh& mesh = stage.mesh;
 	const FlowSystem all = flowSystem(stage, parameters, progress.part(0, 0.2));
 	const auto solve = [&](const FlowSystem& system, const Progress& part) {
-		const std::vector<Point3d> move = solveBiharmonic(
-			system.M, system.D, system.b, detail::solverTolerance(parameters), part);
+		const std::vector<Point3d> move = parameters.directSolver
+			? solveBiharmonicDirectly(system.M, system.D, system.b, part)
+			: solveBiharmonic(
+				system.M, system.D, system.b, detail::solverTolerance(parameters), part);
 		for (size_t i = 0; i < move.size(); ++i) {
 			const Point3d p = mesh.position[system.vertex[i]] + move[i];
 			if (!(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])))

@@ -24,8 +24,10 @@
 namespace vcg::tri::mcf {
 
 /**
- * The paper's weights belong to another normalisation of L than the dimensionless cotangents used
- * here: its (w_L, w_H, w_M) = (1, 20, 40) is (1, 0.1, 0.2) for them.
+ * What w_H and w_M are multiplied with: the paper's (w_L, w_H, w_M) = (1, 20, 40) is (1, 0.1, 0.2) for a
+ * Laplacian of weights cot(alpha) + cot(beta). The text's numbers are those of its authors' program with mean
+ * value weights, which carry 1 / length; the other ones are those of their program with cotangents, and the
+ * quotients of the two are equal for equilateral triangles of 0.005 units.
  */
 constexpr double publishedWeightUnit = 1.0 / 200;
 
@@ -36,7 +38,7 @@ constexpr double sheetWeight2 = 4;
 /**
  * (M^2 + D) y = b for the moves y of the free vertices: where Eq. 6 is least, see contract().
  *
- * M is w_L L restricted to the unknowns, D = w_H^2 + w_M^2. With x = v + y it follows from Eq. 6 that
+ * M is w_L L, with parameters.cotangentFactor, restricted to the unknowns, D = w_H^2 + w_M^2. With x = v + y it follows from Eq. 6 that
  *     b = w_M^2 (mu - v) - M (w_L L v),
  * where fixed neighbours count in L v: differences only, so that far from the origin no digits are lost.
  */
@@ -67,7 +69,7 @@ inline FlowSystem flowSystem(
 	const Stage& stage, const Parameters& parameters, const Progress& progress = Progress())
 {
 	const SurfaceMesh& mesh = stage.mesh;
-	const double wL = parameters.wL;
+	const double wL = 2 * parameters.cotangentFactor * parameters.wL; // of cotangentWeight()
 	const double wH2 = std::pow(parameters.wH * publishedWeightUnit, 2);
 	const double wM2 = std::pow(parameters.wM * publishedWeightUnit, 2);
 
@@ -159,7 +161,8 @@ inline FlowSystem flowSystem(
 		b[i] = Point3d(0, 0, 0);
 		const bool sheet = stage.sheet[v];
 		const Point3d toPole = stage.pole[v] - mesh.position[v];
-		if (stage.poleRadius[v] >= 0 && (sheet || toPole * normal[v] <= 0)) {
+		const bool isAhead = toPole * normal[v] <= 0 || !parameters.dropOutwardPoles;
+		if (stage.poleRadius[v] >= 0 && (sheet || isAhead)) {
 			const double weight2 = sheet ? sheetWeight2 : wM2;
 			D[i] = float(wH2 + weight2);
 			b[i] = toPole * weight2;

@@ -27,9 +27,9 @@ namespace vcg::tri::mcf {
 /**
  * Stage 0 of a surface.
  *
- * Without vertices to hold and without sheets the flow starts on firstStage(): short edges merged, edges
- * that are too long halved. Otherwise every vertex of the surface is in the stage, and no other: held
- * vertices and the rims of sheets stay where they are.
+ * Without vertices to hold, without sheets and with parameters.coarsen the flow starts on firstStage(): short
+ * edges merged, edges that are too long halved. Otherwise every vertex of the surface is in the stage, and no
+ * other: held vertices and the rims of sheets stay where they are.
  *
  * @param surface  compact.
  * @param poles    of all its vertices, see medialPoles().
@@ -41,7 +41,7 @@ inline Stage startOfFlow(const SurfaceMesh& surface, const PoleSet& poles,
 	const std::vector<char>& held, const Parameters& parameters,
 	const Progress& progress = Progress(), const NoteCallback& onNote = {})
 {
-	if (held.empty() && !parameters.keepSheets)
+	if (held.empty() && !parameters.keepSheets && parameters.coarsen)
 		return firstStage(surface, parameters, &poles, progress);
 	const Progress begin = progress.part(0, 0);
 	const MeasuredSurface measured(surface, begin);
@@ -60,7 +60,7 @@ inline Stage startOfFlow(const SurfaceMesh& surface, const PoleSet& poles,
 						+ ": there are no sheets to keep.");
 		}
 	}
-	if (held.empty() && !stage.hasSheets())
+	if (held.empty() && !stage.hasSheets() && parameters.coarsen)
 		return firstStage(surface, parameters, &poles, progress.part(0.5, 1));
 	if (!held.empty()) {
 		holdVertices(stage, held);
