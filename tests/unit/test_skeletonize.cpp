@@ -456,3 +456,13 @@ TEST(Skeletonize, ThePapersPresetIsFig4AndNothingElse)
 	EXPECT_EQ(statistics(result.curve).cycles, 0);
 	EXPECT_TRUE(differ(result.curve, run(soup, coarse()).curve));
 }
+
+TEST(Skeletonize, DoesNotEndWhereWallsHavePassedEachOther)
+{
+	// The walls of a box go to its middle, and through each other, in the first steps: its volume is gone, and
+	// its area stands still for one of them.
+	const Skeletonization result = run(shapes::fromFile("cuboid"), Parameters());
+	EXPECT_TRUE(result.stage->converged);
+	EXPECT_LT(result.stage->areaFraction(), 0.05);
+	EXPECT_GT(result.stage->fixedFraction(), 0.5);
+}

@@ -92,8 +92,8 @@ inline void stepInFrames(
 			std::abs(extent.area[c] - stage.area[c]) < settled * stage.initialArea[c];
 	stage.area = extent.area;
 	stage.volume = extent.volume;
-	stage.converged &=
-		stage.volumeFraction() < 0.05 || stage.fixedFraction() > 0.5 || stage.heldCount() > 0;
+	stage.converged &= (stage.volumeFraction() < 0.05 && stage.areaFraction() < 0.5)
+		|| stage.fixedFraction() > 0.5 || stage.heldCount() > 0;
 	stage.iteration = std::min(stage.iteration + 1, Stage::maxIteration);
 	stage.epsilon = parameters.epsilon;
 }
@@ -104,10 +104,11 @@ inline void stepInFrames(
  * One iteration of the loop of Fig. 4: weights and contraction, then connectivity, then degeneracy.
  *
  * Convergence: in every component the area changed by less than 1e-4 of the surface's area, and there
- * is nothing left to contract: less than 5 % of the volume (in the end it is some 1e-5), or most
- * vertices are fixed (a body thinner than epsilon keeps its volume). The area alone would take a flow
- * for finished that a large w_H makes slow; it must do where vertices are held, since they may hold
- * any volume open. A converged stage stays as it is.
+ * is nothing left to contract: less than 5 % of the volume (in the end it is some 1e-5) and half of the area
+ * (where the walls of a box have passed each other, the volume is gone, and the area may stand still for a
+ * step), or most vertices are fixed (a body thinner than epsilon keeps its volume, a sheet its area). The area
+ * alone would take a flow for finished that a large w_H makes slow; it must do where vertices are held, since
+ * they may hold any volume open. A converged stage stays as it is.
  *
  * All of it happens in the shape's own coordinates, see StageFrames.
  * @return the next stage; the given one is not changed.
