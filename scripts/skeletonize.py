@@ -65,6 +65,8 @@ def parse_arguments(arguments: list[str] | None = None) -> argparse.Namespace:
                       help="longest edge in local thicknesses (0.6)")
     flow.add_argument("--no-refine", dest="refine", action="store_const", const=False,
                       help="leave the curve as the contraction made it")
+    flow.add_argument("--detail", type=float, metavar="D",
+                      help="how small branches may be, from 0, the trunk alone, to 1, all (0.9)")
     flow.add_argument("--pole-method", choices=["voronoi", "balls"], help="how poles are found")
     flow.add_argument("--max-iterations", type=int, metavar="N", help="cap of the contraction (500)")
     results = parser.add_argument_group("the results")
@@ -93,7 +95,7 @@ def filter_parameters(options: argparse.Namespace) -> dict[str, Any]:
     parameters = {}
     for name in ["preset", "w_l", "w_h", "w_m", "epsilon", "split_angle", "resample", "target_length",
                  "resample_iterations", "denoise", "adaptive", "relative_length", "refine", "repair",
-                 "pole_method", "max_iterations",
+                 "detail", "pole_method", "max_iterations",
                  "keep_stages"]:
         value = getattr(options, name)
         if isinstance(value, tuple):

@@ -55,13 +55,13 @@ def variants(points: Array, triangles: Array) -> Iterator[Variant]:
     yield Variant("Voronoi poles", points, triangles, ("--pole-method", "voronoi"), same)
 
 
-def matched(tips: list[Array], near: float) -> list[list[int]]:
-    """For each terminal branch that some variant has, the variants that have it: those with a tip near it.
+def matched(tips: list[Array], near: float) -> list[list[tuple[int, int]]]:
+    """For each terminal branch that some variant has, the variants with a tip near it, and which tip that is.
 
     `tips` holds one array for each variant. Pairs are made nearest first, and each tip is in one branch.
     """
     places: list[Array] = []
-    members: list[list[int]] = []
+    members: list[list[tuple[int, int]]] = []
     for variant, own in enumerate(tips):
         gaps = np.linalg.norm(own[:, None] - np.array(places).reshape(1, -1, 3), axis=2)
         free = set(range(len(own)))
@@ -75,8 +75,8 @@ def matched(tips: list[Array], near: float) -> list[list[int]]:
                 taken.add(branch)
                 count = len(members[branch])
                 places[branch] = (places[branch] * count + own[tip]) / (count + 1)
-                members[branch].append(variant)
+                members[branch].append((variant, int(tip)))
         for tip in sorted(free):
             places.append(own[tip])
-            members.append([variant])
+            members.append([(variant, tip)])
     return members

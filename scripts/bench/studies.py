@@ -290,21 +290,24 @@ def stability(bench: Bench, mesh: Path) -> str:
     """Which terminal branches the copies of a mesh agree on, see stability.variants()."""
     points, triangles = read_mesh(mesh)
     size = diagonal(points)
-    tips = []
+    values = bench.folder / "significance.txt"
+    tips, significance = [], []
     for variant in variants(points, triangles):
         run = bench.run(write_mesh(bench.folder / "variant.ply", variant.points, variant.triangles),
-                        *variant.options)
-        curve = run.curve
-        tips.append(variant.back(curve.points[curve.degree == 1]))
+                        "--significance", str(values), *variant.options)
+        own = np.flatnonzero(run.curve.degree == 1)
+        tips.append(variant.back(run.curve.points[own]))
+        significance.append(np.loadtxt(values, ndmin=1)[own])
     counts = [len(own) for own in tips]
     usual = max(counts.count(n) for n in counts)
     branches = matched(tips, NEAR * size)
-    stable = sum(len(members) == len(tips) for members in branches)
-    others = sorted(len(members) for members in branches if len(members) < len(tips))
+    others = sorted((len(members), float(np.median([significance[v][tip] for v, tip in members])))
+                    for members in branches if len(members) < len(tips))
     return table(["mesh", "variants", "tips", "with the usual number", "branches", "in all variants",
-                  "variants that have the others"],
+                  "variants that have the others (significance)"],
                  [[mesh.stem, str(len(tips)), f"{min(counts)} to {max(counts)}", str(usual),
-                   str(len(branches)), str(stable), ", ".join(map(str, others)) or "-"]])
+                   str(len(branches)), str(len(branches) - len(others)),
+                   ", ".join(f"{count} ({value:.2f})" for count, value in others) or "-"]])
 
 
 STUDIES = {"known answers": known, "damage": damage, "resolution": resolution, "noise": noise,

@@ -12,6 +12,7 @@
 #include <skeleton/graph/curve_skeleton.h>
 #include <skeleton/graph/prune.h>
 #include <skeleton/graph/resample_skeleton.h>
+#include <skeleton/graph/significance.h>
 #include <skeleton/graph/skeleton_branches.h>
 #include <skeleton/graph/skeleton_radius.h>
 
