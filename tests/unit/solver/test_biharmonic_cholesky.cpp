@@ -24,7 +24,8 @@ TEST(DirectSolver, LeavesNoResidual)
 		const std::vector<Point3d> b = systems::randomColumns(M.size(), 5);
 		const Eigen::MatrixXd x = systems::matrix(solveBiharmonicDirectly(M, D, b));
 		const systems::Sparse S = systems::sparse(M);
-		const Eigen::MatrixXd residual = S * (S * x) + systems::diagonal(D) * x - systems::matrix(b);
+		const Eigen::MatrixXd residual =
+			S * (S * x) + systems::diagonal(D) * x - systems::matrix(b);
 		EXPECT_LT(residual.norm(), 1e-8 * systems::matrix(b).norm());
 	}
 }
@@ -33,6 +34,5 @@ TEST(DirectSolver, RefusesWhatIsNotPositive)
 {
 	const SymmetricRows M = systems::orderedLaplacian(shapes::octahedron().mesh());
 	const std::vector<float> D(size_t(M.size()), -1000.f);
-	EXPECT_THROW(
-		solveBiharmonicDirectly(M, D, systems::randomColumns(M.size(), 1)), SolverError);
+	EXPECT_THROW(solveBiharmonicDirectly(M, D, systems::randomColumns(M.size(), 1)), SolverError);
 }

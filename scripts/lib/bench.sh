@@ -1,0 +1,48 @@
+# SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+# SPDX-License-Identifier: GPL-3.0-or-later
+#
+# The programs of the bench, and its own Python. Source after common.sh and meshlab_sources.sh.
+
+# shellcheck shell=bash
+
+BENCH_PACKAGES=(g++ cmake ninja-build libeigen3-dev libqhull-dev libcgal-dev libbenchmark-dev
+	python3 python3-venv)
+
+# build_bench [PROGRAM...]: prints the folder of the programs, building these, or all, if need be.
+build_bench() {
+	local folder="$ROOT/build/bench" sources
+	sources="$(meshlab_sources 2025.07)"
+	quietly cmake -S "$ROOT" -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+		-DMCFSKEL_PLUGIN=OFF -DMCFSKEL_BENCH=ON -DMESHLAB_SRC="$sources" ||
+		die "could not configure the bench"
+	if ! ninja -C "$folder" -n "$@" | grep -q 'no work to do'; then
+		say "building the programs of the bench"
+		quietly ninja -C "$folder" -j "$JOBS" "$@" || die "could not build the bench"
+	fi
+	echo "$folder/tests/bench"
+}
+
+# Prints the interpreter of the bench's own Python environment, which holds the peers from PyPI.
+bench_python() {
+	local wanted folder
+	wanted="$(cat "$ROOT"/scripts/bench/requirements*.txt | sha256sum | cut -c 1-12)"
+	folder="$CACHE/bench-python-$wanted"
+	with_lock "bench-python-$wanted" make_bench_python "$folder" >&2
+	echo "$folder/bin/python"
+}
+
+make_bench_python() {
+	local folder="$1" peer
+	[ ! -f "$folder/complete" ] || return 0
+	say "preparing Python for the bench"
+	rm -rf "$folder"
+	/usr/bin/python3 -m venv "$folder"
+	local pip=("$folder/bin/python" -m pip install --disable-pip-version-check)
+	quietly "${pip[@]}" -r "$ROOT/scripts/bench/requirements.txt" ||
+		die "could not install scripts/bench/requirements.txt"
+	# A peer that cannot be had is left out of the table; the bench does not depend on it.
+	while read -r peer; do
+		quietly "${pip[@]}" "$peer" || say "could not install $peer: it will be missing in the table"
+	done < <(grep -v '^#' "$ROOT/scripts/bench/requirements-peers.txt")
+	touch "$folder/complete"
+}
