@@ -194,6 +194,28 @@ TEST(Mend, UnitesBoxesWithACommonWall)
 	EXPECT_NEAR(enclosedVolume(surface), 2, 1e-12);
 }
 
+TEST(Mend, DropsAWallAcrossTheInside)
+{
+	shapes::Soup soup = shapes::sphere(3);
+	const int middle = int(soup.points.size());
+	std::vector<Triangle> wall;
+	for (const Triangle& t : soup.triangles)
+		for (size_t k = 0; k < 3; ++k) {
+			const int a = t[k], b = t[(k + 1) % 3];
+			if (a < b && soup.points[size_t(a)][2] == 0 && soup.points[size_t(b)][2] == 0)
+				wall.push_back({a, b, middle});
+		}
+	ASSERT_GT(wall.size(), 8u);
+	const MendedSurface without = mended(soup);
+	soup.points.emplace_back(0, 0, 0);
+	soup.triangles.insert(soup.triangles.end(), wall.begin(), wall.end());
+	const MendedSurface surface = mended(soup);
+	ASSERT_TRUE(surface.closed);
+	EXPECT_EQ(surface.report.holesLeft, 0);
+	EXPECT_EQ(surface.report.piecesDropped, 1);
+	EXPECT_NEAR(enclosedVolume(surface), enclosedVolume(without), 1e-12);
+}
+
 TEST(Mend, ClosesTJunctions)
 {
 	shapes::Soup soup = shapes::sphere(2);

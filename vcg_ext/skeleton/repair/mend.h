@@ -10,6 +10,7 @@
 #include "close_seams.h"
 #include "fill_holes.h"
 #include "part_surface.h"
+#include "winding_number.h"
 
 #include <skeleton/core/errors.h>
 #include <skeleton/core/progress.h>
@@ -17,6 +18,7 @@
 #include <skeleton/input/coincident_points.h>
 #include <skeleton/input/soup_repair.h>
 #include <skeleton/mesh/surface_mesh.h>
+#include <skeleton/spatial/triangle_tree.h>
 
 #include <algorithm>
 #include <array>
@@ -37,7 +39,7 @@ struct MendReport
 	int edgesParted = 0;     ///< with more than two faces
 	int verticesParted = 0;  ///< at which separate fans of faces met
 	int facesTurned = 0;     ///< against their neighbours
-	int piecesDropped = 0;   ///< specks, and closed pieces without volume
+	int piecesDropped = 0;   ///< specks, walls inside, and closed pieces without volume
 	int holesClosed = 0;
 	int holesLeft = 0; ///< too large, or not to be filled without crossing the surface
 	bool oneSided = false;
@@ -168,12 +170,103 @@ inline int dropSpecks(
 	return dropped;
 }
 
+/// Loops around the holes of a coherently oriented surface.
+inline int holesOf(const std::vector<Point3d>& points, const std::vector<Triangle>& triangles,
+	const Progress& progress)
+{
+	return int(
+		holeLoops(points, triangles, pairedHalfEdges(points, triangles, nullptr, progress)).size());
+}
+
+/**
+ * Takes away the faces around small holes that cannot be filled, such as flaps that lie back on the surface,
+ * so that what is left may be. @return how many.
+ */
+inline int cutAroundHoles(
+	const std::vector<Point3d>& points, std::vector<Triangle>& triangles, const Progress& progress)
+{
+	constexpr size_t edges = 40;   // of a hole
+	constexpr double part = 0.002; // of the area, in all
+	const std::vector<int> partner =
+		pairedHalfEdges(points, triangles, nullptr, progress.part(0, 0.5));
+	std::vector<char> cut(triangles.size(), 0);
+	for (const std::vector<int>& loop : holeLoops(points, triangles, partner))
+		for (int h : loop)
+			if (loop.size() <= edges)
+				cut[size_t(h) / 3] = 1;
+	double whole = 0, gone = 0;
+	for (size_t f = 0; f < triangles.size(); ++f) {
+		const Triangle& t = triangles[f];
+		const Point3d& a = points[size_t(t[0])];
+		const double area = ((points[size_t(t[1])] - a) ^ (points[size_t(t[2])] - a)).Norm() / 2;
+		whole += area;
+		gone += cut[f] ? area : 0;
+	}
+	if (!(gone < part * whole))
+		return 0;
+	size_t kept = 0;
+	for (size_t f = 0; f < triangles.size(); ++f)
+		if (!cut[f])
+			triangles[kept++] = triangles[f];
+	const int count = int(triangles.size() - kept);
+	triangles.resize(kept);
+	return count;
+}
+
+/// Drops open pieces that lie inside the closed ones: walls across the solid, of which no filling makes a body.
+inline int dropInnerWalls(
+	const std::vector<Point3d>& points, std::vector<Triangle>& triangles, const Progress& progress)
+{
+	const std::vector<int> partner =
+		pairedHalfEdges(points, triangles, nullptr, progress.part(0, 0.3));
+	const std::vector<int> piece = pieceOfFaces(partner);
+	std::vector<char> open(triangles.size(), 0); // pieces, by their first face
+	for (size_t h = 0; h < partner.size(); ++h)
+		if (partner[h] < 0)
+			open[size_t(piece[h / 3])] = 1;
+	std::vector<Triangle> closed;
+	for (size_t f = 0; f < triangles.size(); ++f)
+		if (!open[size_t(piece[f])])
+			closed.push_back(triangles[f]);
+	if (closed.empty() || closed.size() == triangles.size())
+		return 0;
+	const TriangleTree tree(points, closed, progress.part(0.3, 0.5));
+	const WindingNumber winding(tree, progress.part(0.5, 0.6));
+	std::map<int, std::pair<double, double>> areas; // of each open piece: all, and inside
+	reportedLoop(int(triangles.size()), progress.part(0.6, 1), repairing, [&](int f) {
+		if (!open[size_t(piece[size_t(f)])])
+			return;
+		const Triangle& t = triangles[size_t(f)];
+		const Point3d &a = points[size_t(t[0])], &b = points[size_t(t[1])],
+					  &c = points[size_t(t[2])];
+		const double area = ((b - a) ^ (c - a)).Norm();
+		auto& [whole, inside] = areas[piece[size_t(f)]];
+		whole += area;
+		// A closed piece may still be inside out.
+		if (std::abs(winding((a + b + c) / 3.0)) > 0.75)
+			inside += area;
+	});
+	int dropped = 0;
+	std::vector<char> drop(triangles.size(), 0);
+	for (const auto& [first, area] : areas)
+		if (area.second > 0.5 * area.first) {
+			drop[size_t(first)] = 1;
+			++dropped;
+		}
+	size_t kept = 0;
+	for (size_t f = 0; f < triangles.size(); ++f)
+		if (!drop[size_t(piece[f])])
+			triangles[kept++] = triangles[f];
+	triangles.resize(kept);
+	return dropped;
+}
+
 } // namespace detail
 
 /**
  * Mends small defects, in this order: faces that are degenerate, not finite, or there twice; vertices that
  * coincide; seams (see closeSeams()); edges and vertices where the surface is no two-manifold (see
- * partSurface()); orientation; specks; small holes (see fillHoles()).
+ * partSurface()); orientation; specks; small holes (see fillHoles()); open walls inside what is closed by then.
  *
  * A surface that has none of these defects stays as it is. What cannot be mended is left, with `closed` false.
  * @param points    mesh units. @param triangles corners as indices into `points`.
@@ -261,7 +354,25 @@ inline MendedSurface mend(const std::vector<Point3d>& points,
 		fillHoles(mended.points, faces, partner, limits, progress.part(0.55, 0.95));
 	report.holesClosed = holes.closed;
 	report.holesLeft = holes.left;
-	if (holes.left == 0) {
+	constexpr int mostCuts = 3;
+	for (int round = 0; round < mostCuts && report.holesLeft > 0; ++round) {
+		const Progress again = progress.part(0.95, 0.95);
+		const int cut = cutAroundHoles(mended.points, faces, again);
+		if (!cut)
+			break;
+		report.facesDropped += cut;
+		partner = partSurface(mended.points, faces, partedFrom, true, again).partner;
+		report.piecesDropped += dropSpecks(mended.points, faces, partner);
+		const FilledHoles filled = fillHoles(mended.points, faces, partner, limits, again);
+		report.holesClosed += filled.closed;
+		report.holesLeft = filled.left;
+	}
+	const int walls =
+		report.holesLeft > 0 ? dropInnerWalls(mended.points, faces, progress.part(0.95, 0.95)) : 0;
+	report.piecesDropped += walls;
+	if (walls)
+		report.holesLeft = holesOf(mended.points, faces, progress.part(0.95, 0.95));
+	if (report.holesLeft == 0) {
 		report.verticesParted +=
 			partSurface(mended.points, faces, partedFrom, false, progress.part(0.95, 1)).vertices;
 		mended.closed = SurfaceMesh::isClosedManifold(mended.points.size(), faces);
