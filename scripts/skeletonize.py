@@ -59,6 +59,10 @@ def parse_arguments(arguments: list[str] | None = None) -> argparse.Namespace:
                       help="resample without smoothing the noise first")
     flow.add_argument("--repair", choices=["auto", "mend", "off"],
                       help="what is done with a mesh that does not bound a solid (auto)")
+    flow.add_argument("--min-component", type=float, metavar="PART",
+                      help="pieces of a smaller part of the largest one's volume get no skeleton (0)")
+    flow.add_argument("--join", action="store_const", const=True,
+                      help="join the skeletons of all pieces by bridges over the narrowest gaps")
     flow.add_argument("--no-adaptive", dest="adaptive", action="store_const", const=False,
                       help="the same lengths everywhere, however thin the shape is")
     flow.add_argument("--relative-length", type=float, metavar="K",
@@ -95,7 +99,7 @@ def filter_parameters(options: argparse.Namespace) -> dict[str, Any]:
     parameters = {}
     for name in ["preset", "w_l", "w_h", "w_m", "epsilon", "split_angle", "resample", "target_length",
                  "resample_iterations", "denoise", "adaptive", "relative_length", "refine", "repair",
-                 "detail", "pole_method", "max_iterations",
+                 "min_component", "join", "detail", "pole_method", "max_iterations",
                  "keep_stages"]:
         value = getattr(options, name)
         if isinstance(value, tuple):

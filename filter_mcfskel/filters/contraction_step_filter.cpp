@@ -23,7 +23,7 @@ struct Start
 	PoledSurface surface;
 	SurfaceLink link; ///< none yet if the surface is repaired
 
-	bool isRepaired() const { return surface.solid.outcome != mcf::SolidReport::Sound; }
+	bool isRepaired() const { return surface.solid.isChanged(); }
 };
 
 Start startOf(FilterRun& run, const mcf::Parameters& parameters)

@@ -201,6 +201,8 @@ Results repairResults(const mcf::SolidReport& report)
 		{"repaired", int(report.outcome)},
 		{"distance_mean", 100 * report.distanceMean},
 		{"distance_max", 100 * report.distanceMax},
+		{"self_intersections", report.selfIntersections},
+		{"pieces_left_out", report.leftOut.small + report.leftOut.cavities},
 	};
 }
 
@@ -268,7 +270,7 @@ PoledSurface surfaceWithPoles(
 	FilterRun& run, mcf::PoleMethod method, mcf::Repair repair, const mcf::Progress& progress)
 {
 	PoledSurface result;
-	SolidLayer read = readSolid(run.layer(), repair, progress.part(0, 0.2));
+	SolidLayer read = readSolid(run.layer(), {repair, 0, true}, progress.part(0, 0.2));
 	const bool isLayer = !read.isRepaired();
 	result.surface = std::move(read.surface);
 	result.solid = std::move(read.report);

@@ -53,8 +53,8 @@ vcg::tri::mcf::Repair readRepair(const ParameterValues& values);
 // Reports, for Python and for the log.
 
 Results stageResults(const vcg::tri::mcf::Stage& stage);
-/// `repaired` (0: as it was, 1: mended, 2: wrapped), and the distances of the solid from the input in percent of
-/// the diagonal.
+/// `repaired` (0: as it was, 1: mended, 2: wrapped), the distances of the solid from the input in percent of the
+/// diagonal, and what crosses or is left out.
 Results repairResults(const vcg::tri::mcf::SolidReport& report);
 Results curveResults(const vcg::tri::mcf::CurveSkeleton& skeleton);
 QString stageLine(const vcg::tri::mcf::StageFigures& figures);

@@ -27,6 +27,7 @@ Results resultsOf(const mcf::Skeletonization& run, bool keepSheets)
 		results.merge(
 			keepSheets ? sheetResults(withoutSheets(run.curve)) : curveResults(run.curve));
 	results["refined"] = run.refined;
+	results["bridges"] = run.bridges.count;
 	results["seconds_resample"] = run.seconds.resample;
 	results["seconds_poles"] = run.seconds.poles;
 	results["seconds_contraction"] = run.seconds.contraction;
@@ -47,6 +48,9 @@ Results run(FilterRun& run)
 	readFlow(run.parameters, parameters);
 	parameters.poleMethod = readPoleMethod(run.parameters);
 	parameters.maxIterations = run.parameters.integer("max_iterations");
+	parameters.repair = readRepair(run.parameters);
+	parameters.minComponent = run.parameters.real("min_component");
+	parameters.join = run.parameters.flag("join");
 	if (run.parameters.integer("preset") == 1)
 		parameters.apply(mcf::Preset::Paper);
 	parameters.check();
@@ -54,8 +58,8 @@ Results run(FilterRun& run)
 	if (keepStages < 0)
 		throw mcf::InvalidParameter("Parameter keep_stages must be at least 0.");
 
-	const SolidLayer solid =
-		readSolid(run.layer(), readRepair(run.parameters), run.progress.part(0, 0.02));
+	const SolidLayer solid = readSolid(run.layer(),
+		{parameters.repair, parameters.minComponent, true}, run.progress.part(0, 0.02));
 	const SurfaceLayer& read = solid.surface;
 	logNotes(run, read);
 	mcf::SurfaceInput surfaceInput {read.mesh, selectionToHold(run, read)};
@@ -130,6 +134,15 @@ FilterSpec fullSkeletonizeFilter()
 			"than 4 % of the diagonal and than the shape is thick, they are halved for the contraction, "
 			"so that the skeleton stays inside; not with held vertices or sheets."},
 		repairParameter(),
+		ParameterSpec {ParameterKind::Real, "min_component", defaults.minComponent,
+			"Smallest piece",
+			"Pieces whose volume is a smaller part of the largest one's get no skeleton; at least 0, less "
+			"than 1."}
+			.asAdvanced(),
+		ParameterSpec {ParameterKind::Boolean, "join", double(defaults.join), "Join the pieces",
+			"Joins the skeletons of all pieces over the narrowest gaps; nodes in the middle of these "
+			"bridges have 1 as <i>mcfskel_bridge</i>."}
+			.asAdvanced(),
 		targetLengthParameter(),
 		resampleIterationsParameter().asAdvanced(),
 		denoiseParameter(),

@@ -33,7 +33,6 @@ Results run(FilterRun& run)
 		{"edges_parted", report.mended.edgesParted},
 		{"vertices_parted", report.mended.verticesParted},
 		{"pieces_dropped", report.mended.piecesDropped + report.piecesDropped},
-		{"self_intersections", report.selfIntersections},
 		{"wrapped", report.outcome == mcf::SolidReport::Wrapped ? 1 : 0},
 	});
 	edit.commit();

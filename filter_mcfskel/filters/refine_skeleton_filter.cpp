@@ -18,6 +18,10 @@ namespace {
 Results run(FilterRun& run)
 {
 	const CurveLayer found = skeletonOn(run.layer());
+	if (!found.skeleton.bridge.empty())
+		throw mcf::InvalidInput(
+			"The current skeleton has bridges over gaps, which are outside the surface. Run Full Skeletonize "
+			"without 'join', and refine what that makes.");
 	const SkeletonSurface surface = requireSurface(run, found, run.progress.part(0, 0.1));
 	const CurveLayer curve = skeletonOf(run, found, surface, run.progress.part(0.1, 0.2));
 	mcf::RefineParameters parameters;

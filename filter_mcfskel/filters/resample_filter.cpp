@@ -22,7 +22,7 @@ Results run(FilterRun& run)
 	readAdaptive(run.parameters, parameters);
 	parameters.check();
 	const SolidLayer solid =
-		readSolid(run.layer(), readRepair(run.parameters), run.progress.part(0, 0.1));
+		readSolid(run.layer(), {readRepair(run.parameters), 0, true}, run.progress.part(0, 0.1));
 	const SurfaceLayer& surface = solid.surface;
 	logNotes(run, surface);
 	mcf::ResampledSurface made =

@@ -86,6 +86,8 @@ void fillCurve(MeshModel& layer, const CurveLayer& curve, double diagonal)
 	fillCurve(layer, curve.skeleton.position, curve.skeleton.edges, curve.skeleton.radius);
 	if (!curve.skeleton.significance.empty())
 		writeScalars(layer, significanceAttribute, curve.skeleton.significance);
+	if (curve.skeleton.bridge.size() == curve.skeleton.position.size())
+		writeScalars(layer, bridgeAttribute, curve.skeleton.bridge);
 	LayerState state;
 	state.curve = std::make_shared<const CurveLayer>(curve);
 	state.diagonal = diagonal;

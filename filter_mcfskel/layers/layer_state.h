@@ -35,6 +35,7 @@ constexpr char radiusAttribute[] = "mcfskel_radius";
 constexpr char significanceAttribute[] = "mcfskel_significance";
 constexpr char nodeAttribute[] = "mcfskel_node";
 constexpr char kindAttribute[] = "mcfskel_kind";
+constexpr char bridgeAttribute[] = "mcfskel_bridge";
 constexpr char stateAttribute[] = "mcfskel_state";
 
 /// What a layer knows beyond its attributes. Immutable: copies share it.
@@ -126,7 +127,7 @@ inline void requireOwnAttributes(const MeshModel& layer)
 {
 	requireType<Point3m>(layer, layer.cm.vert_attr, poleAttribute);
 	for (const char* name : {poleRadiusAttribute, fixedAttribute, heldAttribute, radiusAttribute,
-			 significanceAttribute, nodeAttribute, kindAttribute})
+			 significanceAttribute, nodeAttribute, kindAttribute, bridgeAttribute})
 		requireType<Scalarm>(layer, layer.cm.vert_attr, name);
 	requireType<StateMark>(layer, layer.cm.vert_attr, stateAttribute);
 }

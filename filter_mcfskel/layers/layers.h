@@ -99,14 +99,15 @@ struct SolidLayer
 	SurfaceLayer surface;
 	vcg::tri::mcf::SolidReport report;
 
-	bool isRepaired() const { return report.outcome != vcg::tri::mcf::SolidReport::Sound; }
+	/// Whether it is another surface than the layer's.
+	bool isRepaired() const { return report.isChanged(); }
 };
 
 /**
  * As readSurface(), with what does not bound a solid repaired: see solidSurface().
- * @throws InvalidInput as readSurface() where `repair` does not allow for more; SolverError, Cancelled.
+ * @throws InvalidInput as readSurface() where `choices` do not allow for more; SolverError, Cancelled.
  */
-SolidLayer readSolid(const MeshModel& layer, vcg::tri::mcf::Repair repair,
+SolidLayer readSolid(const MeshModel& layer, const vcg::tri::mcf::SolidChoices& choices,
 	const vcg::tri::mcf::Progress& progress = vcg::tri::mcf::Progress());
 
 /**

@@ -165,13 +165,24 @@ SurfaceLayer readSurface(const MeshModel& layer, const mcf::Progress& progress)
 		read.pointOfSlot, progress.part(1, 1));
 }
 
-SolidLayer readSolid(const MeshModel& layer, mcf::Repair repair, const mcf::Progress& progress)
+SolidLayer readSolid(
+	const MeshModel& layer, const mcf::SolidChoices& choices, const mcf::Progress& progress)
 {
-	if (std::optional<SurfaceLayer> known = surfaceInState(layer))
-		return {*known, {}};
+	if (std::optional<SurfaceLayer> known = surfaceInState(layer)) {
+		SolidLayer same {*known, {}};
+		if (!(choices.minComponent > 0))
+			return same;
+		mcf::CheckedSurface pieces {*known->mesh, *known->vertexOfSlot, {}, known->notes};
+		same.report.leftOut = mcf::keepSolidPieces(pieces, choices.minComponent, false, progress);
+		if (same.isRepaired())
+			same.surface = {std::make_shared<const mcf::SurfaceMesh>(std::move(pieces.mesh)),
+				std::make_shared<const std::vector<int>>(std::move(pieces.vertexOfInput)),
+				std::move(pieces.notes)};
+		return same;
+	}
 	const LayerTriangles read = readTriangles(layer, progress.part(0, 0.2));
 	mcf::SolidSurface solid =
-		mcf::solidSurface(read.points, read.triangles, repair, progress.part(0.2, 1));
+		mcf::solidSurface(read.points, read.triangles, choices, progress.part(0.2, 1));
 	return {surfaceLayer(std::move(solid.surface), read.pointOfSlot, progress.part(1, 1)),
 		solid.report};
 }

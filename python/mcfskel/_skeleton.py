@@ -48,7 +48,7 @@ class Skeleton:
         edges: Pairs of nodes, (E, 2), lower node first, ascending.
         radius: Local thickness at each node, (N,), in the mesh's units.
         correspondence: For each vertex of the mesh the node that it has merged into, (V,); -1 for a
-            vertex of no face. Empty if it is not known, as for a skeleton from a .swc file.
+            vertex of no face, or of a piece that gets no skeleton. Empty if it is not known, as for a skeleton from a .swc file.
         results: The numbers of the filter: iterations, converged, components, cycles, ... Those that
             begin with seconds_ are seconds; skeleton_length is in the mesh's units; those that end
             with _fraction are parts of 1.
@@ -58,6 +58,8 @@ class Skeleton:
         significance: How much of the shape the branch of each node stands for, (N,), 0 to 1; those
             with at least 1 - d are the skeleton of the detail d. Empty if it is not known, as for a
             skeleton that is not refined or from a .swc file.
+        bridges: Whether an edge is part of a bridge over a gap, (E,), if ``join`` was set and there are
+            any; else empty.
     """
 
     nodes: npt.NDArray[np.float64]
@@ -68,6 +70,7 @@ class Skeleton:
     faces: npt.NDArray[np.int64] = field(default_factory=_no_faces)
     surface: Surface | None = None
     significance: npt.NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
+    bridges: npt.NDArray[np.bool_] = field(default_factory=lambda: np.empty(0, bool))
 
     def __repr__(self) -> str:
         counts = [(len(self.nodes), "node"), (len(self.edges), "edge"),
@@ -301,8 +304,12 @@ def _from_layer(layer: pymeshlab.Mesh, mesh: pymeshlab.Mesh, results: dict[str, 
         significance = layer.vertex_custom_scalar_attribute_array("mcfskel_significance")
     except pymeshlab.PyMeshLabException:  # it is not refined
         significance = np.empty(0)
+    bridges = np.empty(0, bool)
+    if results.get("bridges"):
+        bridge = layer.vertex_custom_scalar_attribute_array("mcfskel_bridge") > 0
+        bridges = bridge[edges].any(axis=1)
     return Skeleton(layer.vertex_matrix(), edges, radius, correspondence, results, faces, surface,
-                    significance)
+                    significance, bridges)
 
 
 def _array(values: Any, name: str, kind: type) -> np.ndarray:

@@ -42,6 +42,8 @@ const char* const usage =
 	"  --relative-length K       longest edge in local thicknesses\n"
 	"  --resample-only           stop after the resampling\n"
 	"  --repair CHOICE           auto, mend or off: what is done with what does not bound a solid\n"
+	"  --min-component PART      pieces of a smaller part of the largest one's volume get no skeleton\n"
+	"  --join                    join the skeletons of all pieces by bridges\n"
 	"  --solid-only              stop after the repair\n"
 	"  --pole-method METHOD      voronoi or balls\n"
 	"  --w-l W  --w-h W  --w-m W weights of Eq. 6\n"
@@ -122,6 +124,7 @@ Options parse(int argc, char** argv)
 		{"--no-tidy", [&] { p.tidyCurve = false; }},
 		{"--no-refine", [&] { p.refine = false; }},
 		{"--keep-sheets", [&] { p.keepSheets = true; }},
+		{"--join", [&] { p.join = true; }},
 		{"--verbose", [&] { options.verbose = true; }},
 	};
 	using Text = const std::string&;
@@ -134,6 +137,7 @@ Options parse(int argc, char** argv)
 		{"--target-length", [&](Text t) { p.targetLength = std::stod(t) / 100; }},
 		{"--resample-iterations", [&](Text t) { p.resampleIterations = std::stoi(t); }},
 		{"--relative-length", [&](Text t) { p.relativeLength = std::stod(t); }},
+		{"--min-component", [&](Text t) { p.minComponent = std::stod(t); }},
 		{"--repair", [&](Text t) { p.repair = repair(t); }},
 		{"--pole-method", [&](Text t) { p.poleMethod = poleMethod(t); }},
 		{"--w-l", [&](Text t) { p.wL = std::stod(t); }},
@@ -305,11 +309,13 @@ void run(const Options& options)
 	const auto addSolid = [&](const mcf::SolidReport& solid) {
 		report.add("repaired", int(solid.outcome))
 			.add("distance_mean", 100 * solid.distanceMean)
-			.add("distance_max", 100 * solid.distanceMax);
+			.add("distance_max", 100 * solid.distanceMax)
+			.add("self_intersections", solid.selfIntersections)
+			.add("pieces_left_out", solid.leftOut.small + solid.leftOut.cavities);
 	};
 	if (options.resampleOnly || options.solidOnly) {
-		mcf::SolidSurface solid = mcf::solidSurface(
-			mcf::roundedCoordinates(soup.points), soup.triangles, parameters.repair, progress);
+		mcf::SolidSurface solid = mcf::solidSurface(mcf::roundedCoordinates(soup.points),
+			soup.triangles, {parameters.repair, parameters.minComponent, true}, progress);
 		addSolid(solid.report);
 		if (options.verbose)
 			for (const std::string& note : solid.surface.notes)
@@ -333,6 +339,7 @@ void run(const Options& options)
 		addSolid(result.solid);
 		addSurface(*result.surface, options, report);
 		addSkeleton(result, options, report);
+		report.add("bridges", result.bridges.count);
 	}
 	if (options.progressGaps)
 		report.add("longest_silence_ms", listener.longestMs())

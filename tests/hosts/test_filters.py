@@ -16,7 +16,8 @@ from conftest import (COLLAPSE, FULL, MESHES, POLES, REFINE, RESAMPLE, STEP, are
                       fingerprint, labels, layer, opened, points, scalars, volume)
 
 COARSE = {"target_length": pymeshlab.PercentageValue(1.2)}
-REPAIR_NUMBERS = {"repaired", "distance_mean", "distance_max"}
+REPAIR_NUMBERS = {"repaired", "distance_mean", "distance_max", "self_intersections",
+                  "pieces_left_out"}
 STAGE_NUMBERS = {"iterations", "converged", "volume_fraction", "area_fraction", "fixed_fraction",
                  "vertices", "faces"}
 CURVE_NUMBERS = {"skeleton_vertices", "skeleton_edges", "components", "cycles", "branches",
@@ -492,7 +493,8 @@ class TestFull:
 
     def test_numbers(self, torus_run):
         layers, results, _ = torus_run
-        assert set(results) == STAGE_NUMBERS | REPAIR_NUMBERS | CURVE_NUMBERS | SECONDS | {"refined"}
+        assert set(results) == (STAGE_NUMBERS | REPAIR_NUMBERS | CURVE_NUMBERS | SECONDS
+                                | {"refined", "bridges"})
         assert all(results[name] == 0 for name in REPAIR_NUMBERS)
         assert all(isinstance(value, (int, float)) for value in results.values())
         curve = layers.current_mesh()

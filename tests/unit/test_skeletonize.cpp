@@ -245,6 +245,38 @@ TEST(Skeletonize, ReportsPhasesStagesAndNotes)
 		EXPECT_GT(seconds, 0);
 }
 
+TEST(Skeletonize, JoinsPiecesOnlyIfAsked)
+{
+	const shapes::Soup torn =
+		shapes::joined({shapes::capsule(), shapes::moved(shapes::capsule(), {0, 0, 3})});
+	Parameters parameters = coarse();
+	const Skeletonization apart = run(torn, parameters);
+	EXPECT_EQ(statistics(apart.curve).components, 2);
+	EXPECT_TRUE(apart.curve.bridge.empty());
+	parameters.join = true;
+	const Skeletonization joined = run(torn, parameters);
+	EXPECT_EQ(joined.bridges.count, 1);
+	const SkeletonStatistics s = statistics(joined.curve);
+	EXPECT_EQ(s.components, 1);
+	EXPECT_EQ(s.cycles, 0);
+	// The curves themselves are the same.
+	ASSERT_EQ(joined.curve.position.size(), apart.curve.position.size() + 1);
+	for (size_t i = 0; i < apart.curve.position.size(); ++i)
+		EXPECT_TRUE(joined.curve.position[i] == apart.curve.position[i]);
+}
+
+TEST(Skeletonize, PlacesNoCurveInACavity)
+{
+	const shapes::Soup hollow = shapes::joined(
+		{shapes::capsule(), shapes::insideOut(shapes::scaled(shapes::capsule(), 0.4))});
+	const Skeletonization result = run(hollow, coarse());
+	EXPECT_EQ(statistics(result.curve).components, 1);
+	EXPECT_EQ(result.solid.leftOut.cavities, 1);
+	EXPECT_EQ(result.node.size(), hollow.points.size());
+	EXPECT_EQ(result.node.back(), -1);
+	EXPECT_GE(result.node.front(), 0);
+}
+
 TEST(Skeletonize, SaysWhenItHasNotConverged)
 {
 	Observer observer;

@@ -110,6 +110,11 @@ public:
 		/// A mesh that does not bound a solid: `Auto` mends small defects, and wraps the surface where that
 		/// is not enough; `Mend` does no more than the former; `Off` refuses it.
 		mcf::Repair repair = mcf::Repair::Auto;
+		/// Pieces with a smaller part of the largest one's volume get no skeleton, in [0, 1); 0: all get one.
+		double min_component = 0;
+		/// Do() joins the skeletons of all pieces by bridges over the narrowest gaps: nodes in their middle
+		/// have 1 in the per-vertex attribute `mcfskel_bridge`. Not where there are sheets.
+		bool join = false;
 		/// Refine the curve: spurs, centring, smoothness, tips.
 		bool refine = true;
 		/// With `refine`, how small branches may be, in [0, 1]: those stay whose significance is at least
@@ -130,7 +135,7 @@ public:
 	 *
 	 * @param surface  closed triangle mesh. Its geometry stays as it is; it gets the per-vertex
 	 *                 attribute `mcfskel_node` (ScalarType): the vertex of `skeleton` that each vertex
-	 *                 belongs to, -1 for vertices that no face uses.
+	 *                 belongs to, -1 for vertices of no face, or of pieces that get no skeleton.
 	 * @param skeleton any mesh with vertices and edges, and with faces if params.keep_sheets is set;
 	 *                 what was in it goes. The local thickness, the mean distance to the surface, is
 	 *                 its per-vertex attribute `mcfskel_radius`, and its vertex quality where it has one; if the
@@ -300,6 +305,7 @@ private:
 	static constexpr const char* nodeAttribute = "mcfskel_node";
 	static constexpr const char* radiusAttribute = "mcfskel_radius";
 	static constexpr const char* significanceAttribute = "mcfskel_significance";
+	static constexpr const char* bridgeAttribute = "mcfskel_bridge";
 
 	/// A surface as the library takes it.
 	struct Surface
@@ -313,10 +319,10 @@ private:
 		Surface(const MeshType& surface, const Params& params, const mcf::Progress& progress)
 		{
 			const mcf::TriangleSoup soup = mcf::readTriangles(surface, progress.part(0, 0.1));
-			mcf::CheckedSurface checked =
-				mcf::solidSurface(mcf::roundedCoordinates(soup.points, progress.part(0.1, 0.2)),
-					soup.triangles, params.repair, progress.part(0.2, 1))
-					.surface;
+			mcf::CheckedSurface checked = mcf::solidSurface(
+				mcf::roundedCoordinates(soup.points, progress.part(0.1, 0.2)), soup.triangles,
+				{params.repair, params.min_component, true}, progress.part(0.2, 1))
+											  .surface;
 			mesh = std::make_shared<const mcf::SurfaceMesh>(std::move(checked.mesh));
 			vertexOfSlot.reserve(soup.pointOfSlot.size());
 			for (int point : soup.pointOfSlot)
@@ -374,6 +380,8 @@ private:
 		result.maxIterations = params.max_iterations;
 		result.poleMethod = params.pole_method;
 		result.repair = params.repair;
+		result.minComponent = params.min_component;
+		result.join = params.join;
 		result.refine = params.refine;
 		result.detail = params.detail;
 		result.keepSheets = params.keep_sheets;
@@ -433,6 +441,9 @@ private:
 		else if (tri::HasPerVertexAttribute(
 					 skeleton, significanceAttribute)) // of an earlier skeleton
 			tri::Allocator<SkeletonMesh>::DeletePerVertexAttribute(skeleton, significanceAttribute);
+		if (!curve.bridge.empty())
+			mcf::writeScalarAttribute(
+				skeleton, bridgeAttribute, [&](size_t slot) { return double(curve.bridge[slot]); });
 		if (tri::HasPerVertexQuality(skeleton))
 			for (size_t v = 0; v < radius.size(); ++v)
 				skeleton.vert[v].Q() = typename SkeletonMesh::VertexType::QualityType(radius[v]);

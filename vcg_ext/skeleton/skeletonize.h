@@ -14,6 +14,7 @@
 #include <skeleton/flow/flow.h>
 #include <skeleton/flow/held_vertices.h>
 #include <skeleton/flow/start_of_flow.h>
+#include <skeleton/graph/join_pieces.h>
 #include <skeleton/input/check_input.h>
 #include <skeleton/mesh/surface_rounding.h>
 #include <skeleton/poles/poles.h>
@@ -98,6 +99,8 @@ struct Skeletonization
 	RefineReport refinement;
 	/// What was done to the triangles to make them those of a solid.
 	SolidReport solid;
+	/// Between the skeletons of pieces, where they were to be joined.
+	Bridges bridges;
 	PhaseSeconds seconds;
 
 	/// For each vertex of `surface` its node of the skeleton.
@@ -285,6 +288,15 @@ inline Skeletonization skeletonize(const SurfaceInput& input, const Parameters& 
 			observer.onStage(std::move(stage));
 	}
 	note(result.refinement.text());
+	if (given.join && result.sheets)
+		note("The pieces are not joined: that is for curves without sheets.");
+	else if (given.join) {
+		result.bridges = joinPieces(result.curve, *result.surface, progress.part(1, 1));
+		if (result.bridges.count)
+			note(detail::sentence(3, result.bridges.count,
+				result.bridges.count == 1 ? " bridge joins" : " bridges join",
+				" the pieces, over gaps of ", result.bridges.longest, " mesh units at most."));
+	}
 	return result;
 }
 
@@ -304,7 +316,7 @@ inline Skeletonization skeletonize(const std::vector<Point3d>& points,
 	parameters.check();
 	detail::PhaseClock clock(observer);
 	SolidSurface solid = solidSurface(roundedCoordinates(points, progress.part(0, 0.002)),
-		triangles, parameters.repair, progress.part(0.002, 0.02));
+		triangles, {parameters.repair, parameters.minComponent, true}, progress.part(0.002, 0.02));
 	CheckedSurface& checked = solid.surface;
 	if (observer.onNote)
 		for (const std::string& text : checked.notes)

@@ -10,6 +10,7 @@
 #include <skeleton/repair/make_solid.h>
 #include <skeleton/repair/mend.h>
 #include <skeleton/repair/overlap.h>
+#include <skeleton/repair/solid_pieces.h>
 #include <skeleton/repair/winding_number.h>
 #include <skeleton/repair/wrap.h>
 

@@ -146,6 +146,20 @@ TEST(MakeSolid, WrapsBodiesThatRunIntoEachOther)
 	EXPECT_EQ(piecesOf(solid(soup, Repair::Off).surface.mesh), 2);
 }
 
+TEST(MakeSolid, LeavesWhatIsTooThinToBeWrappedAndSaysSo)
+{
+	// Two wires side by side, half in each other: a lattice of a wrap has edges as long as they are thick.
+	const shapes::Soup wire = shapes::box(1000, 0.05, 0.05);
+	const shapes::Soup soup = shapes::joined({wire, shapes::moved(wire, {500, 0.02, 0.01})});
+	const SolidSurface made = solid(soup);
+	EXPECT_EQ(made.report.outcome, SolidReport::Sound);
+	EXPECT_GT(made.report.selfIntersections, 0);
+	EXPECT_NEAR(made.report.overlap, 0.6 / 4.4, 0.02);
+	ASSERT_EQ(made.surface.notes.size(), 1u);
+	EXPECT_NE(made.surface.notes[0].find("thin parts"), std::string::npos);
+	EXPECT_EQ(piecesOf(made.surface.mesh), 2);
+}
+
 TEST(MakeSolid, TurnsAWrapThatIsInsideOut)
 {
 	const SolidSurface made = solid(shapes::insideOut(bowl(0.2)));

@@ -94,6 +94,10 @@ struct Parameters
 	bool tidyCurve = true;
 	/// For meshes that do not bound a solid.
 	Repair repair = Repair::Auto;
+	/// Pieces whose volume is a smaller part of the largest one's get no skeleton; in [0, 1). 0: all get one.
+	double minComponent = 0;
+	/// Join the skeletons of all pieces by bridges: see join_pieces.h. Not where there are sheets.
+	bool join = false;
 
 	/**
 	 * Sets the parameters that make the method what it is: poleMethod, adaptive, denoise, coarsen,
@@ -126,6 +130,8 @@ struct Parameters
 			"between 0 and 50 % of the diagonal");
 		require(relativeLength > 0 && relativeLength <= 2, "relative_length", "between 0 and 2");
 		require(detail >= 0 && detail <= 1, "detail", "between 0 and 1");
+		require(
+			minComponent >= 0 && minComponent < 1, "min_component", "at least 0 and less than 1");
 		require(resampleIterations >= 0, "resample_iterations", "at least 0");
 		require(poleMethod != PoleMethod::Voronoi || hasQhull, "pole_method",
 			"'balls': this program is built without Qhull, which finds the poles of 'voronoi'");

@@ -29,6 +29,8 @@ struct CurveSkeleton
 	/// How much of the shape the branch of each node stands for, in [0, 1]: see nestedBranches(). Empty
 	/// where it is not known.
 	std::vector<double> significance;
+	/// 1 for the nodes in the middle of bridges, see joinPieces(); empty if pieces were not joined.
+	std::vector<char> bridge = {};
 
 	/// The neighbours of each node, ascending.
 	std::vector<std::vector<int>> neighbours() const

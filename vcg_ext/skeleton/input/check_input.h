@@ -34,6 +34,8 @@ struct CheckedSurface
 	SurfaceMesh mesh;
 	/// For each input vertex the vertex of `mesh`, or -1 where no face uses it.
 	std::vector<int> vertexOfInput;
+	/// For each connected component whether it was given inside out; empty if all or none of them were.
+	std::vector<char> turned = {};
 	/// What was repaired on the way, one sentence each, for the log.
 	std::vector<std::string> notes;
 };
@@ -252,8 +254,10 @@ inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
 		result.notes.push_back(insideOut == components
 				? std::string("The mesh was inside out and has been turned.")
 				: std::to_string(insideOut) + " of " + std::to_string(components)
-					+ " connected components were inside out; each is taken as a solid of its own "
-					  "(a cavity inside a body is not subtracted from it).");
+					+ " connected components were inside out and have been turned.");
+		if (insideOut < components)
+			for (double v : volume)
+				result.turned.push_back(v < 0);
 	}
 	progress.report(1, what);
 	result.mesh = std::move(mesh);

@@ -9,6 +9,7 @@
 
 #include "mend.h"
 #include "overlap.h"
+#include "solid_pieces.h"
 #include "winding_number.h"
 #include "wrap.h"
 
@@ -45,14 +46,19 @@ struct SolidReport
 	MendReport mended;
 	/// Pieces of the wrap that were left out: specks, and cavities.
 	int piecesDropped = 0;
-	/// Triangles that cross others, and the part of the volume that is enclosed more than once; counted where
-	/// that is noticeable.
+	/// Triangles that cross others, and the part of the volume that is enclosed more than once or turned inside
+	/// out; counted where there is such a part.
 	int selfIntersections = 0;
 	double overlap = 0;
+	/// What a skeleton is not asked of.
+	LeftOutPieces leftOut;
 	/// Distance between the vertices of the result and the input, both ways.
 	double distanceMean = 0, distanceMax = 0;
 	/// Edge length of the wrap; 0 if there is none.
 	double spacing = 0;
+
+	/// Whether the surface is another one than checkedSurface() has.
+	bool isChanged() const { return outcome != Sound || leftOut.any(); }
 
 	/// One sentence for the log; empty if nothing was done.
 	std::string text() const
@@ -72,8 +78,9 @@ struct SolidReport
 		add(mended.facesTurned, "face turned", "faces turned");
 		add(mended.holesClosed, "hole closed", "holes closed");
 		add(mended.piecesDropped + piecesDropped, "piece dropped", "pieces dropped");
-		add(selfIntersections, "triangle that crosses others resolved",
-			"triangles that cross others resolved");
+		if (outcome == Wrapped)
+			add(selfIntersections, "triangle that crosses others resolved",
+				"triangles that cross others resolved");
 		std::string list;
 		for (const std::string& item : what)
 			list += (list.empty() ? "" : ", ") + item;
@@ -83,6 +90,23 @@ struct SolidReport
 						   + percent(spacing) + " of its diagonal")
 			+ (list.empty() ? "" : ": " + list) + "; the solid is " + percent(distanceMean)
 			+ " of the diagonal from the input on average, " + percent(distanceMax) + " at most.";
+	}
+};
+
+/// What solidSurface() is to do.
+struct SolidChoices
+{
+	Repair repair;
+	/// Pieces with a smaller part of the largest one's volume are left out; 0: none are.
+	double minComponent;
+	/// Cavities are left out, but where `repair` is Off: there is no skeleton in them.
+	bool withoutCavities;
+
+	SolidChoices(
+		Repair repair = Repair::Auto, double minComponent = 0, bool withoutCavities = false) :
+			repair(repair),
+			minComponent(minComponent), withoutCavities(withoutCavities)
+	{
 	}
 };
 
@@ -96,8 +120,12 @@ struct SolidSurface
 
 namespace detail {
 
-/// More of the volume enclosed more than once than this is wrapped.
-constexpr double noticeableOverlap = 0.002;
+/// More of the volume enclosed more than once than this is wrapped; less than the other is that of crossings
+/// that only rounding makes.
+constexpr double noticeableOverlap = 0.002, smallestOverlap = 1e-5;
+
+/// The lattice of a wrap has a spacing between those of which this many squares have the surface's area.
+constexpr double usualSquares = 30000, mostSquares = 150000;
 
 /// Triangles that cross others with which they share no vertex. Complexity: O(F log F) on even surfaces.
 inline int selfIntersections(const std::vector<Point3d>& points,
@@ -202,12 +230,11 @@ inline Enclosure enclosureOf(const std::vector<SurfacePlace>& places, const Wind
 	return found;
 }
 
-/// The thickness below which a twentieth of the surface is, measured against the normals; at most `most`.
+/// The thickness below which a part of the surface's area is, measured against the normals; at most `most`.
 inline double smallThickness(const std::vector<SurfacePlace>& places, const TriangleTree& tree,
-	double most, const Progress& progress)
+	double part, double most, const Progress& progress)
 {
-	constexpr double small = 0.05; // part of the area
-	constexpr int pieces = 8;      // short segments meet few boxes
+	constexpr int pieces = 8; // short segments meet few boxes
 	std::vector<double> thickness(places.size(), most);
 	forEachBlock(int(places.size()), progress, "Measuring the thickness", [&](int begin, int end) {
 		for (int i = begin; i < end; ++i) {
@@ -223,30 +250,36 @@ inline double smallThickness(const std::vector<SurfacePlace>& places, const Tria
 			}
 		}
 	});
-	const auto middle = thickness.begin() + long(small * double(thickness.size()));
+	const auto middle = thickness.begin() + long(part * double(thickness.size()));
 	std::nth_element(thickness.begin(), middle, thickness.end());
 	return *middle;
 }
 
-/// Mean and greatest distance from points to triangles; of at most `most` of them, evenly chosen.
+/// Mean and greatest distance from points to triangles.
 struct Distances
 {
 	double mean = 0, greatest = 0;
 };
 
-inline Distances distances(
-	const std::vector<Point3d>& from, const TriangleTree& to, const Progress& progress)
+/// @param from  those that are not on the triangles, of `all` points; at most 20000, evenly chosen, are measured.
+inline Distances distances(const std::vector<Point3d>& from, size_t all,
+	const std::vector<Point3d>& points, const std::vector<Triangle>& triangles,
+	const Progress& progress)
 {
 	constexpr size_t most = 20000;
+	if (from.empty())
+		return {};
+	const TriangleTree to(points, triangles, progress.part(0, 0.5));
 	const size_t step = std::max<size_t>(1, from.size() / most);
 	std::vector<double> distance((from.size() + step - 1) / step, 0);
-	forEachBlock(int(distance.size()), progress, "Measuring the distance", [&](int begin, int end) {
-		for (int i = begin; i < end; ++i)
-			distance[size_t(i)] = to.closest(from[size_t(i) * step]).distance;
-	});
+	forEachBlock(int(distance.size()), progress.part(0.5, 1), "Measuring the distance",
+		[&](int begin, int end) {
+			for (int i = begin; i < end; ++i)
+				distance[size_t(i)] = to.closest(from[size_t(i) * step]).distance;
+		});
 	Distances result;
 	for (double d : distance) {
-		result.mean += d / double(distance.size());
+		result.mean += d / double(distance.size()) * double(from.size()) / double(all);
 		result.greatest = std::max(result.greatest, d);
 	}
 	return result;
@@ -298,7 +331,8 @@ public:
 		if (repair == Repair::Off)
 			return std::move(solid);
 		if (!error) {
-			if (repair == Repair::Auto && overlaps(solid.surface.mesh, progress.part(0.3, 0.4)))
+			if (repair == Repair::Auto
+				&& isToBeWrapped(solid.surface.mesh, solid.surface.notes, progress.part(0.3, 0.4)))
 				wrapIt(solid.surface.mesh.position, solid.surface.mesh.triangles(), {},
 					progress.part(0.4, 1));
 			return std::move(solid);
@@ -336,21 +370,48 @@ private:
 		return false;
 	}
 
-	/// Whether a noticeable part of the volume is enclosed more than once because the surface crosses itself.
-	bool overlaps(const SurfaceMesh& mesh, const Progress& progress)
+	/// Whether a noticeable part of the volume is enclosed more than once because the surface crosses itself, and
+	/// the shape is not too thin to be wrapped. What is left as it is is said.
+	bool isToBeWrapped(
+		const SurfaceMesh& mesh, std::vector<std::string>& notes, const Progress& progress)
 	{
 		const std::vector<Triangle> faces = mesh.triangles(progress.part(0, 0));
-		const double part =
+		SolidReport& report = solid.report;
+		report.overlap =
 			windingVolumes(mesh.position, faces, 128, progress.part(0, 0.3)).wrongPart();
-		if (part < noticeableOverlap)
+		if (report.overlap < smallestOverlap)
 			return false;
-		const TriangleTree tree(mesh.position, faces, progress.part(0.3, 0.6));
-		const int found = selfIntersections(mesh.position, faces, tree, progress.part(0.6, 1));
-		if (!found) // bodies inside bodies
+		const TriangleTree tree(mesh.position, faces, progress.part(0.3, 0.5));
+		report.selfIntersections =
+			selfIntersections(mesh.position, faces, tree, progress.part(0.5, 0.9));
+		if (!report.selfIntersections) // bodies inside bodies
 			return false;
-		solid.report.selfIntersections = found;
-		solid.report.overlap = part;
-		return true;
+		const bool isNoticeable = report.overlap >= noticeableOverlap;
+		if (isNoticeable && !isTooThin(mesh.position, faces, tree, progress.part(0.9, 1)))
+			return true;
+		notes.push_back(sentence(2, report.selfIntersections,
+			report.selfIntersections == 1 ? " triangle crosses others; "
+										  : " triangles cross others; ",
+			100 * report.overlap,
+			" % of the volume is enclosed more than once. The surface is left as it is: ",
+			isNoticeable ? "a wrap would lose its thin parts." : "that is little."));
+		return false;
+	}
+
+	/// Whether the finest lattice of a wrap would miss a noticeable part of the surface.
+	static bool isTooThin(const std::vector<Point3d>& points, const std::vector<Triangle>& faces,
+		const TriangleTree& tree, const Progress& progress)
+	{
+		constexpr int samples = 4000;
+		constexpr double part = 0.1, cells = 2.5; // of the area is thinner than so many
+		double area = 0;
+		for (const Triangle& t : faces) {
+			const Point3d& a = points[size_t(t[0])];
+			area += ((points[size_t(t[1])] - a) ^ (points[size_t(t[2])] - a)).Norm() / 2;
+		}
+		const double least = cells * std::sqrt(area / mostSquares);
+		return smallThickness(placesByArea(points, faces, samples), tree, part, 2 * least, progress)
+			< least;
 	}
 
 	bool takeMended(const MendedSurface& mended, Repair repair, const Progress& progress)
@@ -362,7 +423,8 @@ private:
 		catch (const InvalidInput&) {
 			return false; // flat
 		}
-		if (repair == Repair::Auto && overlaps(checked.mesh, progress.part(0.4, 0.6)))
+		std::vector<std::string> notes;
+		if (repair == Repair::Auto && isToBeWrapped(checked.mesh, notes, progress.part(0.4, 0.6)))
 			return false;
 		std::vector<int> vertexOfInput;
 		vertexOfInput.reserve(points.size());
@@ -370,6 +432,8 @@ private:
 			vertexOfInput.push_back(checked.vertexOfInput[size_t(v)]);
 		solid.report.outcome = SolidReport::Mended;
 		finish(std::move(checked.mesh), std::move(vertexOfInput), progress.part(0.6, 1));
+		solid.surface.turned = std::move(checked.turned);
+		solid.surface.notes.insert(solid.surface.notes.end(), notes.begin(), notes.end());
 		return true;
 	}
 
@@ -378,8 +442,7 @@ private:
 		const std::optional<InvalidInput>& error, const Progress& progress)
 	{
 		constexpr int samples = 4000;
-		constexpr double usual = 30000, most = 150000; // squares of the spacing in the area
-		constexpr double ofThickness = 0.4;
+		constexpr double ofThickness = 0.4, thinPart = 0.05; // of the area
 		constexpr int mostNodes = 6000000;
 		turnOutward(given, faces, progress.part(0, 0.05));
 		Box3d box;
@@ -410,9 +473,10 @@ private:
 			enclosure = enclosureOf(places, winding, box.Diag(), progress.part(0.17, 0.2));
 		if (enclosure.enclosing < 0.1)
 			refuse(error);
-		const double widest = std::sqrt(area / usual), narrowest = std::sqrt(area / most);
+		const double widest = std::sqrt(area / usualSquares),
+					 narrowest = std::sqrt(area / mostSquares);
 		const double thin =
-			smallThickness(places, tree, widest / ofThickness, progress.part(0.2, 0.25));
+			smallThickness(places, tree, thinPart, widest / ofThickness, progress.part(0.2, 0.25));
 		const double spacing = std::clamp(ofThickness * thin, narrowest, widest);
 		WrappedSurface made = wrap(tree, winding, spacing, mostNodes, progress.part(0.25, 0.8));
 		if (made.triangles.empty())
@@ -456,12 +520,11 @@ private:
 				box.Add(points[size_t(v)]);
 			}
 		}
-		std::vector<Point3d> lost, input;
+		std::vector<Point3d> lost;
 		std::vector<size_t> whose;
 		for (size_t v = 0; v < points.size(); ++v) {
 			if (!used[v])
 				continue;
-			input.push_back(points[v]);
 			if (vertexOfInput[v] < 0) {
 				lost.push_back(points[v]);
 				whose.push_back(v);
@@ -472,16 +535,33 @@ private:
 		for (size_t i = 0; i < lost.size(); ++i)
 			vertexOfInput[whose[i]] = nearest[i];
 
+		// What kept its place is on both surfaces.
+		std::vector<char> kept(mesh.position.size(), 0);
+		std::vector<Point3d> left, made;
+		size_t all = 0;
+		for (size_t v = 0; v < points.size(); ++v) {
+			if (!used[v])
+				continue;
+			++all;
+			const size_t own = size_t(vertexOfInput[v]);
+			if (mesh.position[own] == points[v])
+				kept[own] = 1;
+			else
+				left.push_back(points[v]);
+		}
+		for (size_t v = 0; v < kept.size(); ++v)
+			if (!kept[v])
+				made.push_back(mesh.position[v]);
 		const std::vector<Triangle> faces = mesh.triangles(progress.part(0.3, 0.3));
-		const TriangleTree inputTree(points, finite, progress.part(0.3, 0.5));
-		const TriangleTree ownTree(mesh.position, faces, progress.part(0.5, 0.7));
-		const Distances there = distances(mesh.position, inputTree, progress.part(0.7, 0.85));
-		const Distances back = distances(input, ownTree, progress.part(0.85, 1));
+		const Distances there =
+			distances(made, mesh.position.size(), points, finite, progress.part(0.3, 0.65));
+		const Distances back = distances(left, all, mesh.position, faces, progress.part(0.65, 1));
 		SolidReport& report = solid.report;
 		report.distanceMean = std::max(there.mean, back.mean) / box.Diag();
 		report.distanceMax = std::max(there.greatest, back.greatest) / box.Diag();
 		solid.surface.mesh = std::move(mesh);
 		solid.surface.vertexOfInput = std::move(vertexOfInput);
+		solid.surface.turned.clear();
 		solid.surface.notes = {report.text()};
 	}
 };
@@ -492,20 +572,26 @@ private:
  * The closed, oriented, two-manifold surface of the solid that triangles mean.
  *
  * A surface that checkedSurface() takes stays as that leaves it, to the last bit, unless it crosses itself
- * so that a noticeable part of its volume is enclosed more than once. Else its small defects are mended, see
+ * so that a noticeable part of its volume is enclosed more than once, and no noticeable part of it is too thin
+ * to be wrapped. Else its small defects are mended, see
  * mend(), and where that is not enough it is wrapped by its winding numbers, see wrap().
  *
  * @param points    mesh units. @param triangles corners as indices into `points`.
- * @param repair    Auto: as above; Mend: no wrap; Off: checkedSurface() alone.
+ * @param choices   repair: Auto: as above; Mend: no wrap; Off: checkedSurface() alone. What is left out of
+ *                  the surface: see keepSolidPieces().
  * @throws InvalidInput if there is no solid: no faces, no volume, an open sheet; what checkedSurface()
  *         throws where more is not allowed. SolverError, Cancelled.
  * Complexity: as checkedSurface() where it is sound; else as mend() and wrap().
  */
 inline SolidSurface solidSurface(const std::vector<Point3d>& points,
-	const std::vector<Triangle>& triangles, Repair repair = Repair::Auto,
+	const std::vector<Triangle>& triangles, const SolidChoices& choices = SolidChoices(),
 	const Progress& progress = Progress())
 {
-	return detail::SolidMaker(points, triangles).run(repair, progress);
+	SolidSurface solid =
+		detail::SolidMaker(points, triangles).run(choices.repair, progress.part(0, 0.95));
+	solid.report.leftOut = keepSolidPieces(solid.surface, choices.minComponent,
+		choices.withoutCavities && choices.repair != Repair::Off, progress.part(0.95, 1));
+	return solid;
 }
 
 } // namespace vcg::tri::mcf

@@ -1,0 +1,202 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief Which pieces of a surface get a skeleton: neither cavities nor what is too small beside the largest.
+
+#ifndef VCG_MCF_SOLID_PIECES_H
+#define VCG_MCF_SOLID_PIECES_H
+
+#include "winding_number.h"
+
+#include <skeleton/core/notes.h>
+#include <skeleton/core/progress.h>
+#include <skeleton/core/ticker.h>
+#include <skeleton/input/check_input.h>
+#include <skeleton/mesh/components.h>
+#include <skeleton/mesh/surface_mesh.h>
+#include <skeleton/spatial/triangle_tree.h>
+
+#include <vcg/space/box3.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/// What keepSolidPieces() has left out.
+struct LeftOutPieces
+{
+	int small = 0;
+	int cavities = 0;
+
+	bool any() const { return small > 0 || cavities > 0; }
+	/// One sentence each for the log.
+	std::vector<std::string> notes() const
+	{
+		std::vector<std::string> list;
+		if (cavities > 0)
+			list.push_back(detail::sentence(6, cavities,
+				cavities == 1 ? " piece is" : " pieces are",
+				" turned against the body around: a cavity. It gets no skeleton, and the body is taken as if it "
+				"were full."));
+		if (small > 0)
+			list.push_back(detail::sentence(6, small, small == 1 ? " piece gets" : " pieces get",
+				" no skeleton, smaller than min_component beside the largest."));
+		return list;
+	}
+};
+
+namespace detail {
+
+/// The connected pieces of a closed surface, each turned outward.
+struct ClosedPieces
+{
+	std::vector<int> ofVertex;
+	std::vector<std::vector<Triangle>> faces;
+	std::vector<std::vector<int>> vertices;
+	std::vector<double> volume;
+	std::vector<Box3d> box;
+
+	ClosedPieces(const SurfaceMesh& mesh, const Progress& progress)
+	{
+		const char* const what = "Measuring the pieces";
+		int count = 0;
+		ofVertex = connectedComponents(mesh, &count, progress.part(0, 0.5));
+		faces.resize(size_t(count));
+		vertices.resize(size_t(count));
+		volume.resize(size_t(count), 0);
+		box.resize(size_t(count));
+		reportedLoop(mesh.vertexSlots(), progress.part(0.5, 0.7), what, [&](int v) {
+			if (!mesh.isVertex(v))
+				return;
+			vertices[size_t(ofVertex[size_t(v)])].push_back(v);
+			box[size_t(ofVertex[size_t(v)])].Add(mesh.position[size_t(v)]);
+		});
+		reportedLoop(mesh.faceSlots(), progress.part(0.7, 1), what, [&](int f) {
+			if (!mesh.isFace(f))
+				return;
+			const Triangle t = mesh.triangle(f);
+			const size_t piece = size_t(ofVertex[size_t(t[0])]);
+			const Point3d& origin = mesh.position[size_t(vertices[piece][0])];
+			volume[piece] += (mesh.position[size_t(t[0])] - origin) * mesh.areaVector(f) / 6;
+			faces[piece].push_back(t);
+		});
+	}
+
+	size_t count() const { return faces.size(); }
+};
+
+/// For each piece whether it is a cavity: turned against the smallest piece around it, which is a solid.
+inline std::vector<char> cavitiesAmong(const SurfaceMesh& mesh, const ClosedPieces& pieces,
+	const std::vector<char>& turned, const Progress& progress)
+{
+	constexpr size_t samples = 500; // vertices of a piece that all have to be inside
+	std::vector<int> bySize(pieces.count());
+	std::iota(bySize.begin(), bySize.end(), 0);
+	std::stable_sort(bySize.begin(), bySize.end(),
+		[&](int a, int b) { return pieces.volume[size_t(a)] > pieces.volume[size_t(b)]; });
+	struct Body
+	{
+		TriangleTree tree;
+		WindingNumber winding;
+
+		Body(const std::vector<Point3d>& points, const std::vector<Triangle>& faces) :
+				tree(points, faces), winding(tree)
+		{
+		}
+	};
+	std::vector<std::unique_ptr<Body>> bodies(pieces.count());
+	const auto isInside = [&](size_t inner, size_t outer) {
+		if (!pieces.box[outer].IsIn(pieces.box[inner].min)
+			|| !pieces.box[outer].IsIn(pieces.box[inner].max))
+			return false;
+		if (!bodies[outer])
+			bodies[outer] = std::make_unique<Body>(mesh.position, pieces.faces[outer]);
+		const std::vector<int>& vertices = pieces.vertices[inner];
+		const size_t step = std::max<size_t>(1, vertices.size() / samples);
+		for (size_t i = 0; i < vertices.size(); i += step)
+			if (!(bodies[outer]->winding(mesh.position[size_t(vertices[i])]) > 0.75))
+				return false;
+		return true;
+	};
+	std::vector<char> cavity(pieces.count(), 0);
+	reportedLoop(int(bySize.size()), progress, "Looking for cavities", [&](int i) {
+		const size_t piece = size_t(bySize[size_t(i)]);
+		for (int k = i - 1; k >= 0; --k) {
+			const size_t around = size_t(bySize[size_t(k)]);
+			if (!isInside(piece, around))
+				continue;
+			cavity[piece] = !cavity[around] && turned[piece] != turned[around];
+			return;
+		}
+	});
+	return cavity;
+}
+
+} // namespace detail
+
+/**
+ * Leaves out the pieces of a surface that get no skeleton; `vertexOfInput` is then -1 for their vertices.
+ *
+ * A cavity is a closed piece that lies wholly inside a body and was given turned against it: see
+ * CheckedSurface::turned. What is inside a cavity is a body again.
+ *
+ * @param least     volume, as a part of that of the largest piece, below which a piece is left out; 0: none is.
+ * @param cavities  whether cavities are left out.
+ * @throws Cancelled. Complexity: O(V + F); O(F log F) for each piece in the box of another one, where some are
+ *         turned against others.
+ */
+inline LeftOutPieces keepSolidPieces(
+	CheckedSurface& surface, double least, bool cavities, const Progress& progress = Progress())
+{
+	LeftOutPieces leftOut;
+	cavities = cavities && !surface.turned.empty();
+	if (!(least > 0) && !cavities)
+		return leftOut;
+	SurfaceMesh& mesh = surface.mesh;
+	const detail::ClosedPieces pieces(mesh, progress.part(0, 0.3));
+	std::vector<char> drop(pieces.count(), 0);
+	if (cavities)
+		drop = detail::cavitiesAmong(mesh, pieces, surface.turned, progress.part(0.3, 0.8));
+	leftOut.cavities = int(std::count(drop.begin(), drop.end(), 1));
+	double largest = 0;
+	for (size_t p = 0; p < pieces.count(); ++p)
+		if (!drop[p])
+			largest = std::max(largest, pieces.volume[p]);
+	for (size_t p = 0; p < pieces.count(); ++p)
+		if (!drop[p] && pieces.volume[p] < least * largest) {
+			drop[p] = 1;
+			++leftOut.small;
+		}
+	if (!leftOut.any())
+		return leftOut;
+
+	std::vector<int> number(size_t(mesh.vertexSlots()), -1);
+	std::vector<Point3d> points;
+	for (int v = 0; v < mesh.vertexSlots(); ++v)
+		if (mesh.isVertex(v) && !drop[size_t(pieces.ofVertex[size_t(v)])]) {
+			number[size_t(v)] = int(points.size());
+			points.push_back(mesh.position[size_t(v)]);
+		}
+	std::vector<Triangle> kept;
+	for (const Triangle& t : mesh.triangles(progress.part(0.8, 0.8)))
+		if (number[size_t(t[0])] >= 0)
+			kept.push_back({number[size_t(t[0])], number[size_t(t[1])], number[size_t(t[2])]});
+	for (int& v : surface.vertexOfInput)
+		v = v < 0 ? -1 : number[size_t(v)];
+	mesh = SurfaceMesh(std::move(points), kept, progress.part(0.8, 1));
+	surface.turned.clear();
+	for (std::string& note : leftOut.notes())
+		surface.notes.push_back(std::move(note));
+	return leftOut;
+}
+
+} // namespace vcg::tri::mcf
+
+#endif
