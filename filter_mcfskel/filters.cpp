@@ -75,21 +75,24 @@ const char* cureInMeshLab(vcg::tri::mcf::Defect defect)
 			   "Poisson'.";
 	case Defect::NotFinite:
 		return " Select them with 'Conditional Vertex Selection' and the function x!=x || y!=y || z!=z "
-			   "|| abs(x)>1e300 || abs(y)>1e300 || abs(z)>1e300, delete them, and run 'Close Holes'.";
+			   "|| abs(x)>1e300 || abs(y)>1e300 || abs(z)>1e300, delete them, and run 'Close Holes'; or "
+			   "run 'Make Solid'.";
 	case Defect::NonManifoldEdges:
-		return " Run 'Repair non Manifold Edges', then, where there are border edges, 'Close "
-			   "Holes'.";
-	case Defect::NonManifoldVertices: return " Run 'Repair non Manifold Vertices by splitting'.";
-	case Defect::OneSided: return " Run 'Close Holes'.";
+		return " Run 'Make Solid'; or 'Repair non Manifold Edges' with the method 'Split Vertices', "
+			   "then, where there are border edges, 'Close Holes'.";
+	case Defect::NonManifoldVertices:
+		return " Run 'Make Solid', or 'Repair non Manifold Vertices by splitting'.";
+	case Defect::OneSided: return " Run 'Make Solid', which wraps it.";
 	case Defect::BorderEdges:
-		return " Run 'Close Holes' with a maximum size of at least that number; where a hole remains, "
+		return " Run 'Make Solid'; or 'Close Holes' with a maximum size of at least that number; where a hole remains, "
 			   "again without 'Prevent creation of selfIntersecting faces'; a stray piece, which is no hole, "
 			   "goes with 'Remove Isolated pieces (wrt Diameter)'.";
 	case Defect::NoVolume:
 		return " 'Remove Isolated pieces (wrt Diameter)' does the latter, with a diameter above that of "
 			   "the flat part.";
-	case Defect::Other:
 	case Defect::OpenSheet:
+		return " 'Uniform Mesh Resampling' with 'Absolute Distance' and an offset above 50 % gives it one.";
+	case Defect::Other:
 	case Defect::Empty: break;
 	}
 	return "";

@@ -134,6 +134,46 @@ def test_steps_start_from_the_solid():
     assert results["iterations"] == 3 and results["repaired"] == 0
 
 
+def test_small_pieces_get_no_skeleton():
+    vertices, faces = arrays("capsule")
+    beside = vertices * 0.1 + [0, diagonal(vertices), 0]
+    layers = document((np.vstack([vertices, beside]), np.vstack([faces, faces + len(vertices)])))
+    results = layers.apply_filter(FULL, min_component=0.01, target_length=pymeshlab.PercentageValue(1.5))
+    assert (results["components"], results["pieces_left_out"], results["repaired"]) == (1, 1, 0)
+    node = layers.mesh(0).vertex_custom_scalar_attribute_array("mcfskel_node")
+    assert (node[:len(vertices)] >= 0).all() and (node[len(vertices):] == -1).all()
+
+
+def test_no_curve_in_a_cavity():
+    vertices, faces = arrays("capsule")
+    hollow = np.vstack([vertices, vertices * 0.4]), np.vstack([faces, faces[:, ::-1] + len(vertices)])
+    layers = document(hollow)
+    results = layers.apply_filter(FULL, resample=False)
+    assert (results["components"], results["pieces_left_out"]) == (1, 1)
+    assert "mesh_0_solid" in labels(layers)
+    layers = document(hollow)
+    assert layers.apply_filter(FULL, repair="off", resample=False)["components"] == 2
+
+
+def test_pieces_are_joined_by_marked_bridges():
+    vertices, faces = arrays("capsule")
+    beside = vertices + [0, 0.5 * diagonal(vertices), 0]
+    layers = document((np.vstack([vertices, beside]), np.vstack([faces, faces + len(vertices)])))
+    results = layers.apply_filter(FULL, join=True, target_length=pymeshlab.PercentageValue(1.5))
+    assert (results["components"], results["cycles"], results["bridges"]) == (1, 0, 1)
+    mesh = layers.current_mesh()
+    bridge = mesh.vertex_custom_scalar_attribute_array("mcfskel_bridge")
+    assert sorted(np.unique(bridge)) == [0, 1] and bridge.sum() == 1
+    ends = np.setdiff1d(mesh.edge_matrix()[(bridge[mesh.edge_matrix()] > 0).any(axis=1)],
+                        np.flatnonzero(bridge))
+    assert len(ends) == 2
+    between = mesh.vertex_matrix()[ends].mean(axis=0)
+    assert np.allclose(mesh.vertex_matrix()[bridge > 0][0], between, atol=1e-5)
+    layers.apply_filter("generate_resampled_skeleton_mcf")  # tools take it as any skeleton
+    layers.set_current_mesh(mesh.id())
+    assert "bridges" in failing(layers, "generate_refined_skeleton_mcf")
+
+
 @pytest.mark.parametrize("name", [FULL, STEP, RESAMPLE])
 def test_off_refuses(name):
     layers = document(missing(0.03))

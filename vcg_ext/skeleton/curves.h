@@ -10,6 +10,7 @@
 #include <skeleton/graph/branch_table.h>
 #include <skeleton/graph/compare_skeletons.h>
 #include <skeleton/graph/curve_skeleton.h>
+#include <skeleton/graph/join_pieces.h>
 #include <skeleton/graph/prune.h>
 #include <skeleton/graph/resample_skeleton.h>
 #include <skeleton/graph/significance.h>
