@@ -216,6 +216,44 @@ TEST(Mend, DropsAWallAcrossTheInside)
 	EXPECT_NEAR(enclosedVolume(surface), enclosedVolume(without), 1e-12);
 }
 
+TEST(Mend, FillsATinyHoleHoweverItsFillingTurns)
+{
+	shapes::Soup soup = shapes::sphere(4);
+	const Triangle t = soup.triangles[5];
+	soup.triangles.erase(soup.triangles.begin() + 5);
+	// Folded over the opposite edge: the only filling lies back on the face beyond.
+	Point3d& tip = soup.points[size_t(t[0])];
+	tip = soup.points[size_t(t[1])] + soup.points[size_t(t[2])] - tip;
+	const auto fill = [&](const HoleLimits& limits) {
+		std::vector<Point3d> points = soup.points;
+		std::vector<Triangle> faces = soup.triangles;
+		std::vector<int> partedFrom;
+		const PartedSurface parted = partSurface(points, faces, partedFrom, true);
+		return fillHoles(points, faces, parted.partner, limits);
+	};
+	EXPECT_EQ(fill(HoleLimits()).left, 1);
+	HoleLimits anyhow;
+	anyhow.anyhow = 0.01;
+	EXPECT_EQ(fill(anyhow).left, 0);
+	anyhow.anyhow = 1e-6;
+	EXPECT_EQ(fill(anyhow).left, 1);
+}
+
+TEST(Mend, DoesNotMergeAcrossSlivers)
+{
+	// A tube as thin as a hundredth of its faces' length: its vertices are near each other beside long edges.
+	const shapes::Soup tube =
+		shapes::revolved({{-2, 0}, {-1.99, 0.004}, {0, 0.004}, {1.99, 0.004}, {2, 0}}, 12);
+	shapes::Soup soup = tube;
+	for (size_t f : {size_t(40), size_t(30), size_t(20)})
+		soup.triangles.erase(soup.triangles.begin() + long(f));
+	const MendedSurface surface = mended(soup);
+	ASSERT_TRUE(surface.closed);
+	EXPECT_EQ(surface.report.verticesMerged, 0);
+	EXPECT_EQ(surface.report.junctionsClosed, 0);
+	EXPECT_EQ(surface.triangles.size(), tube.triangles.size());
+}
+
 TEST(Mend, ClosesTJunctions)
 {
 	shapes::Soup soup = shapes::sphere(2);

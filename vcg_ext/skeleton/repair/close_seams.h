@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -58,7 +59,7 @@ inline std::vector<BorderEdge> borderEdges(
 
 /**
  * Merges border vertices that nearly coincide, and cuts border edges on which a border vertex lies: within
- * a hundredth of the border edges there. What is no border stays.
+ * a hundredth of the shortest edges there. What is no border stays.
  * @param triangles are changed. @throws Cancelled.
  * Complexity: O(F + B log B) for B border edges.
  */
@@ -89,13 +90,22 @@ inline ClosedSeams closeSeams(const std::vector<Point3d>& points, std::vector<Tr
 			return Distance(
 				points[size_t(segments[size_t(e)][0])], points[size_t(segments[size_t(e)][1])]);
 		};
+		// Beside slivers what is near along the long edge may be another place: the shortest edge tells.
+		std::vector<double> shortest(points.size(), std::numeric_limits<double>::infinity());
+		for (const Triangle& t : triangles)
+			for (size_t k = 0; k < 3; ++k) {
+				const int a = t[k], b = t[(k + 1) % 3];
+				const double whole = Distance(points[size_t(a)], points[size_t(b)]);
+				for (int v : {a, b})
+					shortest[size_t(v)] = std::min(shortest[size_t(v)], whole);
+			}
 		std::vector<std::vector<std::pair<double, int>>> onEdge(border.size());
 		int merged = 0, junctions = 0;
 		detail::reportedLoop(
 			int(border.size()), part.part(0.7, 1), detail::repairing, [&](int own) {
 				const int v = border[size_t(own)].from;
 				const Point3d& p = points[size_t(v)];
-				const double reach = nearness * length(own);
+				const double reach = nearness * shortest[size_t(v)];
 				Box3d box;
 				box.Add(p);
 				box.Offset(reach);
@@ -108,7 +118,8 @@ inline ClosedSeams closeSeams(const std::vector<Point3d>& points, std::vector<Tr
 						return;
 					const double whole = length(e), most = std::min(reach, nearness * whole);
 					for (int w : {a, b})
-						if (Distance(points[size_t(w)], p) <= most)
+						if (Distance(points[size_t(w)], p)
+							<= std::min(most, nearness * shortest[size_t(w)]))
 							lowest = std::min(lowest, w);
 					const Point3d along = points[size_t(b)] - points[size_t(a)];
 					const double t =

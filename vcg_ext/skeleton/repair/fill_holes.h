@@ -43,6 +43,8 @@ struct HoleLimits
 	/// The sharpest turn of the filling against itself and the surface, degrees: 0 is straight on. Beyond, it
 	/// would lie back on the surface.
 	double turn = 160;
+	/// A filling of no more than this part of the piece's area is taken however it turns and whatever it crosses.
+	double anyhow = 0;
 };
 
 namespace detail {
@@ -277,7 +279,8 @@ inline bool crossesOthers(const TriangleTree& tree, const std::vector<Triangle>&
 } // namespace detail
 
 /**
- * Fills the holes that are small, see HoleLimits, and whose filling crosses no other part of the surface.
+ * Fills the holes that are small, see HoleLimits, and whose filling crosses no other part of the surface, unless it
+ * is smaller still.
  * @param triangles coherently oriented, parted by partSurface(); get the filling at their end.
  * @param partner   as PartedSurface has it.
  * @throws Cancelled. Complexity: O(F log F + n^3) for holes of n edges.
@@ -344,7 +347,8 @@ inline FilledHoles fillHoles(const std::vector<Point3d>& points, std::vector<Tri
 			before += filled[size_t(p)];
 		}
 		const auto [turn, size] = best.weight();
-		if (!(turn <= mostTurn) || size > limits.area * surface
+		const bool anyhow = std::isfinite(turn) && size <= limits.anyhow * surface;
+		if (!(turn <= mostTurn || anyhow) || size > limits.area * surface
 			|| before + size > limits.allAreas * surface)
 			continue;
 		std::vector<Triangle> made;
@@ -355,7 +359,7 @@ inline FilledHoles fillHoles(const std::vector<Point3d>& points, std::vector<Tri
 			for (const auto& [a, b] : {std::pair(t[0], t[1]), std::pair(t[1], t[2])})
 				if (b - a > 1)
 					fits &= chords.insert(edge(a, b)).second; // a vertex may be on the loop twice
-			fits = fits && !detail::crossesOthers(tree, given, points, made.back());
+			fits = fits && (anyhow || !detail::crossesOthers(tree, given, points, made.back()));
 		}
 		if (!fits)
 			continue;

@@ -357,13 +357,21 @@ inline MendedSurface mend(const std::vector<Point3d>& points,
 	constexpr int mostCuts = 3;
 	for (int round = 0; round < mostCuts && report.holesLeft > 0; ++round) {
 		const Progress again = progress.part(0.95, 0.95);
-		const int cut = cutAroundHoles(mended.points, faces, again);
+		std::vector<Triangle> fewer = faces;
+		const size_t pointsBefore = mended.points.size();
+		const int cut = cutAroundHoles(mended.points, fewer, again);
 		if (!cut)
 			break;
+		partner = partSurface(mended.points, fewer, partedFrom, true, again).partner;
+		const int specks = dropSpecks(mended.points, fewer, partner);
+		const FilledHoles filled = fillHoles(mended.points, fewer, partner, limits, again);
+		if (filled.left >= report.holesLeft) {
+			mended.points.resize(pointsBefore);
+			break;
+		}
+		faces = std::move(fewer);
 		report.facesDropped += cut;
-		partner = partSurface(mended.points, faces, partedFrom, true, again).partner;
-		report.piecesDropped += dropSpecks(mended.points, faces, partner);
-		const FilledHoles filled = fillHoles(mended.points, faces, partner, limits, again);
+		report.piecesDropped += specks;
 		report.holesClosed += filled.closed;
 		report.holesLeft = filled.left;
 	}
@@ -372,6 +380,17 @@ inline MendedSurface mend(const std::vector<Point3d>& points,
 	report.piecesDropped += walls;
 	if (walls)
 		report.holesLeft = holesOf(mended.points, faces, progress.part(0.95, 0.95));
+	if (report.holesLeft > 0) {
+		constexpr double tiny =
+			0.002; // of the area: a fold there is better than to wrap all the rest
+		HoleLimits rough = limits;
+		rough.anyhow = tiny;
+		const Progress again = progress.part(0.95, 0.95);
+		partner = partSurface(mended.points, faces, partedFrom, true, again).partner;
+		const FilledHoles filled = fillHoles(mended.points, faces, partner, rough, again);
+		report.holesClosed += filled.closed;
+		report.holesLeft = filled.left;
+	}
 	if (report.holesLeft == 0) {
 		report.verticesParted +=
 			partSurface(mended.points, faces, partedFrom, false, progress.part(0.95, 1)).vertices;
