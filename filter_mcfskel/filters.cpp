@@ -5,6 +5,7 @@
 
 #include "cancel_flag.h"
 #include "filters/all_filters.h"
+#include "layers/fields.h"
 #include "layers/layers.h"
 
 #include <skeleton/support.h>
@@ -98,6 +99,18 @@ const char* cureInMeshLab(vcg::tri::mcf::Defect defect)
 	return "";
 }
 
+/// What the colours of a new layer of nodes say, for whoever looks at them; empty if nobody does.
+QString legend(const MeshModel& layer)
+{
+	if (!host::hasWindow() || layer.cm.fn > 0)
+		return {};
+	const std::vector<double> thickness = vertexQuality(layer);
+	if (thickness.empty())
+		return {};
+	return QString("Colours: from blue, 0, to red, a thickness of %1.")
+		.arg(*std::max_element(thickness.begin(), thickness.end()));
+}
+
 } // namespace
 
 Scalarm defaultLength(const ParameterSpec& spec, double diagonal)
@@ -133,6 +146,7 @@ const std::vector<FilterSpec>& catalogue()
 		saveStageFilter(),
 		loadStageFilter(),
 		saveSkeletonFilter(),
+		saveProjectFilter(),
 	};
 	return filters;
 }
@@ -147,9 +161,13 @@ Outcome runFilter(const FilterSpec& filter, MeshDocument& document,
 			throw vcg::tri::mcf::InvalidInput(
 				"There is no layer: open a closed triangle mesh first.");
 		FilterRun run {document, parameters, log, hostProgress(callback)};
+		const MeshModel* const before = document.mm();
 		outcome.results = filter.run(run);
 		try {
 			log(resultsText(outcome.results));
+			if (document.mm() && document.mm() != before)
+				if (const QString text = legend(*document.mm()); !text.isEmpty())
+					log(text);
 		}
 		catch (const std::bad_alloc&) {
 			// The document has its results by now: this is no failure any more.

@@ -6,6 +6,7 @@
 import argparse
 import re
 import sys
+import tempfile
 from pathlib import Path
 from typing import Callable, Optional
 
@@ -53,6 +54,25 @@ def error(window: Window) -> None:
     window.wait(lambda: [w for w in window.view() if "Filter Failure" in w.name], "the error")
 
 
+def project(window: Window) -> None:
+    """A project that Save Project has written, opened again."""
+    window.turn(60, -190)
+
+
+def saved_project(folder: Path, plugin: Path) -> Path:
+    """A project of the animal and its skeleton, and the stage between."""
+    import pymeshlab
+    pymeshlab.load_plugin(str(plugin))
+    layers = pymeshlab.MeshSet()
+    layers.load_new_mesh(str(ROOT / "meshes" / "animal.off"))
+    layers.apply_filter("generate_curve_skeleton_mcf")
+    for number in range(layers.mesh_number()):
+        layers.set_current_mesh(number)
+        layers.set_current_mesh_visibility(number == layers.mesh_number() - 1)
+    layers.apply_filter("save_project_mcf", file=str(folder / "animal.mlp"))
+    return folder / "animal.mlp"
+
+
 def dialogs(window: Window) -> Optional[tuple[int, int, int, int]]:
     """The part of the screen that dialogs and boxes take; the whole screen if none is open."""
     boxes = [w.box for w in window.view()
@@ -69,6 +89,7 @@ PICTURES: dict[str, tuple[str, Callable[[Window], None]]] = {
     "skeleton": ("animal", skeleton),
     "stages": ("hand", stages),
     "error": ("hand", error),
+    "project": ("animal.mlp", project),
 }
 
 
@@ -78,6 +99,8 @@ def main() -> None:
                         help="folder of MeshLab 2025.07: what scripts/get_host.sh prints")
     parser.add_argument("--data", type=Path,
                         help="$XDG_DATA_HOME with the plugin in it, if MeshLab has it from there")
+    parser.add_argument("--plugin", type=Path, help="for pymeshlab, which makes the picture 'project'",
+                        default=ROOT / "build/pymeshlab/filter_mcfskel/libfilter_mcfskel.so")
     parser.add_argument("--folder", type=Path, default=ROOT / "docs/gui")
     parser.add_argument("names", nargs="*", metavar="NAME", default=list(PICTURES),
                         help=f"which to take: {', '.join(PICTURES)} (default: all)")
@@ -86,10 +109,12 @@ def main() -> None:
     for name in options.names:
         mesh, act = PICTURES[name]
         path = options.folder / f"{name}.png"
-        with Window(options.host / "bin" / "meshlab", ROOT / "meshes" / f"{mesh}.off",
-                    data=options.data) as window:
-            act(window)
-            window.still_picture(path, dialogs(window))
+        with tempfile.TemporaryDirectory() as folder:
+            opened = (saved_project(Path(folder), options.plugin) if mesh.endswith(".mlp")
+                      else ROOT / "meshes" / f"{mesh}.off")
+            with Window(options.host / "bin" / "meshlab", opened, data=options.data) as window:
+                act(window)
+                window.still_picture(path, dialogs(window))
         Image.open(path).convert("RGB").quantize(COLOURS).save(path, optimize=True)
         print(path)
 

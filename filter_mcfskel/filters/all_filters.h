@@ -29,6 +29,7 @@ FilterSpec skeletonTubesFilter();
 FilterSpec saveStageFilter();
 FilterSpec loadStageFilter();
 FilterSpec saveSkeletonFilter();
+FilterSpec saveProjectFilter();
 
 } // namespace mcfskel
 

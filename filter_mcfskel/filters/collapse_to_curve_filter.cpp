@@ -17,13 +17,15 @@ namespace {
 
 Results run(FilterRun& run)
 {
-	const StageLayer found = readStage(run.layer());
-	if (!found)
-		throw mcf::InvalidInput("The current layer '" + run.layer().label().toStdString()
-			+ (hasStageAttributes(run.layer())
-					? "' was a stage of the contraction, but its state is gone or its geometry was changed"
-					: "' is not a stage of the contraction")
-			+ ": make a layer NAME_meso_K current, or run 'Contraction Step' first.");
+	const StageLayer found = readStage(run.layer(), sourcesOf(run));
+	if (!found) {
+		const std::string lost = lostState(run.layer()).toStdString();
+		throw mcf::InvalidInput(
+			(lost.empty() ? "The current layer '" + run.layer().label().toStdString()
+						+ "' is not a stage of the contraction."
+						  : lost)
+			+ " Make a layer NAME_meso_K current, or run 'Contraction Step' first.");
+	}
 	const double epsilon = readEpsilon(run.parameters);
 	logIfNotConverged(
 		run, *found.stage, "Run 'Contraction Step' on the stage until it has converged.");
@@ -41,7 +43,7 @@ Results run(FilterRun& run)
 	const mcf::CurveSkeleton skeleton = mcf::collapseInside(*found.stage, epsilon, run.progress);
 
 	DocumentEdit edit(run.document);
-	const MeshModel* surface = run.document.getMesh(found.surface.layerId);
+	const MeshModel* surface = layerOf(run.document, found.surface);
 	edit.addCurve(run.layer(), baseName(run.layer()) + "_skeleton",
 		{skeleton, found.surface, surface ? surface->label() : QString()});
 	edit.writeNodes(found.surface, skeleton.node);

@@ -34,14 +34,14 @@ double sharedDiagonal(FilterRun& run, const CurveLayer& mine, const CurveLayer& 
 
 Results run(FilterRun& run)
 {
-	const CurveLayer mine = skeletonOn(run.layer());
+	const CurveLayer mine = skeletonOn(run, run.layer());
 	const int otherId = run.parameters.integer("other");
 	MeshModel* otherLayer = run.document.getMesh(otherId);
 	if (!otherLayer || otherId == int(run.layer().id()))
 		throw mcf::InvalidInput(
 			"A skeleton compared with itself differs nowhere: give another layer as the parameter "
 			"other.");
-	const CurveLayer other = skeletonOn(*otherLayer);
+	const CurveLayer other = skeletonOn(run, *otherLayer);
 	const double diagonal = sharedDiagonal(run, mine, other);
 	if (!(diagonal > 0))
 		throw mcf::InvalidInput("Both skeletons are one point: there is no length to compare by.");

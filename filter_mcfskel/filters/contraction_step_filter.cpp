@@ -29,7 +29,7 @@ struct Start
 Start startOf(FilterRun& run, const mcf::Parameters& parameters)
 {
 	Start start;
-	if (const StageLayer found = readStage(run.layer())) {
+	if (const StageLayer found = readStage(run.layer(), sourcesOf(run))) {
 		start.stage = found.stage;
 		if (run.parameters.flag("fix_selected")) {
 			mcf::Stage held = *found.stage;
@@ -49,12 +49,12 @@ Start startOf(FilterRun& run, const mcf::Parameters& parameters)
 		return start;
 	}
 	// What was closed and is not any more has lost faces in an edit: it is no shape to be repaired.
-	const bool wasStage = hasStageAttributes(run.layer());
+	const QString lost = lostState(run.layer());
+	const bool wasStage = !lost.isEmpty();
 	const mcf::Repair repair = wasStage ? mcf::Repair::Off : readRepair(run.parameters);
 	if (wasStage)
 		run.log(
-			"This layer was a stage of the contraction, but its state is gone or its geometry was "
-			"changed: it is taken as a surface of its own.");
+			lost + " It is taken as a surface of its own, and its iterations are counted from 1.");
 	start.surface =
 		surfaceWithPoles(run, parameters.poleMethod, repair, run.progress.part(0, 0.08));
 	start.stage = std::make_shared<const mcf::Stage>(mcf::startOfFlow(*start.surface.surface.mesh,

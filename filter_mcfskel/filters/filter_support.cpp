@@ -248,6 +248,20 @@ std::vector<char> selectionToHold(const FilterRun& run, const SurfaceLayer& surf
 	return selected;
 }
 
+StateSources sourcesOf(const FilterRun& run)
+{
+	return {run.document, run.log};
+}
+
+void refuseStage(const FilterRun& run)
+{
+	if (readStage(run.layer(), sourcesOf(run)))
+		throw mcf::InvalidInput("The current layer '" + run.layer().label().toStdString()
+			+ "' is a stage of the contraction, not a surface: make the surface layer current.");
+	if (const QString lost = lostState(run.layer()); !lost.isEmpty())
+		run.log(lost + " It is taken as a surface of its own.");
+}
+
 void logNotes(const FilterRun& run, const SurfaceLayer& surface)
 {
 	for (const std::string& note : surface.notes)

@@ -65,6 +65,16 @@ QString stageLine(const vcg::tri::mcf::StageFigures& figures);
  */
 std::vector<char> selectionToHold(const FilterRun& run, const SurfaceLayer& surface);
 
+/// Where the state of a run's layers is looked for; valid as long as the run.
+StateSources sourcesOf(const FilterRun& run);
+
+/**
+ * For a filter that takes surfaces: a stage, or a copy of one, is none. What became of the state of a layer that
+ * was one goes into the log.
+ * @throws InvalidInput
+ */
+void refuseStage(const FilterRun& run);
+
 /// Writes the repairs of a surface into the log, once.
 void logNotes(const FilterRun& run, const SurfaceLayer& surface);
 

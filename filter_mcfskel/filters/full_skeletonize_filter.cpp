@@ -58,6 +58,7 @@ Results run(FilterRun& run)
 	if (keepStages < 0)
 		throw mcf::InvalidParameter("Parameter keep_stages must be at least 0.");
 
+	refuseStage(run);
 	const SolidLayer solid = readSolid(run.layer(),
 		{parameters.repair, parameters.minComponent, true}, run.progress.part(0, 0.02));
 	const SurfaceLayer& read = solid.surface;

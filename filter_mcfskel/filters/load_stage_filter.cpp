@@ -48,12 +48,12 @@ Results loadSkeleton(FilterRun& run, const mcf::PlyFile& ply, const QString& nam
 	if (!file.skeleton.node.empty()) {
 		std::vector<int> same(file.skeleton.node.size());
 		std::iota(same.begin(), same.end(), 0);
-		curve.surface.vertexOfSlot = std::make_shared<const std::vector<int>>(std::move(same));
+		curve.surface = linkTo(run.document, file.surfaceFingerprint, std::move(same));
 	}
 	curve.skeleton = std::move(file.skeleton);
 	const Results results = curveResults(curve.skeleton);
 	DocumentEdit edit(run.document);
-	edit.addCurve(name, curve);
+	edit.addCurve(name, curve, file.diagonal);
 	edit.commit();
 	return results;
 }

@@ -17,7 +17,7 @@ namespace {
 
 Results run(FilterRun& run)
 {
-	const CurveLayer curve = skeletonOn(run.layer());
+	const CurveLayer curve = skeletonOn(run, run.layer());
 	const SkeletonSurface surface = requireSurface(run, curve, run.progress.part(0, 0.1));
 	const mcf::SkeletonMeasures m =
 		mcf::skeletonMeasures(curve.skeleton, *surface.surface.mesh, {}, run.progress.part(0.1, 1));

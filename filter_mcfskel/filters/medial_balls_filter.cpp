@@ -30,7 +30,7 @@ double volumeOf(const mcf::TriangleSoup& soup)
 
 Results run(FilterRun& run)
 {
-	const CurveLayer curve = skeletonOn(run.layer());
+	const CurveLayer curve = skeletonOn(run, run.layer());
 	const double voxel = run.parameters.fraction("voxel") * referenceDiagonal(run.layer());
 	// Balls half a voxel apart leave no ripples.
 	mcf::CurveSkeleton balls = voxel > 0

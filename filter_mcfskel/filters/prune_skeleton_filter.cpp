@@ -16,7 +16,7 @@ namespace {
 
 Results run(FilterRun& run)
 {
-	const CurveLayer curve = skeletonOn(run.layer());
+	const CurveLayer curve = skeletonOn(run, run.layer());
 	const double diagonal = referenceDiagonal(run.layer());
 	mcf::PruneParameters parameters;
 	parameters.spurProminence = run.parameters.real("spur_prominence");

@@ -17,7 +17,7 @@ namespace {
 
 Results run(FilterRun& run)
 {
-	const CurveLayer found = skeletonOn(run.layer());
+	const CurveLayer found = skeletonOn(run, run.layer());
 	if (!found.skeleton.bridge.empty())
 		throw mcf::InvalidInput(
 			"The current skeleton has bridges over gaps, which are outside the surface. Run Full Skeletonize "

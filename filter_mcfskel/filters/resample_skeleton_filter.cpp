@@ -16,7 +16,7 @@ namespace {
 
 Results run(FilterRun& run)
 {
-	const CurveLayer curve = skeletonOn(run.layer());
+	const CurveLayer curve = skeletonOn(run, run.layer());
 	const double diagonal = referenceDiagonal(run.layer());
 	mcf::CurveSkeleton resampled =
 		mcf::resampledSkeleton(curve.skeleton, run.parameters.fraction("longest_edge") * diagonal,

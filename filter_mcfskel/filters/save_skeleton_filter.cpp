@@ -33,12 +33,13 @@ int choiceOf(const FilterRun& run, const char* name, int count)
 }
 
 /// Gives the skeleton the correspondence of the surface that the user chose, or of the one that it remembers.
-void takeSources(const FilterRun& run, CurveLayer& curve)
+/// @return its fingerprint; 0 if it is not known.
+std::uint64_t takeSources(const FilterRun& run, CurveLayer& curve)
 {
 	const int surfaceId = run.parameters.integer("surface");
 	if (surfaceId == int(run.layer().id())) {
 		curve.skeleton.node = curve.nodeOfLayerVertex();
-		return;
+		return curve.surface.fingerprint;
 	}
 	const MeshModel* surface = run.document.getMesh(surfaceId);
 	if (surface)
@@ -48,12 +49,13 @@ void takeSources(const FilterRun& run, CurveLayer& curve)
 			"The layer given as surface has no attribute mcfskel_node: choose the surface that "
 			"the skeleton was made from.");
 	curve.surfaceName = surface->label();
+	return 0;
 }
 
 Results run(FilterRun& run)
 {
 	const QString file = requiredName(run.parameters.text("file"), "to write");
-	CurveLayer curve = readCurve(run.layer());
+	CurveLayer curve = readCurve(run.layer(), sourcesOf(run));
 	SkeletonContext context;
 	if (needsSurface(file)) {
 		const SkeletonSurface surface = requireSurface(run, curve, run.progress.part(0, 0.4));
@@ -62,7 +64,8 @@ Results run(FilterRun& run)
 		context.surface.faces = surface.surface.mesh->triangles(run.progress.part(0.9, 0.9));
 	}
 	else
-		takeSources(run, curve);
+		context.surfaceFingerprint = takeSources(run, curve);
+	context.diagonal = referenceDiagonal(run.layer());
 	if (!curve.skeleton.node.empty())
 		context.surfaceName = curve.surfaceName.toStdString();
 	context.swc.scale = run.parameters.real("scale");

@@ -2,13 +2,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 #include "../io/files.h"
+#include "../io/layer_files.h"
 #include "all_filters.h"
 #include "filter_support.h"
 
-#include <skeleton/skeleton_files.h>
 #include <skeleton/support.h>
-
-#include <ostream>
 
 namespace mcfskel {
 
@@ -19,24 +17,23 @@ namespace {
 Results run(FilterRun& run)
 {
 	const QString file = requiredName(run.parameters.text("file"), "to write");
-	const StageLayer found = readStage(run.layer());
-	if (!found && run.layer().cm.fn > 0)
-		throw mcf::InvalidInput("The current layer '" + run.layer().label().toStdString()
-			+ (hasStageAttributes(run.layer())
-					? "' was a stage of the contraction, but its state is gone or its geometry was changed"
-					: "' is neither a stage of the contraction nor a skeleton")
-			+ ": make a layer NAME_meso_K or NAME_skeleton current.");
+	const StageLayer found = readStage(run.layer(), sourcesOf(run));
+	if (!found && run.layer().cm.fn > 0) {
+		const std::string lost = lostState(run.layer()).toStdString();
+		throw mcf::InvalidInput(
+			(lost.empty() ? "The current layer '" + run.layer().label().toStdString()
+						+ "' is neither a stage of the contraction nor a skeleton."
+						  : lost)
+			+ " Make a layer NAME_meso_K or NAME_skeleton current.");
+	}
 	Results results;
 	if (found) {
-		const mcf::StageFile stage = {
-			*found.stage, found.surface.fingerprint, *found.surface.vertexOfSlot};
-		writeFile(file, [&](std::ostream& out) { mcf::writeStagePly(out, stage, run.progress); });
+		writeStageFile(file, run.layer(), found, run.progress);
 		results = stageResults(*found.stage);
 	}
 	else {
-		CurveLayer curve = readCurve(run.layer());
-		curve.skeleton.node = curve.nodeOfLayerVertex();
-		writeFile(file, [&](std::ostream& out) { mcf::writeSkeletonPly(out, curve.skeleton); });
+		const CurveLayer curve = readCurve(run.layer(), sourcesOf(run));
+		writeCurveFile(file, run.layer(), curve);
 		results = curveResults(curve.skeleton);
 	}
 	run.log(QString("Wrote '%1'.").arg(file));

@@ -19,7 +19,7 @@ namespace {
 
 Results run(FilterRun& run)
 {
-	const CurveLayer curve = skeletonOn(run.layer());
+	const CurveLayer curve = skeletonOn(run, run.layer());
 	const double thinnest = run.parameters.fraction("radius") * referenceDiagonal(run.layer());
 	if (!(thinnest > 0))
 		throw mcf::InvalidParameter("Parameter radius must be above 0.");

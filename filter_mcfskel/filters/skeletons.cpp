@@ -25,11 +25,7 @@ constexpr char reading[] = "Reading the layer";
 /// The layer of the surface that a skeleton remembers, if it is still there and unchanged.
 MeshModel* rememberedLayer(const FilterRun& run, const CurveLayer& curve)
 {
-	if (!curve.surface.vertexOfSlot)
-		return nullptr;
-	const SurfaceLink link =
-		linkTo(run.document, curve.surface.fingerprint, *curve.surface.vertexOfSlot);
-	return link.layerId < 0 ? nullptr : run.document.getMesh(link.layerId);
+	return layerOf(run.document, curve.surface);
 }
 
 /// What mcfskel_node tells, if all of it can be about a skeleton of that many nodes; else empty.
@@ -55,9 +51,9 @@ std::vector<int> nodesFromAttribute(const SkeletonSurface& surface, size_t nodes
 
 } // namespace
 
-CurveLayer skeletonOn(const MeshModel& layer)
+CurveLayer skeletonOn(const FilterRun& run, const MeshModel& layer)
 {
-	CurveLayer curve = readCurve(layer);
+	CurveLayer curve = readCurve(layer, sourcesOf(run));
 	std::vector<double>& radius = curve.skeleton.radius;
 	if (radius.empty())
 		radius = vertexQuality(layer);
@@ -190,7 +186,7 @@ void addDerivedSkeleton(FilterRun& run, const CurveLayer& curve, mcf::CurveSkele
 	std::vector<Other> others;
 	if (fits)
 		for (const MeshModel* layer : host::layersOf(run.document))
-			if (layer != remembered && layer->cm.fn > 0 && !hasStageAttributes(*layer)
+			if (layer != remembered && layer->cm.fn > 0 && lostState(*layer).isEmpty()
 				&& !readNodes(*layer).empty() && baseName(*layer) == baseName(*remembered))
 				others.push_back({run.document.getMesh(int(layer->id())),
 					readSurface(*layer, progress.part(0.5, 0.7)), {}});

@@ -19,7 +19,7 @@ namespace mcfskel {
 
 /// The skeleton on a layer with a radius for each node: from the attribute, else from the quality,
 /// else 0.
-CurveLayer skeletonOn(const MeshModel& layer);
+CurveLayer skeletonOn(const FilterRun& run, const MeshModel& layer);
 
 /// The parameter `surface`; its default, the skeleton's own layer, stands for the surface that the
 /// skeleton remembers.

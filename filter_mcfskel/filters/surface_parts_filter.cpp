@@ -31,7 +31,7 @@ QVariant column(size_t rows, const Value& value)
 
 Results run(FilterRun& run)
 {
-	CurveLayer curve = skeletonOn(run.layer());
+	CurveLayer curve = skeletonOn(run, run.layer());
 	const SkeletonSurface target = requireSurface(run, curve, run.progress.part(0, 0.1));
 	const mcf::SurfaceMesh& mesh = *target.surface.mesh;
 	mcf::CurveSkeleton& skeleton = curve.skeleton;

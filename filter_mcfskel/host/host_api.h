@@ -90,6 +90,11 @@ inline void removeLayer(MeshDocument& document, int id)
 	document.delMesh(document.getMesh(id));
 }
 
+inline int rasterCount(const MeshDocument& document)
+{
+	return document.rasterList.size();
+}
+
 #else
 
 using FilterBase = FilterPlugin;
@@ -128,6 +133,11 @@ inline std::vector<const MeshModel*> layersOf(const MeshDocument& document)
 inline void removeLayer(MeshDocument& document, int id)
 {
 	document.delMesh(unsigned(id));
+}
+
+inline int rasterCount(const MeshDocument& document)
+{
+	return int(document.rasterNumber());
 }
 
 #endif

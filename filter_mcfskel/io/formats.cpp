@@ -66,9 +66,10 @@ QStringList writeGlb(
 	return {};
 }
 
-QStringList writePly(std::ostream& out, const mcf::CurveSkeleton& skeleton, const SkeletonContext&)
+QStringList writePly(
+	std::ostream& out, const mcf::CurveSkeleton& skeleton, const SkeletonContext& context)
 {
-	mcf::writeSkeletonPly(out, skeleton);
+	mcf::writeSkeletonPly(out, skeleton, context.surfaceFingerprint, context.diagonal);
 	return {};
 }
 

@@ -18,6 +18,7 @@
 #include <QString>
 #include <QStringList>
 
+#include <cstdint>
 #include <istream>
 #include <ostream>
 #include <string>
@@ -33,6 +34,9 @@ struct SkeletonContext
 	/// The surface; without faces if it is not at hand.
 	vcg::tri::mcf::SkinnedSurface surface;
 	vcg::tri::mcf::SwcOptions swc;
+	/// As in SkeletonFile.
+	std::uint64_t surfaceFingerprint = 0;
+	double diagonal = 0;
 	/// How far the bones of an armature may be from the curve, mesh units; 0: the default.
 	double boneTolerance = 0;
 };

@@ -1,8 +1,11 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+#include "../host/scene.h"
 #include "fields.h"
 #include "fill_layers.h"
+
+#include <QFileInfo>
 
 #include <algorithm>
 #include <new>
@@ -83,10 +86,10 @@ MeshModel& DocumentEdit::addCurve(
 	return layer;
 }
 
-MeshModel& DocumentEdit::addCurve(const QString& label, const CurveLayer& curve)
+MeshModel& DocumentEdit::addCurve(const QString& label, const CurveLayer& curve, double diagonal)
 {
 	MeshModel& layer = addLayer(curve.surface, label);
-	fillCurve(layer, curve);
+	fillCurve(layer, curve, diagonal);
 	return layer;
 }
 
@@ -196,8 +199,7 @@ void DocumentEdit::writeNodes(
 
 void DocumentEdit::writeNodes(const SurfaceLink& surface, const std::vector<int>& node)
 {
-	MeshModel* layer = document.getMesh(surface.layerId);
-	if (layer && fingerprint(layer->cm) == surface.fingerprint)
+	if (MeshModel* layer = layerOf(document, surface))
 		writeNodes(*layer, *surface.vertexOfSlot, node);
 }
 
@@ -218,6 +220,66 @@ void DocumentEdit::commit()
 	}
 }
 
+namespace {
+
+bool isStage(const MeshModel& layer)
+{
+	const StatePointer state = findState(layer.cm);
+	return state && state->stage;
+}
+
+host::Look lookOfStage(const MeshModel& layer)
+{
+	constexpr double mostlyFlat = 0.3; // of the surface's area
+	return findState(layer.cm)->stage.stage->areaFraction() < mostlyFlat ? host::Look::ThinStage
+																		 : host::Look::Stage;
+}
+
+bool isCurve(const MeshModel& layer)
+{
+	return layer.cm.fn == 0 && layer.cm.en > 0;
+}
+
+/// Whether a layer has the name that a filter gives.
+bool isMade(const MeshModel& layer)
+{
+	return baseName(layer) != QFileInfo(layer.label()).completeBaseName();
+}
+
+} // namespace
+
+const MeshModel* DocumentEdit::surfaceToOutline() const
+{
+	const MeshModel& shown = *document.getMesh(added.back());
+	std::vector<const MeshModel*> madeFrom;
+	for (const MeshModel* layer : host::layersOf(document))
+		if (std::find(sources.begin(), sources.end(), int(layer->id())) != sources.end())
+			madeFrom.push_back(layer);
+	const bool fromCurve = std::any_of(
+		madeFrom.begin(), madeFrom.end(), [](const MeshModel* l) { return isCurve(*l); });
+	if (shown.cm.fn > 0 && !fromCurve)
+		return nullptr;
+	const MeshModel* best = nullptr;
+	const auto offer = [&](const MeshModel* layer, bool mayBeHidden) {
+		const bool fits = layer != &shown && layer->cm.fn > 0 && !isStage(*layer)
+			&& layer->cm.vn <= host::maxOutlineVertices && (mayBeHidden || layer->isVisible());
+		if (fits && !(best && best->cm.vn <= host::maxEdgedVertices))
+			best = layer;
+	};
+	if (fromCurve)
+		for (const MeshModel* layer : host::layersOf(document)) {
+			if (baseName(*layer) == baseName(shown))
+				offer(layer, false);
+		}
+	else {
+		for (const MeshModel* layer : madeFrom)
+			offer(layer, true);
+		for (int id : added)
+			offer(document.getMesh(id), true);
+	}
+	return best;
+}
+
 void DocumentEdit::present()
 {
 	for (int id : added) {
@@ -231,10 +293,27 @@ void DocumentEdit::present()
 		if (!values.empty())
 			setVertexColours(layer, values, 0, *std::max_element(values.begin(), values.end()));
 	}
-	sources.insert(sources.end(), added.begin(), added.end() - 1);
-	for (int id : sources)
-		if (id >= 0 && document.getMesh(id))
+	const MeshModel& shown = *document.getMesh(added.back());
+	const MeshModel* const outline = surfaceToOutline();
+	std::vector<std::pair<int, host::Look>> looks;
+	for (const MeshModel* layer : host::layersOf(document)) {
+		const int id = int(layer->id());
+		const bool isNew = std::find(added.begin(), added.end(), id) != added.end();
+		const bool isSource = std::find(sources.begin(), sources.end(), id) != sources.end();
+		if (isNew && isStage(*layer))
+			looks.emplace_back(id, lookOfStage(*layer));
+		else if (isNew && layer->cm.fn == 0 && layer->cm.en > 0)
+			looks.emplace_back(id, host::Look::Curve);
+		if (layer == outline)
+			looks.emplace_back(id, host::Look::Outline);
+		// What was made from the same surface before would lie upon the new layer.
+		const bool isKin = baseName(*layer) == baseName(shown) && isMade(*layer);
+		if (layer != &shown && layer != outline && (isNew || isSource || isKin))
 			document.setVisible(id, false);
+	}
+	if (outline)
+		document.setVisible(int(outline->id()), true);
+	host::setLooks(document, looks);
 }
 
 } // namespace mcfskel

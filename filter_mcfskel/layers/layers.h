@@ -8,7 +8,8 @@
 /// What users and scripts see are the attributes mcfskel_*. They hold the host's scalar, often a
 /// float, while the pipeline counts in double; so each layer also carries its exact state, in one more
 /// attribute (attributes.h). Steps made one by one are then the same, bit for bit, as a full run.
-/// The state counts only as long as the layer's geometry is what it was when the state was written.
+/// What somebody has edited since, positions or attributes, replaces what the state says; once the
+/// triangles or edges are others, the state is gone.
 
 #ifndef MCFSKEL_LAYERS_H
 #define MCFSKEL_LAYERS_H
@@ -121,8 +122,24 @@ std::vector<char> readSelection(
 /// As above for a layer whose slots are its vertices, as those of a stage are.
 std::vector<char> readSelection(const MeshModel& layer);
 
-/// The stage that a layer holds; false if it is none, or if its geometry was edited since.
-StageLayer readStage(const MeshModel& layer);
+/// Where the state of a layer is looked for if the layer has none, and who reads what became of it.
+struct StateSources
+{
+	const MeshDocument& document;
+	/// Receives lines for the log.
+	std::function<void(const QString&)> note;
+};
+
+/**
+ * The stage that a layer holds, with positions, poles, fixed and held marks as they were edited since; false if it
+ * is none, or if its triangles were changed. Copies of a layer and files that a filter wrote count.
+ * @throws InvalidStage if what was edited makes no stage.
+ */
+StageLayer readStage(const MeshModel& layer, const StateSources& sources);
+
+/// What became of the state of a layer that seems to have been a stage, for which readStage() finds none; empty if
+/// it never was one.
+QString lostState(const MeshModel& layer);
 
 /**
  * Reads a skeleton from a layer of edges, of any origin. A single node without edges counts if a
@@ -131,14 +148,14 @@ StageLayer readStage(const MeshModel& layer);
  */
 CurveLayer readCurve(const MeshModel& layer);
 
+/// As above, with what readStage() would find, too: edited positions and radii, copies, files.
+CurveLayer readCurve(const MeshModel& layer, const StateSources& sources);
+
 /// Puts a skeleton into a new, empty layer.
 void fillCurve(MeshModel& layer, const CurveLayer& curve);
 
 /// The values of mcfskel_node on a surface layer, for each vertex; empty if it has none.
 std::vector<int> readNodes(const MeshModel& layer);
-
-/// Whether a layer was a stage once, so that it is worth a word in the log that it is none any more.
-bool hasStageAttributes(const MeshModel& layer);
 
 /**
  * The poles that a surface layer carries, one for each vertex of `surface`; null if it has none, or
@@ -188,7 +205,8 @@ public:
 		const SurfaceLink& surface, const vcg::tri::mcf::Progress& progress);
 
 	/// As above, read from files: in the frame of their surface's layer, if that is there.
-	MeshModel& addCurve(const QString& label, const CurveLayer& curve);
+	/// @param diagonal what 100 % of a Length is on the layer; 0: not known.
+	MeshModel& addCurve(const QString& label, const CurveLayer& curve, double diagonal);
 	MeshModel& addStage(const QString& label, std::shared_ptr<const vcg::tri::mcf::Stage> stage,
 		const StageFields& fields, const SurfaceLink& surface,
 		const vcg::tri::mcf::Progress& progress);
@@ -211,7 +229,8 @@ public:
 	 * Comes last in a filter: whatever else may fail, such as the memory for its results, has been done. Keeps
 	 * the changes and makes the layer added last the current one. In MeshLab's window that one
 	 * is seen at once: it lies inside the layers that it was made from, so these are hidden, and so
-	 * are the other new ones; curves and points are coloured by their quality, and not shaded. Where
+	 * are the other new ones and what was made from the same surface before; curves and points are coloured by
+	 * their quality, not shaded, and lie in the outline of their surface. Where
 	 * there is no window nothing of this is done: scripts use visibility to say which layers a filter
 	 * works on, and colours would be saved with the layer.
 	 */
@@ -233,6 +252,9 @@ private:
 	void changeState(MeshModel& layer, const SurfaceLayer& surface,
 		std::shared_ptr<const vcg::tri::mcf::PoleSet> poles);
 	void present();
+	/// The layer that shows the shape around what was added last; null if there is none. One that a skeleton lay in
+	/// already counts only while it is visible: the user may have hidden it.
+	const MeshModel* surfaceToOutline() const;
 
 	MeshDocument& document;
 	int previousLayer;
@@ -244,6 +266,9 @@ private:
 	std::vector<int> sources;
 	bool committed = false;
 };
+
+/// The layer that a link leads to: the one with its id, or else one with its geometry; null if there is none.
+MeshModel* layerOf(MeshDocument& document, const SurfaceLink& link);
 
 /// The link to a surface layer, for the stages that will come from it.
 SurfaceLink linkTo(const MeshModel& layer, const SurfaceLayer& surface);

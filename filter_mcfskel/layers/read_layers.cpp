@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "layer_state.h"
+#include "stored_state.h"
 
 #include <QRegularExpression>
 
@@ -48,9 +48,9 @@ double referenceDiagonal(const MeshModel& layer)
 {
 	vcg::Box3d box;
 	const StatePointer state = findState(layer.cm);
-	if (state && state->diagonal > 0 && validState(layer))
+	if (state && state->diagonal > 0 && state->curve && hasEdgesOf(layer, state->curve->skeleton))
 		return state->diagonal;
-	if (state && state->stage)
+	if (state && state->stage && hasTrianglesOf(layer, *state->stage.stage))
 		for (const vcg::Point3d& p : *state->stage.stage->surface)
 			box.Add(p);
 	else if (box = liveBounds(layer.cm); !box.IsNull()) {
@@ -95,13 +95,12 @@ std::optional<SurfaceLayer> surfaceInState(const MeshModel& layer)
 {
 	requireOwnAttributes(layer);
 	const std::string label = "'" + layer.label().toStdString() + "'";
-	if (const StatePointer state = validState(layer)) {
-		if (state->stage)
-			throw mcf::InvalidInput("The current layer " + label
-				+ " is a stage of the contraction, not a surface: make the surface layer current.");
-		if (state->surface.mesh)
-			return state->surface;
-	}
+	const StatePointer state = findState(layer.cm);
+	if (state && state->stage && hasTrianglesOf(layer, *state->stage.stage))
+		throw mcf::InvalidInput("The current layer " + label
+			+ " is a stage of the contraction, not a surface: make the surface layer current.");
+	if (const StatePointer valid = validState(layer); valid && valid->surface.mesh)
+		return valid->surface;
 	if (layer.cm.fn == 0 && layer.cm.en > 0)
 		throw mcf::InvalidInput("The current layer " + label
 			+ " is a curve, edges without faces: make the surface layer current.");
@@ -209,11 +208,16 @@ std::vector<char> readSelection(const MeshModel& layer)
 	return readSelection(layer, identity, int(identity.size()));
 }
 
-StageLayer readStage(const MeshModel& layer)
+namespace {
+
+/// Whether a layer of points has the attributes, or the name, of a skeleton.
+bool wasCurve(const MeshModel& layer)
 {
-	const StatePointer state = validState(layer);
-	return state ? state->stage : StageLayer();
+	static const QRegularExpression curveName("_(skeleton|refined|pruned|smoothed)(?![A-Za-z])");
+	return findAttribute(layer.cm.vert_attr, radiusAttribute) || layer.label().contains(curveName);
 }
+
+} // namespace
 
 std::vector<int> CurveLayer::nodeOfLayerVertex() const
 {
@@ -236,6 +240,10 @@ CurveLayer readCurve(const MeshModel& layer)
 	if (mesh.fn > 0)
 		throw mcf::InvalidInput("The layer " + label
 			+ " has faces, it is no curve skeleton: make a layer of nodes and edges current.");
+	if (mesh.en == 0 && mesh.vn > 1 && wasCurve(layer))
+		throw mcf::InvalidInput("The layer " + label + " has " + std::to_string(mesh.vn)
+			+ " nodes of a skeleton but no edges any more: MeshLab's own PLY holds none. Make the skeleton "
+			  "again, or open what 'Save Skeleton', 'Save Stage' or 'Save Project' wrote.");
 	if (mesh.en == 0 && !(mesh.vn == 1 && radius))
 		throw mcf::InvalidInput("The layer " + label
 			+ " has no edges, it is no curve skeleton: make a layer of nodes and edges current.");
@@ -281,11 +289,6 @@ std::vector<int> readNodes(const MeshModel& layer)
 		result.push_back(!(value >= 0 && value <= 1e9) ? -1 : int(value));
 	}
 	return result;
-}
-
-bool hasStageAttributes(const MeshModel& layer)
-{
-	return findAttribute(layer.cm.vert_attr, fixedAttribute) != nullptr;
 }
 
 std::shared_ptr<const mcf::PoleSet> readPoles(

@@ -126,7 +126,9 @@ class Window:
         self.call("xdotool", "windowsize", self.main, *map(str, SIZE))
         self.wait(lambda: [w for w in self.view().all("frame", "MeshLab") if w.box[2:] == SIZE],
                   "the main window in full size")
-        if meshes:
+        if any(mesh.suffix == ".mlp" for mesh in meshes):
+            self.wait(self.layers, "the layers of the project")  # of which the log says nothing
+        elif meshes:
             self.wait_log("All files opened")
 
     def main_window(self) -> Optional[str]:
@@ -243,6 +245,11 @@ class Window:
         if not all(0 <= at < size for at, size in zip(widget.centre, SIZE)):
             raise AssertionError(f"{widget.role} {widget.name} at {widget.centre} is not on the screen")
         self.call("xdotool", "mousemove", *map(str, widget.centre), "click", "1")
+
+    def click_at(self, box: tuple[int, int, int, int]) -> None:
+        """Clicks into the middle of what has no widget of its own."""
+        left, top, width, height = box
+        self.call("xdotool", "mousemove", str(left + width // 2), str(top + height // 2), "click", "1")
 
     def turn(self, right: int, down: int) -> None:
         """Turns the view by dragging the mouse over it that many pixels."""

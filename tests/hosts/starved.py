@@ -35,6 +35,7 @@ Steps = list[tuple[str, dict[str, Any]]]
 def jobs(folder: Path) -> dict[str, tuple[str, Steps, str, dict[str, Any]]]:
     """Of each job its mesh, the filters that come before it, its filter and the parameters."""
     stage, skeleton = str(folder / "stage.ply"), str(folder / "skeleton.cg")
+    project = str(folder / "project.mlp")
     return {
         "resample": ("capsule", [], RESAMPLE, COARSE),
         "poles": ("capsule", [], POLES, {}),
@@ -60,6 +61,7 @@ def jobs(folder: Path) -> dict[str, tuple[str, Steps, str, dict[str, Any]]]:
         "save stage": ("capsule", STAGE, "save_stage_mcf", {"file": stage}),
         "load stage": ("capsule", STAGE + [("save_stage_mcf", {"file": stage})],
                        "load_stage_mcf", {"file": stage}),
+        "save project": ("capsule", STAGE, "save_project_mcf", {"file": project}),
         "save skeleton": ("capsule", SKELETON, "save_skeleton_mcf", {"file": skeleton}),
         # After a file that cannot be opened the host makes the first layer the current one.
         "load skeleton": ("capsule", SKELETON + [("save_skeleton_mcf", {"file": skeleton}),

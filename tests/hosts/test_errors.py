@@ -151,10 +151,11 @@ class TestWrongLayer:
         text = refused(layers, COLLAPSE)
         assert "not a stage" in text and "Contraction Step" in text
 
-    def test_an_edited_stage_is_no_stage(self, layers):
+    def test_a_remeshed_stage_is_no_stage(self, layers):
         layers.set_current_mesh(layer(layers, "capsule_meso_2").id())
-        layers.compute_matrix_from_scaling_or_normalization(axisx=2.0, freeze=True)
-        assert "geometry was changed" in refused(layers, COLLAPSE)
+        layers.meshing_surface_subdivision_midpoint(iterations=1)
+        text = refused(layers, COLLAPSE)
+        assert "triangles" in text and "were changed" in text
 
 
 class TestParameters:

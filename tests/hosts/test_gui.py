@@ -85,6 +85,11 @@ def skeleton_pixels(picture: np.ndarray) -> np.ndarray:
     return (saturation > 0.6) & (brightest > 0.3) & (picture.argmax(axis=2) != 2)
 
 
+def outline_pixels(picture: np.ndarray) -> np.ndarray:
+    """Where the points or edges of a surface show around a skeleton: light, a little blue."""
+    return np.abs(picture - np.array([170, 180, 200]) / 255).max(axis=2) < 0.03
+
+
 def grown(mask: np.ndarray, pixels: int) -> np.ndarray:
     result = mask.copy()
     for _ in range(pixels):
@@ -157,11 +162,19 @@ def test_from_the_search_to_the_skeleton(window: Window) -> None:
     assert names(layers)[:2] == ["y_tube", "y_tube_resampled"]
     assert re.fullmatch(r"y_tube_meso_\d+", names(layers)[2])
     assert names(layers)[3:] == ["y_tube_skeleton"]
-    assert visible(window, layers) == ["y_tube_skeleton"]
+    assert visible(window, layers) == ["y_tube_resampled", "y_tube_skeleton"]
     picture = viewport(window)
     assert surface_pixels(picture).sum() < 0.1 * surface.sum()
     assert_inside(new_pixels(before, picture), surface, 200)
-    assert skeleton_pixels(picture).sum() > 100, "its thickness is seen"
+    line = skeleton_pixels(picture)
+    assert line.sum() > 300, "its thickness is seen, in a line that is thicker than a pixel"
+    assert_inside(outline_pixels(picture), surface, 500)
+    assert (line & grown(outline_pixels(picture), 12)).sum() > 0.9 * line.sum(), "it lies in its surface"
+    # One click on the eye of its surface, and it is alone.
+    window.click_at(layers[1].eye)
+    window.wait(lambda: visible(window, window.layers()) == ["y_tube_skeleton"], "the surface to hide")
+    picture = viewport(window)
+    assert outline_pixels(picture).sum() < 20 and skeleton_pixels(picture).sum() > 300
 
 
 @pytest.mark.parametrize("window", ["capsule"], indirect=True)
@@ -184,10 +197,11 @@ def test_four_steps_and_the_curve(window: Window) -> None:
     assert (numbers["components"], numbers["cycles"]) == (1, 0)
     layers = window.layers()
     assert names(layers)[-1] == "capsule_skeleton"
-    assert visible(window, layers) == ["capsule_skeleton"]
+    assert visible(window, layers) == ["capsule", "capsule_skeleton"]
     picture = viewport(window)
     assert_inside(new_pixels(before, picture), surface, 100)
     assert skeleton_pixels(picture).sum() > 50, "its thickness is seen"
+    assert_inside(outline_pixels(picture), surface, 500)
 
 
 def error_box(window: Window) -> list[Widget]:

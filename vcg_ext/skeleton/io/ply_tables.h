@@ -13,6 +13,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <vector>
@@ -40,6 +41,15 @@ void addTuples(
 	for (const std::array<int, N>& tuple : tuples)
 		column.values.insert(column.values.end(), tuple.begin(), tuple.end());
 	element.columns.push_back(std::move(column));
+}
+
+/// Adds two columns with the halves of a number of 64 bits, which no type of PLY holds.
+inline void addFingerprint(PlyElement& element, std::uint64_t fingerprint)
+{
+	element.add("fingerprint_low", PlyType::UInt32,
+		std::array<double, 1> {double(fingerprint & 0xFFFFFFFF)});
+	element.add(
+		"fingerprint_high", PlyType::UInt32, std::array<double, 1> {double(fingerprint >> 32)});
 }
 
 /// The values of an element of a PLY file, each checked. Every error names element, row and column.
@@ -143,6 +153,18 @@ private:
 
 	const PlyElement* element;
 };
+
+/// What addFingerprint() added to the one row of an element. @throws FormatError
+inline std::uint64_t fingerprintIn(const PlyTable& row)
+{
+	const auto half = [&](const char* name) {
+		const double value = row.reals(name, 0)[0];
+		if (value > 0xFFFFFFFFu || value != std::floor(value))
+			throw row.error(0, std::string("'") + name + "' is no integer of 32 bits.");
+		return std::uint64_t(value);
+	};
+	return half("fingerprint_low") | half("fingerprint_high") << 32;
+}
 
 } // namespace vcg::tri::mcf
 

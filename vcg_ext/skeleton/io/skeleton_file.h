@@ -14,6 +14,7 @@
 #include <skeleton/graph/curve_skeleton.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <array>
 #include <cmath>
 #include <string>
@@ -27,6 +28,10 @@ struct SkeletonFile
 	CurveSkeleton skeleton;
 	/// What was put right, a sentence each.
 	std::vector<std::string> warnings;
+	/// Of the surface layer's geometry, as the host counts it; 0: not known.
+	std::uint64_t surfaceFingerprint = 0;
+	/// Of the surface, mesh units; 0: not known.
+	double diagonal = 0;
 };
 
 /// What is wrong with a number that isUsablePlace(), isUsableRadius() refuses.

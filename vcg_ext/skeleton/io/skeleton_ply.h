@@ -15,11 +15,13 @@
 namespace vcg::tri::mcf {
 
 /**
- * Writes a skeleton: elements vertex (position, radius, significance, and quality for MeshLab), edge (vertex1,
- * vertex2) and mcfskel_surface (for each surface vertex its node).
+ * A skeleton as tables: elements vertex (position, radius, significance, and quality for MeshLab), edge (vertex1,
+ * vertex2), mcfskel_surface (for each surface vertex its node) and mcfskel_skeleton (the rest).
+ * @param surfaceFingerprint, diagonal as in SkeletonFile.
  * @throws InvalidInput: see requireWritable().
  */
-inline void writeSkeletonPly(std::ostream& out, const CurveSkeleton& skeleton)
+inline PlyFile skeletonPly(
+	const CurveSkeleton& skeleton, std::uint64_t surfaceFingerprint = 0, double diagonal = 0)
 {
 	requireWritable(skeleton);
 	PlyElement vertex {"vertex", skeleton.position.size(), {}};
@@ -39,15 +41,25 @@ inline void writeSkeletonPly(std::ostream& out, const CurveSkeleton& skeleton)
 	}
 	PlyElement surface {"mcfskel_surface", skeleton.node.size(), {}};
 	surface.add("node", PlyType::Int32, skeleton.node);
-	writeBinaryPly(out, {{"mcfskel skeleton 1"}, {vertex, edge, surface}});
+	PlyElement row {"mcfskel_skeleton", 1, {}};
+	row.add("diagonal", PlyType::Double, std::array<double, 1> {diagonal});
+	addFingerprint(row, surfaceFingerprint);
+	return {{"mcfskel skeleton 1"}, {vertex, edge, surface, row}};
+}
+
+/// Writes skeletonPly(). @throws InvalidInput: see requireWritable().
+inline void writeSkeletonPly(std::ostream& out, const CurveSkeleton& skeleton,
+	std::uint64_t surfaceFingerprint = 0, double diagonal = 0)
+{
+	writeBinaryPly(out, skeletonPly(skeleton, surfaceFingerprint, diagonal));
 }
 
 /**
  * Reads a skeleton that writeSkeletonPly() wrote, or any binary PLY of vertices and edges. What the
  * file does not have (radius, significance, correspondence) stays empty.
  * @throws FormatError: see readBinaryPly(); also for a coordinate that is not finite or beyond
- *         maxCoordinate, a radius that is or is below 0, a significance that is not from 0 to 1, an edge or a surface vertex whose node does not
- *         exist, an edge from a vertex to itself.
+ *         maxCoordinate, a radius that is or is below 0, a significance that is not from 0 to 1, an edge or a
+ *         surface vertex whose node does not exist, an edge from a vertex to itself, a diagonal below 0.
  */
 inline SkeletonFile readSkeletonPly(const PlyFile& ply)
 {
@@ -84,6 +96,14 @@ inline SkeletonFile readSkeletonPly(const PlyFile& ply)
 		file.warnings.push_back(std::to_string(repeated) + " edges are given more than once.");
 	if (ply.find("mcfskel_surface"))
 		skeleton.node = PlyTable(ply, "mcfskel_surface").integers("node", -1, last);
+	// Files of earlier releases have none.
+	if (ply.find("mcfskel_skeleton")) {
+		const PlyTable row(ply, "mcfskel_skeleton");
+		if (row.rows() != 1)
+			throw row.error(0, "expected one row.");
+		file.diagonal = row.reals("diagonal", 0)[0];
+		file.surfaceFingerprint = fingerprintIn(row);
+	}
 	return file;
 }
 

@@ -55,27 +55,25 @@ inline PlyElement stageRow(const StageFile& file)
 	add("epsilon", PlyType::Double, stage.epsilon);
 	add("initial_volume", PlyType::Double, stage.initialVolume);
 	add("volume", PlyType::Double, stage.volume);
-	add("fingerprint_low", PlyType::UInt32, double(file.surfaceFingerprint & 0xFFFFFFFF));
-	add("fingerprint_high", PlyType::UInt32, double(file.surfaceFingerprint >> 32));
+	addFingerprint(row, file.surfaceFingerprint);
 	return row;
 }
 
 } // namespace detail
 
 /**
- * Writes a stage. Nothing is written that readStagePly() would refuse.
+ * A stage as tables, none that readStagePly() would refuse.
  * @pre its mesh is compact, as between steps.
  * @throws InvalidStage, see checkStage(); Cancelled.
  * Complexity: O(V + surface).
  */
-inline void writeStagePly(
-	std::ostream& out, const StageFile& file, const Progress& progress = Progress())
+inline PlyFile stagePly(const StageFile& file, const Progress& progress = Progress())
 {
 	const char* const what = "Writing the file";
 	const Stage& stage = file.stage;
-	checkStage(stage, progress.part(0, 0.1));
-	const std::vector<Triangle> triangles = stage.mesh.triangles(progress.part(0.1, 0.15));
-	const std::vector<double> radius = stageRadius(stage, progress.part(0.15, 0.3));
+	checkStage(stage, progress.part(0, 0.3));
+	const std::vector<Triangle> triangles = stage.mesh.triangles(progress.part(0.3, 0.5));
+	const std::vector<double> radius = stageRadius(stage, progress.part(0.5, 1));
 	const size_t n = size_t(stage.mesh.vertexSlots());
 
 	PlyElement vertex {"vertex", n, {}};
@@ -91,7 +89,7 @@ inline void writeStagePly(
 		vertex.add("mcfskel_epsilon_limit", PlyType::Double, stage.epsilonLimit);
 	vertex.add("mcfskel_component", PlyType::Int32, stage.component);
 
-	progress.report(0.3, what);
+	progress.report(1, what);
 	PlyElement face {"face", triangles.size(), {}};
 	addTuples(face, "vertex_indices", triangles);
 
@@ -100,10 +98,10 @@ inline void writeStagePly(
 	component.add("initial_area", PlyType::Double, stage.initialArea);
 	component.add("area", PlyType::Double, stage.area);
 
-	progress.report(0.3, what);
+	progress.report(1, what);
 	PlyElement surface {"mcfskel_surface", stage.node.size(), {}};
 	addPoints(surface, "", *stage.surface);
-	progress.report(0.3, what);
+	progress.report(1, what);
 	surface.add("node", PlyType::Int32, stage.node);
 
 	PlyElement surfaceFace {
@@ -119,7 +117,14 @@ inline void writeStagePly(
 		if (element != &surfaceFace || element->rows > 0)
 			ply.elements.push_back(std::move(*element));
 	ply.elements.push_back(detail::stageRow(file));
-	writeBinaryPly(out, ply, progress.part(0.3, 1));
+	return ply;
+}
+
+/// Writes stagePly(). @throws InvalidStage, see checkStage(); Cancelled. Complexity: O(V + surface).
+inline void writeStagePly(
+	std::ostream& out, const StageFile& file, const Progress& progress = Progress())
+{
+	writeBinaryPly(out, stagePly(file, progress.part(0, 0.3)), progress.part(0.3, 1));
 }
 
 namespace detail {
@@ -156,14 +161,6 @@ inline void checkReadStage(const Stage& stage, const Progress& progress)
 				+ (error.count() > 1 ? " There are " + std::to_string(error.count()) + " such rows."
 									 : ""));
 	}
-}
-
-inline std::uint64_t fingerprintHalf(const PlyTable& row, const char* name)
-{
-	const double value = row.reals(name, 0)[0];
-	if (value > 0xFFFFFFFFu || value != std::floor(value))
-		throw row.error(0, std::string("'") + name + "' is no integer of 32 bits.");
-	return std::uint64_t(value);
 }
 
 inline void readComponents(const PlyTable& table, Stage& stage)
@@ -226,8 +223,7 @@ inline StageFile readStagePly(const PlyFile& ply, const Progress& progress = Pro
 		stage.epsilon = row.anyReals("epsilon")[0];
 	stage.initialVolume = row.anyReals("initial_volume")[0];
 	stage.volume = row.anyReals("volume")[0];
-	file.surfaceFingerprint = detail::fingerprintHalf(row, "fingerprint_low")
-		| detail::fingerprintHalf(row, "fingerprint_high") << 32;
+	file.surfaceFingerprint = fingerprintIn(row);
 
 	detail::readComponents(component, stage);
 	progress.report(0, what);

@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "../io/files.h"
+#include "../io/layer_files.h"
+#include "all_filters.h"
+#include "filter_support.h"
+
+#include <skeleton/support.h>
+
+#include <QDir>
+#include <QFileInfo>
+#include <QRegularExpression>
+#include <QSet>
+#include <QXmlStreamWriter>
+
+#include <ostream>
+
+namespace mcfskel {
+
+namespace mcf = vcg::tri::mcf;
+
+namespace {
+
+/// A layer, what is known of it, and where it goes.
+struct SavedLayer
+{
+	MeshModel* layer;
+	StageLayer stage;
+	std::shared_ptr<const CurveLayer> curve;
+	QString path; ///< from the project's folder
+};
+
+/// A name for a layer's file that is no other's, on systems that do not tell cases apart, too.
+QString fileName(const MeshModel& layer, QSet<QString>& taken)
+{
+	static const QRegularExpression notPortable("[^\\w ().+-]");
+	QString name = QFileInfo(layer.label()).completeBaseName();
+	name.replace(notPortable, "_");
+	if (name.isEmpty())
+		name = "layer";
+	QString unique = name;
+	for (int k = 1; taken.contains(unique.toLower()); ++k)
+		unique = QString("%1(%2)").arg(name).arg(k);
+	taken.insert(unique.toLower());
+	return unique + ".ply";
+}
+
+/// All that is to be written, read before the first file is: a layer may know itself from one of these.
+std::vector<SavedLayer> layersToSave(const FilterRun& run, const QString& folder)
+{
+	std::vector<SavedLayer> saved;
+	QSet<QString> taken;
+	for (const MeshModel* found : host::layersOf(run.document)) {
+		MeshModel& layer = *run.document.getMesh(int(found->id()));
+		SavedLayer item {&layer, {}, nullptr, folder + "/" + fileName(layer, taken)};
+		if (layer.cm.fn > 0)
+			item.stage = readStage(layer, sourcesOf(run));
+		else if (layer.cm.en > 0)
+			item.curve = std::make_shared<const CurveLayer>(readCurve(layer, sourcesOf(run)));
+		if (!item.stage && !item.curve)
+			if (const QString lost = lostState(layer); !lost.isEmpty())
+				run.log(lost);
+		if (!layer.cm.textures.empty())
+			run.log("The textures of '" + layer.label() + "' are not saved.");
+		saved.push_back(std::move(item));
+	}
+	return saved;
+}
+
+void writeLayer(const SavedLayer& saved, const QDir& place, const mcf::Progress& progress)
+{
+	const QString file = place.filePath(saved.path);
+	if (saved.stage)
+		writeStageFile(file, *saved.layer, saved.stage, progress);
+	else if (saved.curve)
+		writeCurveFile(file, *saved.layer, *saved.curve);
+	else
+		writeMeshFile(file, *saved.layer, progress);
+}
+
+/// The project as MeshLab writes it, without what it says of the view.
+QByteArray projectText(const std::vector<SavedLayer>& layers)
+{
+	QByteArray text;
+	QXmlStreamWriter xml(&text);
+	xml.setAutoFormatting(true);
+	xml.writeStartDocument();
+	xml.writeDTD("<!DOCTYPE MeshLabDocument>");
+	xml.writeStartElement("MeshLabProject");
+	xml.writeStartElement("MeshGroup");
+	for (const SavedLayer& saved : layers) {
+		xml.writeStartElement("MLMesh");
+		xml.writeAttribute("label", saved.layer->label());
+		xml.writeAttribute("filename", saved.path);
+		xml.writeAttribute("visible", saved.layer->isVisible() ? "1" : "0");
+		xml.writeAttribute("idInFile", "-1");
+		QString matrix = "\n";
+		for (int row = 0; row < 4; ++row) {
+			for (int column = 0; column < 4; ++column)
+				matrix += QString::number(saved.layer->cm.Tr.ElementAt(row, column), 'g', 17) + " ";
+			matrix += "\n";
+		}
+		xml.writeTextElement("MLMatrix44", matrix);
+		xml.writeEndElement();
+	}
+	xml.writeEndElement();
+	xml.writeEmptyElement("RasterGroup");
+	xml.writeEndElement();
+	xml.writeEndDocument();
+	return text;
+}
+
+Results run(FilterRun& run)
+{
+	QString project = requiredName(run.parameters.text("file"), "to write");
+	if (QFileInfo(project).suffix().compare("mlp", Qt::CaseInsensitive) != 0)
+		project += ".mlp";
+	const QDir place = QFileInfo(project).absoluteDir();
+	const QString folder = QFileInfo(project).completeBaseName() + "_layers";
+	std::vector<SavedLayer> layers = layersToSave(run, folder);
+	if (host::rasterCount(run.document) > 0)
+		run.log("The raster layers are not saved.");
+	const QByteArray text = projectText(layers);
+	if (!place.exists() || !place.mkpath(folder))
+		throw FileError("Cannot make the folder '" + place.filePath(folder).toStdString() + "'.");
+	for (size_t i = 0; i < layers.size(); ++i)
+		writeLayer(layers[i], place,
+			run.progress.part(
+				double(i) / double(layers.size()), double(i + 1) / double(layers.size())));
+	writeFile(project, [&](std::ostream& out) { out.write(text.constData(), text.size()); });
+	for (const SavedLayer& saved : layers) {
+		const QString label = saved.layer->label();
+		saved.layer->setFileName(place.filePath(saved.path));
+		saved.layer->setLabel(label);
+	}
+	run.log(QString("Wrote '%1' and the folder '%2'.").arg(project, folder));
+	return {{"layers", int(layers.size())}};
+}
+
+} // namespace
+
+FilterSpec saveProjectFilter()
+{
+	return {"save_project_mcf", menuName("Save Project"),
+		helpPage(
+			"Writes all layers and a project file (.mlp), which MeshLab's Open Project reads. MeshLab's own "
+			"Save Project loses the edges of skeletons and the state of stages; here skeletons keep their edges, "
+			"radius and correspondence, and stages all that the next step needs. The layers are PLY files in a "
+			"folder NAME_layers beside the project; files that they were loaded from are left alone. Textures "
+			"and raster layers are not saved."),
+		FilterCategory::Remeshing, MeshModel::MM_NONE,
+		{{ParameterKind::FileToSave, "file", 0, "File", "Name of the project to write, .mlp.",
+			{"*.mlp"}}},
+		run};
+}
+
+} // namespace mcfskel
