@@ -3,6 +3,7 @@
 """The examples and promises of the README hold; the pages in docs/ explain all there is."""
 
 import ctypes
+import os
 import re
 import subprocess
 import sys
@@ -116,7 +117,7 @@ def test_defaults_are_what_the_tables_say(capfd: pytest.CaptureFixture[str]):
     assert compared >= 15
 
 
-@pytest.mark.parametrize("page", sorted((ROOT / "docs").glob("*.md")), ids=lambda path: path.name)
+@pytest.mark.parametrize("page", sorted((ROOT / "docs").rglob("*.md")), ids=lambda path: path.name)
 def test_pages_lead_somewhere(page: Path):
     for link in re.findall(r"\]\((?!http)([^)]+)\)", page.read_text()):
         file, _, anchor = link.partition("#")
@@ -125,6 +126,34 @@ def test_pages_lead_somewhere(page: Path):
         if anchor:
             headings = re.findall(r"^#+ (.*)", target.read_text(), re.MULTILINE)
             assert anchor in {re.sub(r"[^\w\- ]", "", h.lower()).replace(" ", "-") for h in headings}, link
+
+
+TUTORIALS = sorted((ROOT / "docs" / "tutorials").glob("*.md"))
+
+
+@pytest.mark.parametrize("page", TUTORIALS, ids=lambda path: path.name)
+def test_what_a_tutorial_does_in_python_works(page: Path, plugin: Path, tmp_path: Path):
+    script = "\n".join(re.findall(r"```python\n(.*?)```", page.read_text(), re.DOTALL))
+    if not script:
+        return
+    (tmp_path / "meshes").symlink_to(ROOT / "meshes")
+    environment = os.environ | {"PYTHONPATH": str(ROOT / "python"), "MCFSKEL_PLUGIN": str(plugin)}
+    run = subprocess.run([sys.executable, "-c", script.replace('"PLUGIN"', repr(str(plugin)))], cwd=tmp_path,
+                         env=environment, capture_output=True, text=True, timeout=600)
+    assert run.returncode == 0, run.stderr
+
+
+@pytest.mark.parametrize("page", TUTORIALS, ids=lambda path: path.name)
+def test_what_a_tutorial_types_exists(page: Path):
+    lines = [line.split("#")[0].split() for block in re.findall(r"```\n(.*?)```", page.read_text(), re.DOTALL)
+             for line in block.splitlines()]
+    for command, *arguments in filter(None, lines):
+        if not command.startswith(("scripts/", "examples/")):
+            continue
+        run = subprocess.run([ROOT / command, "--help"], capture_output=True, text=True)
+        assert run.returncode == 0, command
+        for option in arguments:
+            assert not option.startswith("--") or option in run.stdout, f"{command} {option}"
 
 
 def test_examples_of_the_page_on_filters_run(plugin: Path):
