@@ -21,6 +21,7 @@
 #include <functional>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -1020,6 +1021,37 @@ TEST(Refine, FindsWhatIsWrongWithACurve)
 	for (int i = 0; i < 2000; ++i)
 		pacing.emplace_back((i % 2 ? 0.3 : 0.36), 1e-5 * i, 0);
 	EXPECT_EQ(defect(CurveMaker().chain(pacing).in(mesh)), Defect::TooLong);
+}
+
+TEST(Refine, AFewEdgesThatHaveLeftTheSurfaceAreBroughtBack)
+{
+	using refining::Defect;
+	const SurfaceMesh mesh = shapes::scaled(shapes::torus(), 1 / 3.0).mesh();
+	std::vector<int> all(mesh.vertexSlots());
+	std::iota(all.begin(), all.end(), 0);
+	const refining::SurfaceComponent component = {mesh, all, all};
+	const ClosestSurface closest(mesh, all, 0.01);
+	const refining::InsideCheck inside(closest, component);
+	std::vector<Point3d> arc;
+	for (int i = 0; i <= 40; ++i)
+		arc.emplace_back(std::cos(M_PI * i / 30) / 3, std::sin(M_PI * i / 30) / 3, 0);
+	const CurveSkeleton good = CurveMaker().chain(arc).in(mesh);
+	CurveSkeleton bad = good;
+	bad.position[7] *= 0.5; // into the hole
+	const double spacing = RefineParameters().spacing;
+	ASSERT_EQ(refining::defectOf(bad, good, spacing, inside), Defect::Outside);
+
+	const std::optional<CurveSkeleton> back = refining::broughtBack(bad, component, Progress());
+	ASSERT_TRUE(back);
+	EXPECT_EQ(refining::defectOf(*back, good, spacing, inside), Defect::None);
+	for (size_t v = 0; v < good.position.size(); ++v)
+		if (v != 7)
+			EXPECT_EQ(back->position[v], good.position[v]);
+	EXPECT_EQ(statistics(*back).terminals, 2);
+	EXPECT_LT(statistics(*back).length, 1.5 * statistics(good).length);
+
+	EXPECT_FALSE(refining::broughtBack(curveAcrossHole(mesh), component, Progress()))
+		<< "most of it is outside";
 }
 
 TEST(Refine, PlacesEnclosedTwiceAreInside)

@@ -39,15 +39,17 @@ constexpr double outsideTolerance = 5e-7;
 class CurveIntoSolid
 {
 public:
-	/// @param place of each node. @param edges pairs of nodes.
+	/// @param place of each node. @param edges pairs of nodes. @param tolerance how far outside a point may be.
 	CurveIntoSolid(const SolidTest& solid, std::vector<Point3d> place,
-		std::vector<std::array<int, 2>> edges, const Progress& progress) :
+		std::vector<std::array<int, 2>> edges, const Progress& progress,
+		double tolerance = outsideTolerance) :
 			solid(solid),
-			place(std::move(place)), edges(std::move(edges)), progress(progress)
+			place(std::move(place)), edges(std::move(edges)), progress(progress),
+			tolerance(tolerance)
 	{
 	}
 
-	/// For each node the vertices of the surface that have merged into it.
+	/// For each node the vertices of the surface that have merged into it; empty where that is not known.
 	std::vector<std::vector<int>> merged;
 
 	const std::vector<Point3d>& places() const { return place; }
@@ -66,7 +68,7 @@ public:
 		bool any = false;
 		for (size_t A = 0; A < place.size(); ++A) {
 			report();
-			isOutside[A] = !solid.isInside(place[A], outsideTolerance);
+			isOutside[A] = !solid.isInside(place[A], tolerance);
 			any |= isOutside[A];
 		}
 		const auto isInside = [&](const std::array<int, 2>& edge) {
@@ -139,6 +141,7 @@ private:
 	std::vector<Point3d> place;
 	std::vector<std::array<int, 2>> edges;
 	const Progress& progress;
+	double tolerance;
 	std::vector<char> changed;
 	/// The neighbours of each vertex of the surface, and its inward unit normal; made when they are needed.
 	std::vector<std::vector<int>> around;
@@ -149,7 +152,7 @@ private:
 	bool segmentIsInside(const Point3d& p, const Point3d& q) const
 	{
 		report();
-		return solid.segmentIsInside(p, q, outsideTolerance);
+		return solid.segmentIsInside(p, q, tolerance);
 	}
 
 	/// A chord of the solid: from a point of the surface to half of the way to the other side.
@@ -212,7 +215,7 @@ private:
 		constexpr double nextTo = 0.004; // two of the default epsilon
 		constexpr size_t mostTried = 32;
 		HalfChord best = chordBehind(place[A]);
-		if (Distance(best.from, place[A]) > nextTo && !merged[A].empty()) {
+		if (Distance(best.from, place[A]) > nextTo && !merged.empty() && !merged[A].empty()) {
 			const size_t step = (merged[A].size() + mostTried - 1) / mostTried;
 			double nearest = std::numeric_limits<double>::infinity();
 			for (size_t i = 0; i < merged[A].size(); i += step) {

@@ -14,6 +14,7 @@
 #include "refine_graph.h"
 #include "refine_tips.h"
 
+#include <skeleton/collapse/curve_inside.h>
 #include <skeleton/core/errors.h>
 #include <skeleton/core/parameters.h>
 #include <skeleton/core/progress.h>
@@ -31,10 +32,13 @@
 #include <skeleton/poles/poles.h>
 #include <skeleton/poles/sizing_field.h>
 #include <skeleton/spatial/closest_surface.h>
+#include <skeleton/spatial/solid_test.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -367,11 +371,76 @@ inline void addTo(RefineReport& report, Defect defect)
 }
 
 /**
- * Refines the skeleton of one component and checks the result. What fails with lengths that follow the local
- * thickness is tried again with the same everywhere; what then leaves the surface or grows too long, with
- * closest points of which none is missed: where the shape is thinner than the samples of its surface are
- * apart, the fast ones take the wrong wall. Not if the curve has more than 10000 nodes: that would take
- * minutes.
+ * What of a refined curve has left the surface is brought back, see detail::CurveIntoSolid: a few edges that
+ * cut a bend of a twig are no reason to give up all that is refined elsewhere. Not where they are more than a tenth.
+ * @return a curve that is outside nowhere by more than the rounding; nothing if that is not possible.
+ * @throws Cancelled
+ */
+inline std::optional<CurveSkeleton> broughtBack(
+	const CurveSkeleton& curve, const SurfaceComponent& component, const Progress& progress)
+{
+	std::vector<Point3d> points;
+	std::vector<Triangle> faces;
+	for (int v : component.vertices) {
+		points.push_back(component.mesh.position[v]);
+		component.mesh.forEachOutgoing(v, [&](int h) {
+			if (h % 3 != 0)
+				return;
+			const Triangle t = component.mesh.triangle(h / 3);
+			faces.push_back({component.place[t[0]], component.place[t[1]], component.place[t[2]]});
+		});
+	}
+	const SolidTest solid(points, faces, progress);
+	std::vector<Point3d> place;
+	for (const Point3d& p : curve.position)
+		place.push_back(solid.in(p));
+	std::vector<std::array<int, 2>> edges;
+	for (const auto& [a, b] : curve.edges)
+		edges.push_back({a, b});
+	constexpr double mostOutside = 0.1; // of the edges: more is no slip, but another curve
+	const auto isOutside = [&](const std::array<int, 2>& edge) {
+		return !solid.segmentIsInside(place[edge[0]], place[edge[1]], detail::outsideTolerance);
+	};
+	if (double(std::count_if(edges.begin(), edges.end(), isOutside))
+		> mostOutside * double(edges.size()))
+		return std::nullopt;
+	CurveSkeleton inside = curve;
+	// Exactly if possible: ways along the surface itself are within the rounding only.
+	for (const double tolerance : {0.0, detail::outsideTolerance}) {
+		detail::CurveIntoSolid into(solid, place, edges, progress, tolerance);
+		try {
+			into.bringInside();
+		}
+		catch (const SolverError&) {
+			continue;
+		}
+		const std::vector<Point3d>& places = into.places();
+		const auto isInside = [&](const std::array<int, 2>& edge) {
+			return solid.segmentIsInside(places[edge[0]], places[edge[1]], tolerance);
+		};
+		const std::vector<std::array<int, 2>>& bent = into.curveEdges();
+		if (!std::all_of(bent.begin(), bent.end(), isInside))
+			continue;
+		inside.radius.resize(places.size(), 0);
+		inside.position.resize(places.size());
+		for (size_t v = 0; v < places.size(); ++v)
+			if (v >= curve.position.size() || into.changedNodes()[v])
+				inside.position[v] = solid.out(places[v]);
+		inside.edges.clear();
+		for (const auto& [a, b] : bent)
+			inside.edges.push_back({std::min(a, b), std::max(a, b)});
+		std::sort(inside.edges.begin(), inside.edges.end());
+		return inside;
+	}
+	return std::nullopt;
+}
+
+/**
+ * Refines the skeleton of one component and checks the result. Where lengths follow the local thickness, what has
+ * left the surface is brought back, see broughtBack(). What still fails is tried again with lengths that are the
+ * same everywhere; what then leaves the surface or grows too long, with closest points of which none is missed:
+ * where the shape is thinner than the samples of its surface are apart, the fast ones take the wrong wall. Not if
+ * the curve has more than 10000 nodes: that would take minutes.
  * @param refined  the unrefined curve; the refined one if there is no defect, else unchanged.
  */
 inline Defect refineChecked(CurveSkeleton& refined, ClosestSurface& surface,
@@ -389,8 +458,15 @@ inline Defect refineChecked(CurveSkeleton& refined, ClosestSurface& surface,
 			CurveSkeleton curve = refineComponent(
 				unrefined, surface, component, own, parameters, progress.part(from, to));
 			nodes = curve.position.size();
-			const Defect defect = defectOf(curve, unrefined,
-				parameters.spacing * own.least(component.vertices), inside, progress.part(to, to));
+			const Progress end = progress.part(to, to);
+			const double spacing = parameters.spacing * own.least(component.vertices);
+			Defect defect = defectOf(curve, unrefined, spacing, inside, end);
+			if (defect == Defect::Outside && !own.isUniform())
+				if (auto back = broughtBack(curve, component, end);
+					back && defectOfShape(*back, unrefined, spacing) == Defect::None) {
+					curve = std::move(*back);
+					defect = Defect::None;
+				}
 			if (defect == Defect::None)
 				refined = std::move(curve);
 			return defect;

@@ -216,9 +216,9 @@ inline bool isFinite(const CurveSkeleton& curve)
 	});
 }
 
-/// What is wrong with a curve refined from another one, both in diagonals. @throws Cancelled
-inline Defect defectOf(const CurveSkeleton& refined, const CurveSkeleton& unrefined, double spacing,
-	const InsideCheck& inside, const Progress& progress = Progress())
+/// What is wrong with a curve refined from another one, wherever it is; both in diagonals.
+inline Defect defectOfShape(
+	const CurveSkeleton& refined, const CurveSkeleton& unrefined, double spacing)
 {
 	if (!isFinite(refined))
 		return Defect::NotFinite;
@@ -227,6 +227,16 @@ inline Defect defectOf(const CurveSkeleton& refined, const CurveSkeleton& unrefi
 	const SkeletonStatistics before = statistics(unrefined), after = statistics(refined);
 	if (before.components != after.components || before.cycles != after.cycles)
 		return Defect::Topology;
+	return Defect::None;
+}
+
+/// What is wrong with a curve refined from another one, both in diagonals. @throws Cancelled
+inline Defect defectOf(const CurveSkeleton& refined, const CurveSkeleton& unrefined, double spacing,
+	const InsideCheck& inside, const Progress& progress = Progress())
+{
+	const Defect defect = defectOfShape(refined, unrefined, spacing);
+	if (defect != Defect::None)
+		return defect;
 	return inside.holds(refined, progress) ? Defect::None : Defect::Outside;
 }
 
