@@ -6,12 +6,15 @@
 #include <skeleton/poles/poles.h>
 #include <skeleton/poles/sizing_field.h>
 #include <skeleton/resample/resample.h>
+#include <skeleton/resample/resampled_surface.h>
 #include <skeleton/resample/target_length.h>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
 #include <vector>
 
 using namespace vcg::tri::mcf;
@@ -21,7 +24,7 @@ namespace {
 constexpr double relative = 0.6, thinRadius = 0.012;
 
 /// A thick tube that narrows to a tube a fortieth as wide, about the x axis, with round ends.
-shapes::Soup bottle(double wide = 0.5, double narrow = thinRadius)
+shapes::Soup bottle(double wide = 0.5, double narrow = thinRadius, int sides = 24)
 {
 	std::vector<std::pair<double, double>> profile = {{-2, 0}};
 	const auto add = [&](double x, double r) { profile.emplace_back(x, r); };
@@ -36,7 +39,7 @@ shapes::Soup bottle(double wide = 0.5, double narrow = thinRadius)
 	for (int i = 0; i < 8; ++i)
 		add(2 + narrow * std::sin(i * M_PI / 16), narrow * std::cos(i * M_PI / 16));
 	add(2 + narrow, 0);
-	return shapes::revolved(profile, 24);
+	return shapes::revolved(profile, sides);
 }
 
 SizingField fieldOf(const SurfaceMesh& mesh, double bound)
@@ -149,4 +152,64 @@ TEST(SizingField, ResamplingWithAFieldThatBindsNowhereIsThatWithout)
 	ASSERT_EQ(one.vertexSlots(), other.vertexSlots());
 	for (int v = 0; v < one.vertexSlots(); ++v)
 		EXPECT_EQ(one.position[v], other.position[v]);
+}
+
+TEST(SizingField, ThatCostsTooMuchIsLongerEverywhereFirst)
+{
+	const SurfaceMesh mesh = bottle().mesh();
+	const MeasuredSurface surface(mesh);
+	const std::vector<double> length = {0.08};
+	const SizingField given = fieldOf(mesh, length[0]);
+	const auto cost = [&](const SizingField& f) { return expectedVertices(surface, length, f); };
+	const double least = *std::min_element(given.begin(), given.end());
+	constexpr double factor = 1.6;
+
+	SizingField field = given;
+	const double most = 0.7 * cost(given);
+	EXPECT_EQ(coarsenToCost(field, factor, length[0], most, cost), 0);
+	EXPECT_LE(cost(field), most);
+	EXPECT_GT(cost(field), 0.99 * most);
+	const double by = *std::min_element(field.begin(), field.end()) / least;
+	EXPECT_GT(by, 1);
+	EXPECT_LT(by, factor);
+	for (size_t v = 0; v < field.size(); ++v)
+		if (std::isfinite(given[v]))
+			EXPECT_NEAR(field[v] / given[v], by, 1e-9);
+
+	field = given;
+	const double few = 0.45 * cost(given);
+	const double raised = coarsenToCost(field, factor, length[0], few, cost);
+	EXPECT_GT(raised, factor * least);
+	EXPECT_LE(cost(field), few);
+	for (size_t v = 0; v < field.size(); ++v)
+		if (std::isfinite(given[v]))
+			EXPECT_NEAR(field[v], std::max(factor * given[v], raised), 1e-9);
+}
+
+TEST(SizingField, AMeshBeyondTheBudgetResolvesWhatItCanAndSaysWhatItDoesNot)
+{
+	const std::vector<double> length = {0.08};
+	std::string said;
+	const auto fieldOfNeck = [&](const SurfaceMesh& mesh) {
+		said.clear();
+		return fieldOfResampling(MeasuredSurface(mesh), length, Parameters(), Progress(),
+			[&](const std::string& text) { said += text + "\n"; });
+	};
+	constexpr int sides = 5; // few vertices, and thirty edges for each
+	for (const auto& [narrow, words] : {std::pair(0.003, "longer there than relative_length"),
+			 std::pair(0.0015, "what is thinner than a radius of")}) {
+		SCOPED_TRACE(narrow);
+		const SurfaceMesh mesh = bottle(0.5, narrow, sides).mesh();
+		const MeasuredSurface surface(mesh);
+		const std::optional<SizingField> field = fieldOfNeck(mesh);
+		EXPECT_NE(said.find(words), std::string::npos) << said;
+		ASSERT_TRUE(field);
+		EXPECT_LE(
+			expectedVertices(surface, length, *field), maxVerticesOfVertex * mesh.vertexCount());
+		const double shortest = *std::min_element(field->begin(), field->end());
+		EXPECT_GT(shortest, relative * narrow);
+		EXPECT_LT(shortest, 1.5 * narrow);
+	}
+	EXPECT_FALSE(fieldOfNeck(bottle(0.5, 0.0002, sides).mesh())); // as good as none
+	EXPECT_NE(said.find("the same everywhere"), std::string::npos) << said;
 }

@@ -290,6 +290,34 @@ double raiseToCost(SizingField& field, double high, double most, Cost&& cost)
 	return high;
 }
 
+/**
+ * A field as much longer everywhere as it has to be for a mesh, or its edges, to cost no more than what is given,
+ * but at most `factor` times; what then still is too much, raiseToCost() takes from the shortest lengths.
+ * @param factor >= 1. @param field, high, most, cost as above.
+ * @return no length is shorter: 0 where that was not needed. Complexity: 60 costs.
+ */
+template <class Cost>
+double coarsenToCost(SizingField& field, double factor, double high, double most, Cost&& cost)
+{
+	constexpr int halvings = 20;
+	const SizingField given = field;
+	const auto multiply = [&](double by) {
+		for (size_t v = 0; v < field.size(); ++v)
+			field[v] = by * given[v];
+	};
+	multiply(factor);
+	if (cost(field) > most)
+		return raiseToCost(field, high, most, cost);
+	double low = 1, enough = factor;
+	for (int i = 0; i < halvings && low < enough; ++i) {
+		const double middle = std::sqrt(low * enough);
+		multiply(middle);
+		(cost(field) > most ? low : enough) = middle;
+	}
+	multiply(enough);
+	return 0;
+}
+
 } // namespace vcg::tri::mcf
 
 #endif

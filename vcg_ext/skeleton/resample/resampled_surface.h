@@ -59,8 +59,35 @@ inline std::vector<char> thinParts(const MeasuredSurface& surface, const Paramet
 constexpr double maxVertices = 400000, maxVerticesOfVertex = 30;
 
 /**
- * The sizing field to resample a surface with; none where its mesh would be too large, see maxVertices. It is
- * said if that leaves parts out.
+ * Of what is thin, by its length, where the sizing field of a surface binds: the part that a raised field still
+ * resolves, with edges up to 1.5 local thicknesses, four around a tube. Complexity: O(F).
+ */
+inline double resolvedPart(const SurfaceMesh& mesh, const SizingField& field,
+	const SizingField& raised, double relativeLength)
+{
+	constexpr double longest = 1.5;
+	double resolved = 0, all = 0;
+	for (int f = 0; f < mesh.faceSlots(); ++f) {
+		if (!mesh.isFace(f))
+			continue;
+		const double area = mesh.areaVector(f).Norm();
+		for (int v : mesh.triangle(f)) {
+			if (!std::isfinite(field[v]))
+				continue;
+			const double length = area / field[v];
+			all += length;
+			if (raised[v] * relativeLength <= longest * field[v])
+				resolved += length;
+		}
+	}
+	return all > 0 ? resolved / all : 1;
+}
+
+/**
+ * The sizing field to resample a surface with. Where its mesh would be too large, see maxVertices, edges may be up to
+ * a local thickness long, and where that is not enough, the thinnest parts alone lose: see coarsenToCost(). None
+ * where most of what is thin would not be resolved then, as with plates, which no number of vertices serves. It is
+ * said what loses.
  * @param length of each component, see defaultTargetLength().
  * @throws Cancelled. Complexity: as medialPoles().
  */
@@ -77,15 +104,37 @@ inline std::optional<SizingField> fieldOfResampling(const MeasuredSurface& surfa
 			parameters.relativeLength, length, progress.part(0.8, 1));
 	if (field.empty())
 		return field;
-	const double expected = expectedVertices(surface, length, field);
+	double expected = expectedVertices(surface, length, field);
 	const double most = std::min(std::max(maxVertices, 1.01 * anyway), resolved);
 	if (expected > most) {
-		if (onNote)
-			onNote(detail::sentence(3, "Parts of the shape are thin. To resolve them would take ",
+		constexpr double leastResolved = 0.5, longest = 1; // of what is thin; local thicknesses
+		const std::string cost =
+			detail::sentence(3, "Parts of the shape are thin. To resolve them would take ",
 				expected / 1e6, " million vertices, more than ",
-				resolved < maxVertices ? "30 for each of the mesh" : "0.4 million",
-				": lengths are the same everywhere, and such parts may be left out or simplified."));
-		return std::nullopt;
+				resolved < maxVertices ? "30 for each of the mesh" : "0.4 million");
+		const SizingField wanted = field;
+		const double least = coarsenToCost(field,
+			std::max(1.0, longest / parameters.relativeLength),
+			*std::max_element(length.begin(), length.end()), most,
+			[&](const SizingField& raised) { return expectedVertices(surface, length, raised); });
+		if (resolvedPart(surface.mesh(), wanted, field, parameters.relativeLength)
+			< leastResolved) {
+			if (onNote)
+				onNote(cost
+					+ ": lengths are the same everywhere, and such parts may be left out or simplified.");
+			return std::nullopt;
+		}
+		if (onNote && least == 0)
+			onNote(cost + ": edges are longer there than relative_length says.");
+		else if (onNote) {
+			const double thinnest = least / longest;
+			const std::vector<double> diagonals = surface.diagonals();
+			const double diagonal = *std::max_element(diagonals.begin(), diagonals.end());
+			onNote(detail::sentence(3, cost, ": what is thinner than a radius of ", thinnest,
+				" mesh units (", 100 * thinnest / diagonal,
+				" % of the diagonal) is resolved less, and may be left out or simplified."));
+		}
+		expected = expectedVertices(surface, length, field);
 	}
 	if (onNote)
 		onNote(detail::sentence(3, "Parts of the shape are thin: edges are down to ",
