@@ -540,6 +540,6 @@ def test_the_examples_of_the_docs_run(plugin, tmp_path):
     script = "\n".join(blocks).replace('"PLUGIN"', repr(str(plugin))).replace(
         '"meshes/', f'"{MESHES}/')
     script += "\nassert graph.graph['cycles'] == 3"
-    script += "\nassert layers.current_mesh().label() == 'animal_meso_4'\n"
+    script += "\nassert layers.current_mesh().label() == 'animal_meso_5'\n"
     run = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, capture_output=True, text=True)
     assert run.returncode == 0, run.stderr
