@@ -143,7 +143,7 @@ def main() -> None:
         state = fingerprint(layers)
 
         def files() -> dict[Path, bytes]:
-            return {path: path.read_bytes() for path in Path(folder).iterdir()}
+            return {path: path.read_bytes() for path in Path(folder).rglob("*") if path.is_file()}
 
         def attempt(count: int) -> tuple[str, bool, int]:
             text, written = "", files()

@@ -32,6 +32,8 @@ KNOWN = {
     ("bowl", "explosion"), ("bowl", "hang"), ("uneven", "explosion"),  # thin walls
     ("bent_sheet", "hang"), ("bent_sheet", "explosion"),  # one mesh, that ends after most of its time or too late
     ("crowd", "hang"),  # hundreds of bodies of like sizes, each resampled
+    # Hair-thin rings that are refined as thin as they are: 1500 nodes for the diagonal of each of them.
+    ("linked", "explosion"),
     ("hair", "explosion"),  # thinner than a thousandth of the smoothing's length
     # Only where it is resampled: held inside that surface, which cuts the corners and spikes of the input.
     ("urchin", "outside"), ("slot", "outside"), ("star", "outside"), ("sieve", "outside"),
