@@ -147,7 +147,7 @@ def test_from_the_search_to_the_skeleton(window: Window) -> None:
     # The dialog says what the filter does, each parameter what it means, lengths are percentages.
     shown = window.shown("frame", name)
     assert any("middle of the shape" in w.name and "Tagliasacchi" in w.name for w in shown.all("label"))
-    for label, word in [("Resample first", "triangles"), ("Smoothness weight w_L", "paper's units"),
+    for label, word in [("Resample first", "triangles"), ("Smoothness weight w_L", "published"),
                         ("Medial weight w_M", "centres the skeleton"), ("Keep every k-th stage", "layer")]:
         parameter = [w for w in shown if w.name == label]
         assert parameter and word in parameter[0].tooltip, label
