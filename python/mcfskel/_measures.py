@@ -8,17 +8,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from . import _sections
+
 if TYPE_CHECKING:
     from ._skeleton import Skeleton
 
 
-def branch_measures(skeleton: Skeleton) -> dict[str, np.ndarray]:
+def branch_measures(skeleton: Skeleton, sections: int) -> dict[str, np.ndarray]:
     rows = [_measures(skeleton, branch) for branch in skeleton.branches]
-    names = ("first", "last", "length", "chord", "tortuosity", "curvature", "radius_min", "radius_mean",
-             "radius_max", "significance")
+    names = ("first", "last", "length", "chord", "tortuosity", "curvature", "torsion", "radius_min",
+             "radius_mean", "radius_max", "significance")
     table = {name: np.array([row[name] for row in rows]) for name in names}
     table["angle_first"], table["angle_last"] = _angles(skeleton)
     table["strahler"] = _strahler(skeleton)
+    cuts = [_sections.branch_sections(skeleton, branch, sections) for branch in skeleton.branches]
+    for k, name in enumerate(_sections.NAMES):
+        table[name] = np.array([np.mean([cut[k] for cut in found]) if found else np.nan for found in cuts])
     return table
 
 
@@ -29,16 +34,27 @@ def _measures(skeleton: Skeleton, branch: np.ndarray) -> dict[str, float]:
     length, chord = lengths.sum(), np.linalg.norm(points[-1] - points[0])
     ways = steps[lengths > 0] / lengths[lengths > 0, None]
     if branch[0] == branch[-1] and skeleton.degree[branch[0]] == 2:
-        ways = np.vstack([ways, ways[:1]])  # a free cycle bends where it closes, too
-    turns = np.arctan2(np.linalg.norm(np.cross(ways[:-1], ways[1:]), axis=1),
-                       np.einsum("ij,ij->i", ways[:-1], ways[1:]))
+        ways = np.vstack([ways, ways[:2]])  # a free cycle bends and twists where it closes, too
+        bends = slice(None, -1)
+    else:
+        bends = slice(None)
+    normals = np.cross(ways[:-1], ways[1:])
+    turns = np.arctan2(np.linalg.norm(normals, axis=1)[bends],
+                       np.einsum("ij,ij->i", ways[:-1], ways[1:])[bends])
     return {"first": branch[0], "last": branch[-1], "length": length, "chord": chord,
             "tortuosity": length / chord - 1 if chord > 0 else np.inf,
             "curvature": turns.sum() / length if length > 0 else 0.0,
+            "torsion": _twists(ways, normals).sum() / length if length > 0 else 0.0,
             "significance": skeleton.significance[branch].min() if len(skeleton.significance) else np.nan,
             "radius_min": radius.min(), "radius_max": radius.max(),
             "radius_mean": np.average((radius[1:] + radius[:-1]) / 2, weights=lengths)
                            if length > 0 else radius.mean()}
+
+
+def _twists(ways: np.ndarray, normals: np.ndarray) -> np.ndarray:
+    """The angles between the planes of successive turns, about the steps that they share."""
+    sines = np.einsum("ij,ij->i", np.cross(normals[:-1], normals[1:]), ways[1:-1])
+    return np.arctan2(sines, np.einsum("ij,ij->i", normals[:-1], normals[1:]))
 
 
 def _angles(skeleton: Skeleton) -> tuple[np.ndarray, np.ndarray]:

@@ -125,20 +125,29 @@ class Skeleton:
         ends = self.nodes[self.edges]
         return np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
 
-    def branch_measures(self) -> dict[str, npt.NDArray[Any]]:
+    def branch_measures(self, *, sections: int = 9) -> dict[str, npt.NDArray[Any]]:
         """What is tabulated of centrelines: for each of ``branches`` a value in each column.
 
         Columns: first and last (nodes); length and chord, mesh units; tortuosity, length / chord - 1,
         infinite where a branch ends where it begins; curvature, the angle by which the branch turns
-        over its length, radians a mesh unit (of an unrefined curve much of it is roughness);
+        over its length, radians a mesh unit (of an unrefined curve much of it is roughness); torsion, the
+        angle by which the plane of its turns twists over its length, positive as in a right-handed screw
+        (of a nearly straight or a rough branch it means nothing);
         radius_min, radius_mean (over the length), radius_max; significance, NaN where it is not known;
         angle_first and angle_last, degrees, the
         smallest angle to another branch at that junction, each taken towards the point where it leaves
         the junction's ball, NaN at other ends; strahler, the order after Strahler (1957) with the
-        thickest end of a branch as the root, 0 in a component with cycles. For a table:
+        thickest end of a branch as the root, 0 in a component with cycles; section_area,
+        section_perimeter, section_diameter_min and section_diameter_max, means over the sections of
+        ``surface`` by planes normal to the branch: the outline around the curve, and the smallest and the
+        largest distance of parallel lines that touch it. Between the balls at the branch's ends, or in its
+        middle if they leave nothing; NaN where the surface is not known or no outline is closed. For a table:
         ``pandas.DataFrame(skeleton.branch_measures())``.
+
+        Args:
+            sections: Of each branch, evenly spread; 0 measures none.
         """
-        return _measures.branch_measures(self)
+        return _measures.branch_measures(self, sections)
 
     def to_networkx(self, *, arrays: bool = False) -> networkx.Graph:
         """The skeleton as a graph, sides of sheets included; the results are the graph's attributes.

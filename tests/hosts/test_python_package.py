@@ -257,7 +257,8 @@ def test_branch_measures_of_known_curves(run):
         half = chain(3 * np.column_stack([np.cos(t), np.sin(t), 0 * t])).branch_measures()
         ring = chain(3 * np.column_stack([np.cos(2 * t), np.sin(2 * t), 0 * t])[:-1], True)
         u = np.linspace(0, 6 * np.pi, 3000)
-        helix = chain(np.column_stack([2 * np.cos(u), 2 * np.sin(u), 0.5 * u])).branch_measures()
+        helices = [chain(np.column_stack([2 * np.cos(u), 2 * np.sin(u), pitch * u])).branch_measures()
+                   for pitch in (0.5, -0.5)]
         # Bent at once behind the junction, within its ball: the angle is that outside.
         y = skeleton([[0, 0, 0], [.05, .05, 0], [1, 0, 0], [0, 1, 0], [-1, 0, 0]],
                      [(0, 1), (1, 2), (0, 3), (0, 4)], [.5, .1, .2, .3, .4]).branch_measures()
@@ -268,7 +269,7 @@ def test_branch_measures_of_known_curves(run):
                                                      for k in ("first", "last", "strahler")))}
         answer = {"half": {k: float(v[0]) for k, v in half.items()},
                   "ring": {k: float(v[0]) for k, v in ring.branch_measures().items()},
-                  "helix": float(helix["curvature"][0]),
+                  "helices": [[float(h[k][0]) for k in ("curvature", "torsion")] for h in helices],
                   "y": {k: v.tolist() for k, v in y.items()}, "orders": orders}
     """)
     half, ring, y = answer["half"], answer["ring"], answer["y"]
@@ -277,11 +278,68 @@ def test_branch_measures_of_known_curves(run):
     assert half["tortuosity"] == pytest.approx(math.pi / 2 - 1, rel=1e-3)
     assert half["curvature"] == pytest.approx(1 / 3, rel=0.005)
     assert ring["curvature"] == pytest.approx(1 / 3, rel=1e-4) and ring["tortuosity"] == math.inf
-    assert answer["helix"] == pytest.approx(2 / (2 ** 2 + 0.5 ** 2), rel=0.002)
+    # A helix of radius a and pitch 2 pi b has curvature a and torsion b over a^2 + b^2, right-handed for b > 0.
+    for hand, (curvature, torsion) in zip((1, -1), answer["helices"]):
+        assert curvature == pytest.approx(2 / (2 ** 2 + 0.5 ** 2), rel=0.002)
+        assert torsion == pytest.approx(hand * 0.5 / (2 ** 2 + 0.5 ** 2), rel=0.002)
+    assert half["torsion"] == pytest.approx(0, abs=1e-9) == ring["torsion"]
+    assert math.isnan(half["section_area"]), "there is no surface"
     assert y["angle_first"] == pytest.approx([90, 90, 90]) and all(map(math.isnan, y["angle_last"]))
     assert y["radius_min"][1:] == [0.3, 0.4] and y["radius_max"] == [0.5] * 3
     assert y["radius_mean"][1] == pytest.approx(0.4)
     assert answer["orders"] == {"0-1": 2, "1-2": 2, "2-3": 1, "1-4": 1, "2-5": 2, "5-6": 1, "5-7": 1}
+
+
+def test_sections_of_known_surfaces(run):
+    """Elliptic tubes of 2 by 1, straight and bent beside a second tube that the planes cut as well; then a
+    skeleton of round limbs whose radius is known."""
+    answer = run("""
+        import mcfskel
+        def tube(centre, u, v, n=240):
+            m, t = len(centre), np.arange(n) * 2 * np.pi / n
+            points = (centre[:, None] + 2 * np.cos(t)[:, None] * u[:, None] + np.sin(t)[:, None] * v[:, None])
+            j, i = (k.ravel() for k in np.meshgrid(np.arange(m - 1), np.arange(n), indexing="ij"))
+            p, q, r, s = j * n + i, j * n + (i + 1) % n, (j + 1) * n + i, (j + 1) * n + (i + 1) % n
+            i = np.arange(n)
+            faces = np.concatenate([np.stack(f, 1) for f in (
+                (p, q, s), (p, s, r), (np.full(n, m * n), (i + 1) % n, i),
+                (np.full(n, m * n + 1), (m - 1) * n + i, (m - 1) * n + (i + 1) % n))])
+            return np.vstack([points.reshape(-1, 3), centre[[0, -1]]]), faces
+        def measured(centre, *tubes):
+            points, faces, first = [], [], 0
+            for p, f in tubes:
+                points.append(p); faces.append(f + first); first += len(p)
+            n = len(centre)
+            edges = np.stack([np.arange(n - 1), np.arange(1, n)], 1)
+            surface = mcfskel.Surface(np.vstack(points), np.vstack(faces))
+            s = mcfskel.Skeleton(centre, edges, np.ones(n), np.empty(0, int), surface=surface)
+            return {k: float(v[0]) for k, v in s.branch_measures().items() if k.startswith("section")}
+        z, x, y = np.eye(3)[[2, 0, 1]]
+        centre = np.linspace(-9, 9, 90)[:, None] * z
+        one = np.ones((90, 3))
+        straight = measured(centre, tube(centre, x * one, y * one))
+        turn = np.linspace(0, np.pi, 90)
+        way = np.stack([np.cos(turn), np.sin(turn), 0 * turn], 1)
+        arc, beside = 10 * way, 20 * way
+        # Cut by the same planes, and half as wide: not around the curve.
+        bent = measured(arc, tube(arc, z * one, way), tube(beside, z * one / 2, way / 2))
+        y_tube = mcfskel.skeletonize(MESHES + "/y_tube.off").branch_measures()
+        answer = {"straight": straight, "bent": bent,
+                  "y": {k: v.tolist() for k, v in y_tube.items()}}
+    """)
+    h = (1 / 3) ** 2
+    perimeter = math.pi * 3 * (1 + 3 * h / (10 + math.sqrt(4 - 3 * h)))  # Ramanujan 1914
+    for shape in ("straight", "bent"):
+        section = answer[shape]
+        assert section["section_area"] == pytest.approx(2 * math.pi, rel=0.003)
+        assert section["section_perimeter"] == pytest.approx(perimeter, rel=0.003)
+        assert section["section_diameter_min"] == pytest.approx(2, rel=0.003)
+        assert section["section_diameter_max"] == pytest.approx(4, rel=0.003)
+    y = answer["y"]
+    for k in range(3):  # tubes of radius 0.25
+        assert y["section_area"][k] == pytest.approx(math.pi * 0.25 ** 2, rel=0.02)
+        assert y["section_diameter_min"][k] == pytest.approx(0.5, rel=0.02)
+        assert y["section_diameter_max"][k] == pytest.approx(0.5, rel=0.02)
 
 
 def test_nothing_optional_is_imported_before_it_is_used(run):
