@@ -1,12 +1,14 @@
 # SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The order of the library's folders, and what programs may include of it."""
+"""The order of the library's folders, what programs may include of it, and the workflows."""
 
 import re
+import subprocess
 from pathlib import Path
 
 import pytest
+import yaml
 
 from conftest import ROOT
 
@@ -57,3 +59,22 @@ def test_no_two_files_share_a_name_between_plugin_and_library() -> None:
     of_library = {p.stem for p in sources(LIBRARY)}
     of_plugin = {p.stem for p in sources(ROOT / "filter_mcfskel")}
     assert not of_library & of_plugin
+
+
+@pytest.mark.parametrize("workflow", sorted((ROOT / ".github" / "workflows").glob("*.yml")), ids=lambda p: p.name)
+def test_workflows_can_be_read_and_call_scripts_that_are_there(workflow: Path) -> None:
+    jobs = yaml.safe_load(workflow.read_text())["jobs"]
+    names = set(jobs)
+    commands = []
+    for job in jobs.values():
+        needs = job.get("needs", [])
+        assert set([needs] if isinstance(needs, str) else needs) <= names
+        for step in job["steps"]:
+            assert ("run" in step) != ("uses" in step), step
+            commands.append(str(step.get("run", "")))
+    for command in commands:
+        checked = subprocess.run(["bash", "-n", "-c", re.sub(r"\$\{\{.*?\}\}", "x", command)], capture_output=True)
+        assert checked.returncode == 0, command
+        for script in re.findall(r"(?:scripts|\.ci)/[\w./-]+", command):
+            assert (ROOT / script).is_file(), script
+    assert any("scripts/wheel.sh" in command for command in commands)
