@@ -315,6 +315,29 @@ TEST(Refine, EndsInTheCentreOfARoundEnd)
 		EXPECT_NEAR(std::abs(tip[0]), 1.5, 0.05);
 }
 
+TEST(Refine, EndsInTheCentreOfTheRoundEndsOfAHair)
+{
+	// So long that its nodes must be farther apart than half a radius: its tips are not to be shorter for that.
+	const double radius = 1.5e-4, ring = 4 * radius;
+	std::vector<std::pair<double, double>> profile = {{-0.5 - radius, 0}};
+	for (const double turned : {0.4, 0.8, 1.2})
+		profile.emplace_back(-0.5 - radius * std::cos(turned), radius * std::sin(turned));
+	for (int i = 0; i <= int(1 / ring); ++i)
+		profile.emplace_back(-0.5 + ring * i, radius);
+	const double end = profile.back().first;
+	for (const double turned : {1.2, 0.8, 0.4})
+		profile.emplace_back(end + radius * std::cos(turned), radius * std::sin(turned));
+	profile.emplace_back(end + radius, 0);
+	const SurfaceMesh mesh = shapes::revolved(profile, 10).mesh();
+	const CurveSkeleton s = refine(
+		CurveMaker().line({-0.5 + 2 * radius, 0, 0}, {end - 2 * radius, 0, 0}).in(mesh), mesh);
+	ASSERT_LT(s.position.size() * radius / 2, 0.9) << "as many nodes as the thickness asks for";
+	const std::vector<Point3d> ends = tips(s);
+	ASSERT_EQ(ends.size(), 2u);
+	for (const Point3d& tip : ends)
+		EXPECT_LE(std::min(std::abs(tip[0] + 0.5), std::abs(tip[0] - end)), radius / 2);
+}
+
 TEST(Refine, TakesAnEndBackThatWentPastTheCentreOfARoundEnd)
 {
 	const SurfaceMesh mesh = shapes::capsule(3, 0.35, 48).mesh();

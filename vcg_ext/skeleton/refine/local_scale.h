@@ -18,7 +18,9 @@ namespace vcg::tri::mcf::refining {
 
 /**
  * The factor of every length of the refinement at a place, in (0, 1]: a thin part is refined as it would be
- * if it were enlarged until its sizing field is neutralLength.
+ * if it were enlarged until its sizing field is neutralLength. Where nodes have to be fewer than that, it
+ * does not fall below a least factor; what depends on how thick the shape is, whatever the distance of its
+ * nodes, follows the thickness all the same.
  */
 class LocalScale
 {
@@ -34,14 +36,17 @@ public:
 
 	bool isUniform() const { return ofVertex.empty(); }
 
-	/// At a triangle of the surface: the mean of its corners.
-	double atFace(int face) const
+	/// As the thickness says, however small, at a triangle of the surface: the mean of its corners.
+	double ofThicknessAtFace(int face) const
 	{
 		if (isUniform())
 			return 1;
 		const Triangle t = surface->triangle(face);
 		return (ofVertex[t[0]] + ofVertex[t[1]] + ofVertex[t[2]]) / 3;
 	}
+
+	/// At a triangle of the surface.
+	double atFace(int face) const { return std::max(ofThicknessAtFace(face), leastScale); }
 
 	/// Where the surface is closest to a point.
 	double at(const Point3d& point, const ClosestSurface& closest) const
@@ -55,20 +60,17 @@ public:
 		double least = 1;
 		if (!isUniform())
 			for (int v : vertices)
-				least = std::min(least, ofVertex[v]);
+				least = std::min(least, std::max(ofVertex[v], leastScale));
 		return least;
 	}
 
-	/// Makes it no smaller than `least` at some vertices. @param vertices as above.
-	void raise(const std::vector<int>& vertices, double least)
-	{
-		for (int v : vertices)
-			ofVertex[v] = std::max(ofVertex[v], least);
-	}
+	/// The factor below which it does not fall from now on; 0: it follows the thickness wherever.
+	void setLeast(double least) { leastScale = least; }
 
 private:
 	const SurfaceMesh* surface = nullptr;
 	std::vector<double> ofVertex;
+	double leastScale = 0;
 };
 
 /// The scale of shapes of one scale.

@@ -584,9 +584,9 @@ inline Refinement refineChecked(const CurveSkeleton& curve, const SurfaceMesh& s
 			progress.part(0.03 + 0.97 * c / components, 0.03 + 0.97 * (c + 1) / components);
 		ClosestSurface closest(unit, vertices.ids[c], sampleSpacing, ofComponent.part(0, 0.1));
 		const refining::SurfaceComponent own = {unit, vertices.ids[c], vertices.place};
+		scale.setLeast(0);
 		if (isThin(c))
-			scale.raise(
-				vertices.ids[c], refining::leastScale(part, closest, scale, parameters.spacing));
+			scale.setLeast(refining::leastScale(part, closest, scale, parameters.spacing));
 		const refining::Defect defect = refining::refineChecked(part, closest, own,
 			isThin(c) ? scale : refining::sameEverywhere, parameters, ofComponent.part(0.1, 0.95));
 		refining::addTo(report, defect);

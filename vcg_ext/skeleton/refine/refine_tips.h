@@ -29,7 +29,7 @@ struct TipRule
 	double leastGain;
 	/// ... and end in a ball no smaller than this, in diagonals.
 	double leastRadius;
-	/// Of both lengths.
+	/// Of both lengths; of the radius as the thickness says.
 	const LocalScale& scale = sameEverywhere;
 };
 
@@ -91,8 +91,9 @@ inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, c
 			const double reached = std::max(surface.clearance(y), 0.0);
 			const Point3d front = y + (y - x) * (reached / s);
 			scale = rule.scale.atFace(hit.face);
-			if (reached < rule.leastRadius * scale || s + reached - r < rule.leastGain * s
-				|| holdingNode(skeleton, front) >= 0 || !isSegmentInside(surface, x, r, y, reached))
+			if (reached < rule.leastRadius * rule.scale.ofThicknessAtFace(hit.face)
+				|| s + reached - r < rule.leastGain * s || holdingNode(skeleton, front) >= 0
+				|| !isSegmentInside(surface, x, r, y, reached))
 				break;
 			left -= s;
 			const int next = int(skeleton.position.size());
