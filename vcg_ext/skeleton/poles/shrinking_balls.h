@@ -98,11 +98,15 @@ inline double ballTolerance(const UnitFrame& frame, double delta)
  * @param count      of the results.
  * @param isPole     (place, centre, radius and how deep a sample may lie inside, in mesh units): whether
  *                   the ball counts. One that does not is searched again without tolerance.
+ * @param isThinner  (place, normal, tolerance in mesh units): whether it is certain that no ball with this
+ *                   tolerance counts. It is asked next to those that did not count only: their searches
+ *                   take long, since walls that are thinner than the tolerance do not hold a ball.
  * @return poles in mesh units, each at the place of its touch.
  */
-template <class IsPole>
+template <class IsPole, class IsThinner>
 PoleSet maximalBalls(const std::vector<Touch>& touches, size_t count, const UnitFrame& frame,
-	const PointTree& tree, const Progress& progress, const IsPole& isPole)
+	const PointTree& tree, const Progress& progress, const IsPole& isPole,
+	const IsThinner& isThinner)
 {
 	constexpr int neighbours = 8;
 	PoleSet poles;
@@ -115,6 +119,7 @@ PoleSet maximalBalls(const std::vector<Touch>& touches, size_t count, const Unit
 		std::array<int, 4> recent = {-1, -1, -1, -1};
 		int oldest = 0;
 		KnownBalls known;
+		bool isDoubtful = false; // the last ball with a tolerance did not count
 		for (int i = begin; i < end; ++i) {
 			const Touch& touch = touches[i];
 			if (!(touch.normal.SquaredNorm() > 0))
@@ -147,7 +152,10 @@ PoleSet maximalBalls(const std::vector<Touch>& touches, size_t count, const Unit
 				return true;
 			};
 			const double least = leastTolerance(frame);
-			if (!findPole(touch.delta) && touch.delta > least)
+			isDoubtful = isDoubtful && touch.delta > least
+				&& isThinner(touch.place, touch.normal, frame.lengthOut(touch.delta));
+			isDoubtful = isDoubtful || !findPole(touch.delta);
+			if (isDoubtful && touch.delta > least)
 				findPole(least);
 		}
 	});
@@ -233,8 +241,10 @@ inline PoleSet shrinkingBalls(const std::vector<Point3d>& points,
 	const double tolerance = detail::ballTolerance(frame, delta);
 	for (int i : order.order())
 		touches.push_back({frame.in(points[i]), normals[i], tolerance, i, -1});
-	return detail::maximalBalls(touches, points.size(), frame, PointTree(frame.in(against)),
-		progress, [](int, const Point3d&, double, double) { return true; });
+	return detail::maximalBalls(
+		touches, points.size(), frame, PointTree(frame.in(against)), progress,
+		[](int, const Point3d&, double, double) { return true; },
+		[](int, const Point3d&, double) { return false; });
 }
 
 /**
@@ -272,10 +282,14 @@ inline PoleSet shrinkingBallPoles(const SurfaceMesh& mesh, const std::vector<int
 			touches.push_back({tree.point(slot), normals.normal[v], tolerance, place[v], slot});
 		});
 	const InnerSegments segments(mesh, tree, progress.part(0.25, 0.4));
-	return detail::maximalBalls(touches, vertices.size(), frame, tree, progress.part(0.4, 1),
+	return detail::maximalBalls(
+		touches, vertices.size(), frame, tree, progress.part(0.4, 1),
 		[&](int i, const Point3d& centre, double, double depth) {
 			const int v = vertices[i];
 			return segments.staysInside(v, centre, depth, normals.leadsInside[v]);
+		},
+		[&](int i, const Point3d& normal, double depth) {
+			return segments.isThinner(vertices[i], normal * -depth);
 		});
 }
 

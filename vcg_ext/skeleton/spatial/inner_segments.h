@@ -99,6 +99,13 @@ public:
 		return !crosses(v, direction * (farthest / r));
 	}
 
+	/**
+	 * Whether the surface is crossed on the way from vertex v that is `depth` long: then staysInside() holds with
+	 * that depth for no segment on from there, since the piece of one that may cross is at least as long.
+	 * Complexity: O(log F).
+	 */
+	bool isThinner(int v, const Point3d& depth) const { return crosses(v, depth); }
+
 private:
 	const SurfaceMesh& mesh;
 	std::vector<Triangle> faces;                ///< neighbours in this order are near each other
