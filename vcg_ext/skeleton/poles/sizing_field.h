@@ -9,6 +9,7 @@
 
 #include "pole_set.h"
 
+#include <skeleton/core/parallel.h>
 #include <skeleton/core/progress.h>
 #include <skeleton/core/ticker.h>
 #include <skeleton/mesh/measured_surface.h>
@@ -52,43 +53,84 @@ constexpr const char* sizing = "Measuring the local thickness";
 /// How fast the sizing field may grow with the distance along edges.
 constexpr double sizingSlope = 0.3;
 
+/// The neighbours of each vertex side by side: many rings are walked over the same edges.
+class NeighbourLists
+{
+public:
+	/// @pre the mesh is compact. @throws Cancelled. Complexity: O(V).
+	NeighbourLists(const SurfaceMesh& mesh, const Progress& progress)
+	{
+		target.reserve(size_t(mesh.halfEdgeSlots()));
+		start.reserve(size_t(mesh.vertexSlots()) + 1);
+		start.push_back(0);
+		reportedLoop(mesh.vertexSlots(), progress, sizing, [&](int v) {
+			mesh.forEachOutgoing(v, [&](int h) { target.push_back(mesh.target(h)); });
+			start.push_back(int(target.size()));
+		});
+	}
+
+	template <class Visitor>
+	void forEach(int v, Visitor&& visit) const
+	{
+		for (int i = start[v]; i < start[v + 1]; ++i)
+			visit(target[i]);
+	}
+
+private:
+	std::vector<int> start, target;
+};
+
 /// The vertices up to two edges away from v, v included, ascending.
-inline void twoRings(const SurfaceMesh& mesh, int v, std::vector<int>& around)
+inline void twoRings(const NeighbourLists& neighbours, int v, std::vector<int>& around)
 {
 	around.assign(1, v);
-	mesh.forEachOutgoing(v, [&](int h) {
-		around.push_back(mesh.target(h));
-		mesh.forEachOutgoing(mesh.target(h), [&](int g) { around.push_back(mesh.target(g)); });
+	neighbours.forEach(v, [&](int w) {
+		around.push_back(w);
+		neighbours.forEach(w, [&](int x) { around.push_back(x); });
 	});
 	std::sort(around.begin(), around.end());
 	around.erase(std::unique(around.begin(), around.end()), around.end());
+}
+
+/// Calls visit(vertex, scratch) for each vertex, several at once, each thread with a Scratch(vertices) of its own.
+/// @throws Cancelled
+template <class Scratch, class Visit>
+void forEachVertex(int vertices, const Progress& progress, const Visit& visit)
+{
+	constexpr int leastForTeam = 1 << 12;
+	if (vertices == 0)
+		return;
+	forEachPart(rangesForThreads(vertices, leastForTeam), progress, sizing,
+		[&](int begin, int end, const Progress& part) {
+			Scratch scratch(vertices);
+			reportedLoop(end - begin, part, sizing, [&](int i) { visit(begin + i, scratch); });
+		});
 }
 
 /**
  * The local thickness at each vertex where it may be small, else infinite: the median of the radii of the
  * balls up to two edges away, since single balls are too small next to slivers and bumps of the surface
  * and too large where a normal is tilted.
- * @param mayBeSmall  bool(vertex): whether the vertex's own ball is small.
+ * @param isNear  of each vertex, whether its thickness may be small.
  * @throws Cancelled. Complexity: O(V).
  */
-template <class MayBeSmall>
-std::vector<double> medianRadii(const SurfaceMesh& mesh, const PoleSet& poles,
-	MayBeSmall&& mayBeSmall, const Progress& progress)
+inline std::vector<double> medianRadii(const NeighbourLists& neighbours, const PoleSet& poles,
+	const std::vector<char>& isNear, const Progress& progress)
 {
-	std::vector<char> isNear(size_t(mesh.vertexSlots()), 0);
-	reportedLoop(mesh.halfEdgeSlots(), progress.part(0, 0.3), sizing, [&](int h) {
-		if (mesh.isHalfEdge(h) && mayBeSmall(mesh.origin(h)))
-			isNear[mesh.origin(h)] = isNear[mesh.target(h)] = 1;
-	});
-	std::vector<double> median(size_t(mesh.vertexSlots()), std::numeric_limits<double>::infinity());
-	std::vector<int> around;
-	std::vector<double> radii;
-	reportedLoop(mesh.vertexSlots(), progress.part(0.3, 1), sizing, [&](int v) {
+	struct Scratch
+	{
+		std::vector<int> around;
+		std::vector<double> radii;
+		explicit Scratch(int) {}
+	};
+	std::vector<double> median(isNear.size(), std::numeric_limits<double>::infinity());
+	forEachVertex<Scratch>(int(isNear.size()), progress, [&](int v, Scratch& scratch) {
 		if (!isNear[v])
 			return;
-		twoRings(mesh, v, around);
+		std::vector<double>& radii = scratch.radii;
+		twoRings(neighbours, v, scratch.around);
 		radii.clear();
-		for (int w : around)
+		for (int w : scratch.around)
 			if (poles.has(w))
 				radii.push_back(poles.radius[w]);
 		if (radii.empty())
@@ -100,43 +142,49 @@ std::vector<double> medianRadii(const SurfaceMesh& mesh, const PoleSet& poles,
 	return median;
 }
 
+/// What isThin() needs of its own.
+struct RingScratch
+{
+	std::vector<int> around;
+	std::vector<char> seen; ///< zero for each vertex between two calls
+	explicit RingScratch(int vertices) : seen(size_t(vertices), 0) {}
+};
+
 /**
  * Whether the shape is as thin at a vertex as its balls are small. The balls next to sharp edges and in
  * corners shrink as fast as the edge is near, those of a tube or a plate do not: among the vertices
  * around, up to three edges or two radii away, few may have balls larger by a tenth and a quarter of their
  * distance.
  * @param radius  see medianRadii().
- * @param around, seen  scratch; `seen` is zero for each vertex, and zero again afterwards.
  */
-inline bool isThin(const SurfaceMesh& mesh, const std::vector<double>& radius, int v,
-	std::vector<int>& around, std::vector<char>& seen)
+inline bool isThin(const SurfaceMesh& mesh, const NeighbourLists& neighbours,
+	const std::vector<double>& radius, int v, RingScratch& scratch)
 {
 	constexpr double reachOfRadius = 2, step = 0.1, slope = 0.25, mostLarger = 0.25;
 	constexpr int always = 3, farthest = 6; // edges
+	std::vector<int>& around = scratch.around;
+	std::vector<char>& seen = scratch.seen;
 	const Point3d& p = mesh.position[v];
-	const double reach = reachOfRadius * radius[v];
+	const double reach = reachOfRadius * radius[v], larger = radius[v] * (1 + step);
 	around.assign(1, v);
 	seen[v] = 1;
-	int larger = 0;
+	int countLarger = 0;
 	size_t first = 0;
 	for (int ring = 0; ring < farthest && first < around.size(); ++ring) {
 		const size_t last = around.size();
 		for (; first < last; ++first)
-			mesh.forEachOutgoing(around[first], [&](int h) {
-				const int w = mesh.target(h);
-				if (seen[w])
-					return;
-				const double distance = Distance(mesh.position[w], p);
-				if (distance > reach && ring >= always)
+			neighbours.forEach(around[first], [&](int w) {
+				if (seen[w] || (ring >= always && Distance(mesh.position[w], p) > reach))
 					return;
 				seen[w] = 1;
 				around.push_back(w);
-				larger += radius[w] > radius[v] * (1 + step) + slope * distance;
+				countLarger += radius[w] > larger
+					&& radius[w] > larger + slope * Distance(mesh.position[w], p);
 			});
 	}
 	for (int w : around)
 		seen[w] = 0;
-	return larger <= mostLarger * double(around.size() - 1);
+	return countLarger <= mostLarger * double(around.size() - 1);
 }
 
 /**
@@ -199,21 +247,33 @@ inline SizingField sizingField(const MeasuredSurface& surface, const PoleSet& po
 	std::vector<double> thin;             // of each component, the lengths that count as small
 	for (int c = 0; c < surface.components(); ++c)
 		thin.push_back(std::min(bound[c], neutralLength * surface.diagonal(c)));
-	const std::vector<double> radius = detail::medianRadii(
-		mesh, poles,
-		[&](int v) {
-			return poles.has(v) && relativeLength * poles.radius[v] < thin[component[v]];
-		},
-		progress.part(0, 0.4));
-	std::vector<Entry> seeds;
-	std::vector<int> around;
-	std::vector<char> seen(size_t(mesh.vertexSlots()), 0);
-	detail::reportedLoop(mesh.vertexSlots(), progress.part(0.4, 0.6), detail::sizing, [&](int v) {
-		const double length = relativeLength * radius[v];
-		if (poles.has(v) && length > 0 && length < thin[component[v]]
-			&& detail::isThin(mesh, radius, v, around, seen))
-			seeds.emplace_back(length, v);
+	std::vector<char> isNear(size_t(mesh.vertexSlots()), 0);
+	bool isAnyNear = false;
+	detail::reportedLoop(mesh.halfEdgeSlots(), progress.part(0, 0.1), detail::sizing, [&](int h) {
+		if (!mesh.isHalfEdge(h))
+			return;
+		const int v = mesh.origin(h);
+		if (poles.has(v) && relativeLength * poles.radius[v] < thin[component[v]]) {
+			isNear[v] = isNear[mesh.target(h)] = 1;
+			isAnyNear = true;
+		}
 	});
+	if (!isAnyNear)
+		return SizingField();
+	const detail::NeighbourLists neighbours(mesh, progress.part(0.1, 0.2));
+	const std::vector<double> radius =
+		detail::medianRadii(neighbours, poles, isNear, progress.part(0.2, 0.4));
+	std::vector<char> isSeed(size_t(mesh.vertexSlots()), 0);
+	detail::forEachVertex<detail::RingScratch>(
+		mesh.vertexSlots(), progress.part(0.4, 0.6), [&](int v, detail::RingScratch& scratch) {
+			const double length = relativeLength * radius[v];
+			isSeed[v] = poles.has(v) && length > 0 && length < thin[component[v]]
+				&& detail::isThin(mesh, neighbours, radius, v, scratch);
+		});
+	std::vector<Entry> seeds;
+	for (int v = 0; v < mesh.vertexSlots(); ++v)
+		if (isSeed[v])
+			seeds.emplace_back(relativeLength * radius[v], v);
 	SizingField field;
 	if (seeds.empty())
 		return field;
@@ -224,7 +284,12 @@ inline SizingField sizingField(const MeasuredSurface& surface, const PoleSet& po
 	const auto forget = [&](const auto& isNone) {
 		seeds.erase(std::remove_if(seeds.begin(), seeds.end(), isNone), seeds.end());
 	};
-	forget([&](const Entry& seed) { return !opposite.hasOne(seed.second); });
+	forEachBlock(
+		int(seeds.size()), progress.part(0.6, 0.7), detail::sizing, [&](int begin, int end) {
+			for (int i = begin; i < end; ++i)
+				isSeed[seeds[i].second] = opposite.hasOne(seeds[i].second);
+		});
+	forget([&](const Entry& seed) { return !isSeed[seed.second]; });
 	for (const auto& [length, v] : seeds)
 		least[component[v]] = std::min(least[component[v]], length);
 	forget([&](const Entry& seed) {
