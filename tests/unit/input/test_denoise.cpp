@@ -48,18 +48,18 @@ TEST(Noise, LevelIsTheDeviationThatWasAdded)
 {
 	const SurfaceMesh clean = meshOf(shapes::sphere(5));
 	for (double sigma : {0.003, 0.01})
-		EXPECT_NEAR(noiseLevel(noisy(clean, sigma))[0], sigma, 0.1 * sigma);
+		EXPECT_NEAR(noiseLevel(noisy(clean, sigma))[0].deviation, sigma, 0.1 * sigma);
 }
 
 TEST(Noise, LevelScalesWithTheMesh)
 {
 	const SurfaceMesh mesh = noisy(meshOf(shapes::sphere(4)), 0.01);
-	const double level = noiseLevel(mesh)[0];
+	const double level = noiseLevel(mesh)[0].deviation;
 	for (double scale : {1e-6, 1e6}) {
 		SurfaceMesh other = mesh;
 		for (vcg::Point3d& p : other.position)
 			p = p * scale + vcg::Point3d(1, 2, 3) * scale;
-		EXPECT_NEAR(noiseLevel(other)[0] / scale, level, 1e-6 * level);
+		EXPECT_NEAR(noiseLevel(other)[0].deviation / scale, level, 1e-6 * level);
 	}
 }
 
@@ -70,6 +70,38 @@ TEST(Noise, CleanSurfacesAreLeftAlone)
 		const NoiseReport report = measureNoise(meshOf(soup));
 		EXPECT_FALSE(report.isNoisy());
 	}
+}
+
+TEST(Noise, NeighboursTellNoiseFromFacets)
+{
+	// A thin ring of seven sides, its vertices spread unevenly over the exact surface.
+	const double minor = 0.05;
+	const int around = 150, across = 7;
+	std::mt19937 random(3);
+	const auto deviate = [&] {
+		return 0.7 * (double(random()) / double(std::mt19937::max()) - 0.5);
+	};
+	const SurfaceMesh coarse = meshOf(
+		shapes::transformed(shapes::torus(1, minor, around, across), [&](const vcg::Point3d& p) {
+			const double u = std::atan2(p[1], p[0]) + deviate() * 2 * M_PI / around;
+			const double v =
+				std::atan2(p[2], std::hypot(p[0], p[1]) - 1) + deviate() * 2 * M_PI / across;
+			const double r = 1 + minor * std::cos(v);
+			return vcg::Point3d(r * std::cos(u), r * std::sin(u), minor * std::sin(v));
+		}));
+	// Facets deviate by more than a twentieth of an edge, as noise would.
+	const double edge = 2 * M_PI / around, diagonal = coarse.bounds().Diag();
+	const NoiseLevel ofFacets = noiseLevel(coarse)[0];
+	EXPECT_GT(ofFacets.deviation, 0.05 * edge);
+	EXPECT_GT(ofFacets.deviation, 3e-4 * diagonal);
+	EXPECT_LT(ofFacets.whiteness, 0.4);
+	EXPECT_FALSE(measureNoise(coarse).isNoisy());
+	EXPECT_FALSE(measureNoise(noisy(coarse, 2e-4 * diagonal)).isNoisy());
+
+	// On a shape of many edges across, noise of half an edge is seen as such.
+	const SurfaceMesh rough = noisy(meshOf(shapes::sphere(5)), 0.5 * 0.035);
+	EXPECT_GT(noiseLevel(rough)[0].whiteness, 0.8);
+	EXPECT_TRUE(measureNoise(rough).isNoisy());
 }
 
 TEST(Noise, MoreNoiseIsSmoothedMore)
