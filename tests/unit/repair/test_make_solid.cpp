@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -144,6 +145,52 @@ TEST(MakeSolid, WrapsBodiesThatRunIntoEachOther)
 	const double edge = made.report.spacing * Distance(Point3d(0, 0, 0), Point3d(3.03, 1.21, 1.17));
 	EXPECT_NEAR(volumeIn(made.surface.mesh), 4 - 0.97 * 0.79 * 0.83, 26 * edge * edge / 2);
 	EXPECT_EQ(piecesOf(solid(soup, Repair::Off).surface.mesh), 2);
+}
+
+TEST(MakeSolid, MakesOneOfBodiesThatShareAWall)
+{
+	const shapes::Soup soup =
+		shapes::joined({shapes::box(2, 1, 1), shapes::moved(shapes::box(1, 1, 1), {2, 0, 0})});
+	const SolidSurface made = solid(soup);
+	EXPECT_EQ(made.report.outcome, SolidReport::Wrapped);
+	EXPECT_EQ(checks::structureError(made.surface.mesh), "");
+	EXPECT_EQ(piecesOf(made.surface.mesh), 1);
+	EXPECT_NEAR(volumeIn(made.surface.mesh), 3, 0.03);
+	EXPECT_EQ(piecesOf(solid(soup, Repair::Off).surface.mesh), 2);
+}
+
+TEST(MakeSolid, LeavesBodiesThatTouchAtAnEdge)
+{
+	const shapes::Soup soup =
+		shapes::joined({shapes::box(1, 1, 1), shapes::moved(shapes::box(1, 1, 1), {1, 1, 0})});
+	EXPECT_EQ(solid(soup).report.outcome, SolidReport::Sound);
+	EXPECT_EQ(piecesOf(solid(soup).surface.mesh), 2);
+}
+
+TEST(MakeSolid, MakesOneOfScansThatOverlap)
+{
+	// A torus in three parts of its round, each more than a third, a little apart.
+	const shapes::Soup torus = shapes::torus();
+	shapes::Soup soup;
+	for (int part = 0; part < 3; ++part) {
+		shapes::Soup scan = shapes::moved(torus, {0.002 * part, 0.003 * part, 0.004 * (1 - part)});
+		std::vector<Triangle> seen;
+		for (const Triangle& t : scan.triangles) {
+			const Point3d& p = torus.points[size_t(t[0])];
+			const double turn = std::atan2(p[1], p[0]) / (2 * M_PI) - part / 3.0;
+			if (turn - std::floor(turn) < 0.45)
+				seen.push_back(t);
+		}
+		scan.triangles = seen;
+		soup = shapes::joined({soup, scan});
+	}
+	const SolidSurface made = solid(soup);
+	EXPECT_EQ(made.report.outcome, SolidReport::Wrapped);
+	EXPECT_EQ(checks::structureError(made.surface.mesh), "");
+	EXPECT_EQ(piecesOf(made.surface.mesh), 1);
+	EXPECT_EQ(made.surface.mesh.vertexCount() - made.surface.mesh.faceCount() / 2, 0);
+	EXPECT_NEAR(volumeIn(made.surface.mesh), volumeIn(torus.mesh()), 0.03);
+	EXPECT_LT(made.report.distanceMax, 0.01);
 }
 
 TEST(MakeSolid, LeavesWhatIsTooThinToBeWrappedAndSaysSo)

@@ -168,12 +168,26 @@ shapes::Soup withBalls(int count, double radius)
 	return soup;
 }
 
+TEST(Mend, DropsWhatFloatsAboutAScan)
+{
+	const shapes::Soup body = shapes::opened(shapes::sphere());
+	shapes::Soup sheet = {
+		{{0, 0, 2}, {0.3, 0, 2}, {0.3, 0.3, 2.1}, {0, 0.3, 2}}, {{0, 1, 2}, {0, 2, 3}}};
+	const shapes::Soup clump = shapes::moved(shapes::scaled(shapes::box(), 0.04), {0, 0, 1.5});
+	const MendedSurface surface = mended(shapes::joined({body, sheet, clump}));
+	expectMended(surface, body);
+	EXPECT_EQ(surface.report.piecesDropped, 2);
+	// A twig that was torn off is no clump: it is long.
+	const shapes::Soup twig = shapes::moved(shapes::box(0.5, 0.02, 0.02), {0, 0, 1.5});
+	expectMended(mended(shapes::joined({body, twig})), body, 2, 4);
+}
+
 TEST(Mend, DropsClosedSpecksBesideABodyUnlessTheyAreTheSurface)
 {
 	const MendedSurface few = mended(withBalls(6, 0.009));
 	expectMended(few, {}, 1, 2);
 	EXPECT_EQ(few.report.piecesDropped, 6);
-	expectMended(mended(withBalls(6, 0.015)), {}, 7, 14);
+	expectMended(mended(withBalls(6, 0.06)), {}, 7, 14);
 	const MendedSurface many = mended(withBalls(800, 0.009));
 	expectMended(many, {}, 801, 2 * 801);
 	EXPECT_EQ(many.report.piecesDropped, 0);

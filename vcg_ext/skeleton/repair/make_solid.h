@@ -7,6 +7,7 @@
 #ifndef VCG_MCF_MAKE_SOLID_H
 #define VCG_MCF_MAKE_SOLID_H
 
+#include "layers.h"
 #include "mend.h"
 #include "overlap.h"
 #include "solid_pieces.h"
@@ -124,8 +125,14 @@ namespace detail {
 /// that only rounding makes.
 constexpr double noticeableOverlap = 0.002, smallestOverlap = 1e-5;
 
+/// Bodies that share more of the area than this as walls between them are wrapped into one.
+constexpr double noticeableWalls = 0.002;
+
+/// Layers of an open surface that are no farther apart than this part of the diagonal count as one.
+constexpr double layersApart = 0.01;
+
 /// The lattice of a wrap has a spacing between those of which this many squares have the surface's area.
-constexpr double usualSquares = 30000, mostSquares = 150000;
+constexpr double usualSquares = 15000, mostSquares = 150000;
 
 /// Triangles that cross others with which they share no vertex. Complexity: O(F log F) on even surfaces.
 inline int selfIntersections(const std::vector<Point3d>& points,
@@ -228,6 +235,43 @@ inline Enclosure enclosureOf(const std::vector<SurfacePlace>& places, const Wind
 		found.enclosing += (w > likeASheet) / double(places.size());
 	}
 	return found;
+}
+
+/// For each triangle whether its piece of surface has a border.
+inline std::vector<char> isOfOpenPiece(const std::vector<Point3d>& points,
+	const std::vector<Triangle>& triangles, const Progress& progress)
+{
+	const std::vector<int> partner = pairedHalfEdges(points, triangles, nullptr, progress);
+	const std::vector<int> piece = pieceOfFaces(partner);
+	std::vector<char> open(triangles.size(), 0);
+	for (size_t h = 0; h < partner.size(); ++h)
+		if (partner[h] < 0)
+			open[size_t(piece[h / 3])] = 1;
+	for (size_t f = 0; f < open.size(); ++f)
+		open[f] = open[size_t(piece[f])];
+	return open;
+}
+
+/// The part of a closed surface's area with the solid on both sides, enclosed once: where bodies share a wall.
+inline double sharedWalls(const std::vector<Point3d>& points,
+	const std::vector<Triangle>& triangles, const TriangleTree& tree, const Progress& progress)
+{
+	constexpr int samples = 2000;
+	constexpr double close = 1e-6; // of the diagonal
+	const WindingNumber winding(tree, progress.part(0, 0.5));
+	const double step = close * tree.allNodes()[0].box.Diag();
+	const std::vector<SurfacePlace> places = placesByArea(points, triangles, samples);
+	const auto isOne = [](double w) { return w > 0.75 && w < 1.25; };
+	std::vector<char> shared(places.size(), 0);
+	forEachBlock(
+		int(places.size()), progress.part(0.5, 1), "Looking for walls", [&](int begin, int end) {
+			for (int i = begin; i < end; ++i) {
+				const SurfacePlace& at = places[size_t(i)];
+				shared[size_t(i)] = isOne(winding(at.point + at.normal * step))
+					&& isOne(winding(at.point - at.normal * step));
+			}
+		});
+	return double(std::count(shared.begin(), shared.end(), 1)) / double(places.size());
 }
 
 /// The thickness below which a part of the surface's area is, measured against the normals; at most `most`.
@@ -343,7 +387,9 @@ public:
 			return std::move(solid);
 		if (repair == Repair::Mend || mended.triangles.empty())
 			throw InvalidInput(*error);
-		wrapIt(mended.points, std::move(mended.triangles), error, progress.part(0.6, 1));
+		if (mended.report.facesTurned > 0)
+			takeSidesAsGiven(mended, progress.part(0.6, 0.65));
+		wrapIt(mended.points, std::move(mended.triangles), error, progress.part(0.65, 1));
 		return std::move(solid);
 	}
 
@@ -379,9 +425,17 @@ private:
 		SolidReport& report = solid.report;
 		report.overlap =
 			windingVolumes(mesh.position, faces, 128, progress.part(0, 0.3)).wrongPart();
+		int pieces = 0;
+		connectedComponents(mesh, &pieces, progress.part(0.3, 0.3));
+		if (report.overlap < smallestOverlap && pieces == 1)
+			return false;
+		const TriangleTree tree(mesh.position, faces, progress.part(0.3, 0.4));
+		if (pieces > 1
+			&& sharedWalls(mesh.position, faces, tree, progress.part(0.4, 0.5)) > noticeableWalls
+			&& !isTooThin(mesh.position, faces, tree, progress.part(0.5, 0.5)))
+			return true;
 		if (report.overlap < smallestOverlap)
 			return false;
-		const TriangleTree tree(mesh.position, faces, progress.part(0.3, 0.5));
 		report.selfIntersections =
 			selfIntersections(mesh.position, faces, tree, progress.part(0.5, 0.9));
 		if (!report.selfIntersections) // bodies inside bodies
@@ -437,6 +491,54 @@ private:
 		return true;
 	}
 
+	/// The part of the area that encloses, with the closed pieces, and then all of it, turned outward.
+	static double enclosingPart(
+		const std::vector<Point3d>& given, std::vector<Triangle> faces, const Progress& progress)
+	{
+		constexpr int samples = 2000;
+		turnOutward(given, faces, progress.part(0, 0.2));
+		const TriangleTree tree(given, faces, progress.part(0.2, 0.4));
+		const double diagonal = tree.allNodes()[0].box.Diag();
+		const std::vector<double> weights =
+			layerWeights(tree, isOfOpenPiece(given, faces, progress.part(0.4, 0.5)),
+				layersApart * diagonal, progress.part(0.5, 0.6));
+		const auto enclosure = [&](const Progress& part) {
+			return enclosureOf(placesByArea(given, faces, samples),
+				WindingNumber(tree, part.part(0, 0.3), weights), diagonal, part.part(0.3, 1));
+		};
+		const Enclosure found = enclosure(progress.part(0.6, 0.8));
+		if (found.outward >= 0)
+			return found.enclosing;
+		for (Triangle& t : faces)
+			std::swap(t[1], t[2]);
+		return enclosure(progress.part(0.8, 1)).enclosing;
+	}
+
+	/// Where scans overlap, seams between layers turn what faced outward: the sides of the faces may be better as
+	/// they were given.
+	void takeSidesAsGiven(MendedSurface& mended, const Progress& progress)
+	{
+		constexpr double better = 0.02; // of the area
+		std::vector<Triangle> faces;
+		for (const Triangle& t : triangles)
+			if (std::all_of(t.begin(), t.end(), [&](int v) {
+					const Point3d& p = points[size_t(v)];
+					return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+				}))
+				faces.push_back(t);
+		removeDegenerateFaces(points.size(), faces, progress.part(0, 0.1));
+		std::vector<int> partner =
+			pairedHalfEdges(mended.points, faces, nullptr, progress.part(0.1, 0.2));
+		if (faces.empty() || mended.triangles.empty())
+			return;
+		dropSpecks(mended.points, faces, partner);
+		if (enclosingPart(mended.points, faces, progress.part(0.2, 0.6))
+			> enclosingPart(mended.points, mended.triangles, progress.part(0.6, 1)) + better) {
+			mended.triangles = std::move(faces);
+			solid.report.mended = MendReport();
+		}
+	}
+
 	/// @param error  of the check, for what has no volume at all.
 	void wrapIt(const std::vector<Point3d>& given, std::vector<Triangle> faces,
 		const std::optional<InvalidInput>& error, const Progress& progress)
@@ -457,9 +559,12 @@ private:
 			throw InvalidInput(*error);
 		TriangleTree tree(given, faces, progress.part(0.05, 0.1));
 		std::vector<SurfacePlace> places = placesByArea(given, faces, samples);
+		const std::vector<double> weights =
+			layerWeights(tree, isOfOpenPiece(given, faces, progress.part(0.1, 0.1)),
+				layersApart * box.Diag(), progress.part(0.1, 0.1));
 		Enclosure enclosure;
 		{
-			const WindingNumber winding(tree, progress.part(0.1, 0.12));
+			const WindingNumber winding(tree, progress.part(0.1, 0.12), weights);
 			enclosure = enclosureOf(places, winding, box.Diag(), progress.part(0.12, 0.15));
 		}
 		if (enclosure.outward < 0) {
@@ -468,7 +573,7 @@ private:
 			for (SurfacePlace& place : places)
 				place.normal = -place.normal;
 		}
-		const WindingNumber winding(tree, progress.part(0.15, 0.17));
+		const WindingNumber winding(tree, progress.part(0.15, 0.17), weights);
 		if (enclosure.outward < 0)
 			enclosure = enclosureOf(places, winding, box.Diag(), progress.part(0.17, 0.2));
 		if (enclosure.enclosing < 0.1)

@@ -101,32 +101,37 @@ inline int removeBackToBack(std::vector<Triangle>& triangles)
 	return dropped;
 }
 
-/// Drops open pieces that are small in area and closed ones that are small in size, unless the surface is made of
-/// them, and closed ones without volume.
+/// Drops what floats about a surface, unless the surface is made of it: open pieces that are small in area, more
+/// readily if they are sheets, and closed ones that are small in size; and closed ones without volume.
 inline int dropSpecks(
 	const std::vector<Point3d>& points, std::vector<Triangle>& triangles, std::vector<int>& partner)
 {
-	constexpr double speck = 0.002;   // of the whole area
-	constexpr double smallest = 0.01; // diagonal, of that of the largest piece
-	constexpr double mostAll = 0.05;  // of the whole area: beyond, they are the surface
-	constexpr double flat = 1e-10;    // volume over area^1.5
+	constexpr double speck = 0.002, sheet = 0.01; // of the whole area
+	constexpr double likeASheet = 0.25; // |sum of area vectors| / area: half a sphere has 0.5
+	constexpr double smallest = 0.01, small = 0.05; // diagonal, of that of the largest piece
+	constexpr double thin = 1e-4;    // volume, of that of the largest piece, of what is small
+	constexpr double mostAll = 0.05; // of the whole area: beyond, they are the surface
+	constexpr double flat = 1e-10;   // volume over area^1.5
 	const std::vector<int> piece = pieceOfFaces(partner);
 	struct Piece
 	{
 		double area = 0, volume = 0;
+		Point3d normal = Point3d(0, 0, 0);
 		bool open = false;
 		Box3d box;
 	};
 	std::map<int, Piece> pieces;
-	double whole = 0, largest = 0;
+	double whole = 0, largest = 0, fullest = 0;
 	const Point3d origin = points[size_t(triangles[0][0])];
 	for (size_t f = 0; f < triangles.size(); ++f) {
 		const Triangle& t = triangles[f];
 		const Point3d a = points[size_t(t[0])] - origin, b = points[size_t(t[1])] - origin,
 					  c = points[size_t(t[2])] - origin;
 		Piece& p = pieces[piece[f]];
-		const double area = ((b - a) ^ (c - a)).Norm() / 2;
+		const Point3d normal = ((b - a) ^ (c - a)) / 2.0;
+		const double area = normal.Norm();
 		p.area += area;
+		p.normal += normal;
 		whole += area;
 		p.volume += a * (b ^ c) / 6;
 		for (size_t k = 0; k < 3; ++k) {
@@ -135,8 +140,14 @@ inline int dropSpecks(
 		}
 		largest = std::max(largest, p.box.Diag());
 	}
+	for (const auto& [first, p] : pieces)
+		if (p.box.Diag() > small * largest)
+			fullest = std::max(fullest, std::abs(p.volume));
 	const auto isSpeck = [&](const Piece& p) {
-		return p.open ? p.area <= speck * whole : p.box.Diag() <= smallest * largest;
+		if (p.open)
+			return p.area <= (p.normal.Norm() > likeASheet * p.area ? sheet : speck) * whole;
+		return p.box.Diag() <= smallest * largest
+			|| (p.box.Diag() <= small * largest && std::abs(p.volume) <= thin * fullest);
 	};
 	double specks = 0;
 	for (const auto& [first, p] : pieces)

@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace vcg::tri::mcf {
@@ -57,9 +58,12 @@ inline double windingOfTriangle(
 class WindingNumber
 {
 public:
-	/// @param tree kept by reference. @throws Cancelled
-	explicit WindingNumber(const TriangleTree& tree, const Progress& progress = Progress()) :
-			tree(tree), moments(tree.allNodes().size())
+	/// @param tree kept by reference. @param weights how much each triangle counts; empty: 1.
+	/// @throws Cancelled
+	explicit WindingNumber(const TriangleTree& tree, const Progress& progress = Progress(),
+		std::vector<double> weights = {}) :
+			tree(tree),
+			weights(std::move(weights)), moments(tree.allNodes().size())
 	{
 		const char* const what = "Preparing winding numbers";
 		// Children follow their parents.
@@ -93,8 +97,9 @@ public:
 			if (node.isLeaf()) {
 				for (int i = node.begin; i < node.end; ++i) {
 					const int f = tree.order()[size_t(i)];
-					sum += detail::windingOfTriangle(
-						tree.corner(f, 0), tree.corner(f, 1), tree.corner(f, 2), q);
+					sum += weight(f)
+						* detail::windingOfTriangle(
+							tree.corner(f, 0), tree.corner(f, 1), tree.corner(f, 2), q);
 				}
 				continue;
 			}
@@ -103,6 +108,9 @@ public:
 		}
 		return sum;
 	}
+
+	/// By how much the field jumps across a triangle.
+	double weight(int f) const { return weights.empty() ? 1 : weights[size_t(f)]; }
 
 private:
 	/// Of the triangles of a node, mesh units.
@@ -120,6 +128,7 @@ private:
 	static constexpr double farness = 3; ///< in extents
 
 	const TriangleTree& tree;
+	std::vector<double> weights;
 	std::vector<Moments> moments;
 
 	void gather(size_t at)
@@ -179,7 +188,7 @@ private:
 	Placed placed(int f) const
 	{
 		const Point3d &a = tree.corner(f, 0), &b = tree.corner(f, 1), &c = tree.corner(f, 2);
-		return {(a + b + c) / 3.0, ((b - a) ^ (c - a)) / 2.0};
+		return {(a + b + c) / 3.0, ((b - a) ^ (c - a)) * (weight(f) / 2)};
 	}
 };
 

@@ -174,9 +174,11 @@ private:
 	double crossing(int node, int other) const
 	{
 		// Off the triangles w is smooth: along an edge it is a straight line with a jump at each triangle.
-		std::vector<std::pair<double, int>> jumps;
+		std::vector<std::pair<double, double>> jumps;
 		tree.forEachCrossing(lattice.position(node), lattice.position(other),
-			[&](int, double t, bool alongNormal) { jumps.emplace_back(t, alongNormal ? -1 : 1); });
+			[&](int f, double t, bool alongNormal) {
+				jumps.emplace_back(t, alongNormal ? -winding.weight(f) : winding.weight(f));
+			});
 		std::sort(jumps.begin(), jumps.end());
 		const double start = value[size_t(node)] - 0.5, end = value[size_t(other)] - 0.5;
 		double slope = end - start;
