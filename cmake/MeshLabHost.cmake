@@ -57,6 +57,10 @@ target_compile_definitions(meshlab_host INTERFACE
 	# A target may be for another release with the same interface.
 	MESHLAB_VERSION=$<IF:$<BOOL:$<TARGET_PROPERTY:HOST_RELEASE>>,$<TARGET_PROPERTY:HOST_RELEASE>,${MESHLAB_VERSION}>
 	MCFSKEL_HOST_API=${MESHLAB_API}
+	# Of these three, scripts/upstream.sh makes patches with other values.
+	MCFSKEL_IN_MESHLAB=0
+	MCFSKEL_FILES=1
+	MCFSKEL_SHEETS=1
 	MCFSKEL_RENAMED_PARAMETERS=${renamed_parameters}
 	MCFSKEL_PYTHON_HOST=$<STREQUAL:${MESHLAB_SCALAR},double>)
 target_link_libraries(meshlab_host INTERFACE

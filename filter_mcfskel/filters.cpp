@@ -3,7 +3,9 @@
 
 #include "filters.h"
 
+#if !MCFSKEL_IN_MESHLAB
 #include "cancel_flag.h"
+#endif
 #include "filters/all_filters.h"
 #include "layers/fields.h"
 #include "layers/layers.h"
@@ -26,7 +28,11 @@ namespace {
 vcg::tri::mcf::Progress hostProgress(const HostCallback& callback)
 {
 	using Clock = std::chrono::steady_clock;
+#if MCFSKEL_IN_MESHLAB
+	const volatile int* const cancel = nullptr;
+#else
 	const volatile int* const cancel = cancelFlag();
+#endif
 	if (!callback && !cancel)
 		return {};
 	struct Last
@@ -66,28 +72,40 @@ QString resultsText(const Results& results)
 	return parts.join(", ");
 }
 
-/// Which filter of MeshLab cures a mesh, as a sentence after the library's own; empty if none does.
-const char* cureInMeshLab(vcg::tri::mcf::Defect defect)
+/// Whether this build has a filter.
+bool isOffered(const char* pythonName)
+{
+	return std::any_of(catalogue().begin(), catalogue().end(),
+		[&](const FilterSpec& filter) { return filter.pythonName == pythonName; });
+}
+
+/// Which filter cures a mesh, as a sentence after the library's own; empty if none does.
+QString cureInMeshLab(vcg::tri::mcf::Defect defect)
 {
 	using vcg::tri::mcf::Defect;
+	const QString makeSolid =
+		isOffered("generate_solid_mcf") ? "Run 'Make Solid'" : "Set 'repair' to 'auto'";
 	switch (defect) {
 	case Defect::NoFaces:
 		return " Make a surface of the points first, e.g. with 'Surface Reconstruction: Screened "
 			   "Poisson'.";
 	case Defect::NotFinite:
-		return " Select them with 'Conditional Vertex Selection' and the function x!=x || y!=y || z!=z "
-			   "|| abs(x)>1e300 || abs(y)>1e300 || abs(z)>1e300, delete them, and run 'Close Holes'; or "
-			   "run 'Make Solid'.";
+		return QString(
+				   " Select them with 'Conditional Vertex Selection' and the function x!=x || y!=y || z!=z "
+				   "|| abs(x)>1e300 || abs(y)>1e300 || abs(z)>1e300, delete them, and run 'Close Holes'; or ")
+			+ makeSolid.left(1).toLower() + makeSolid.mid(1) + ".";
 	case Defect::NonManifoldEdges:
-		return " Run 'Make Solid'; or 'Repair non Manifold Edges' with the method 'Split Vertices', "
-			   "then, where there are border edges, 'Close Holes'.";
+		return " " + makeSolid
+			+ "; or 'Repair non Manifold Edges' with the method 'Split Vertices', "
+			  "then, where there are border edges, 'Close Holes'.";
 	case Defect::NonManifoldVertices:
-		return " Run 'Make Solid', or 'Repair non Manifold Vertices by splitting'.";
-	case Defect::OneSided: return " Run 'Make Solid', which wraps it.";
+		return " " + makeSolid + ", or 'Repair non Manifold Vertices by splitting'.";
+	case Defect::OneSided: return " " + makeSolid + ", which wraps it.";
 	case Defect::BorderEdges:
-		return " Run 'Make Solid'; or 'Close Holes' with a maximum size of at least that number; where a hole remains, "
-			   "again without 'Prevent creation of selfIntersecting faces'; a stray piece, which is no hole, "
-			   "goes with 'Remove Isolated pieces (wrt Diameter)'.";
+		return " " + makeSolid
+			+ "; or 'Close Holes' with a maximum size of at least that number; where a hole remains, "
+			  "again without 'Prevent creation of selfIntersecting faces'; a stray piece, which is no hole, "
+			  "goes with 'Remove Isolated pieces (wrt Diameter)'.";
 	case Defect::NoVolume:
 		return " 'Remove Isolated pieces (wrt Diameter)' does the latter, with a diameter above that of "
 			   "the flat part.";

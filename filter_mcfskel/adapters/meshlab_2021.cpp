@@ -3,7 +3,9 @@
 
 #include "meshlab_2021.h"
 
+#if MCFSKEL_FILES
 #include "../io/formats.h"
+#endif
 #include "translate.h"
 
 #if MCFSKEL_PYTHON_HOST
@@ -15,6 +17,7 @@
 
 using namespace mcfskel;
 
+#if !MCFSKEL_IN_MESHLAB
 namespace {
 
 /// pymeshlab.load_plugin() registers the formats of a plugin only if it has no filters.
@@ -29,10 +32,13 @@ void registerFormats([[maybe_unused]] IOPlugin* plugin)
 }
 
 } // namespace
+#endif
 
 FilterMcfskelPlugin::FilterMcfskelPlugin()
 {
+#if !MCFSKEL_IN_MESHLAB
 	registerFormats(this);
+#endif
 	for (int id = 0; id < int(catalogue().size()); ++id) {
 		typeList.push_back(id);
 		actionList.push_back(new QAction(filterName(id), this));
@@ -104,8 +110,10 @@ std::map<std::string, QVariant> FilterMcfskelPlugin::applyFilter(const QAction* 
 #else
 	const auto progress = callback;
 #endif
+#if !MCFSKEL_IN_MESHLAB
 	// The host's exporters may have been loaded after this plugin.
 	jsonExport_.claim();
+#endif
 	const FilterSpec& filter = host::filterOf(ID(action));
 	const ParameterValues values = host::readParameters(parameters, filter, document);
 	const Outcome outcome = runFilter(
@@ -116,6 +124,7 @@ std::map<std::string, QVariant> FilterMcfskelPlugin::applyFilter(const QAction* 
 	return outcome.results;
 }
 
+#if MCFSKEL_FILES
 namespace {
 
 std::list<FileFormat> fileFormats(bool (SkeletonFormat::*possible)() const)
@@ -139,6 +148,13 @@ std::list<FileFormat> FilterMcfskelPlugin::exportFormats() const
 	return fileFormats(&SkeletonFormat::isWritten);
 }
 
+#if MCFSKEL_IN_MESHLAB
+void FilterMcfskelPlugin::exportMaskCapability(
+	const QString&, int& capability, int& defaultBits) const
+{
+	capability = defaultBits = writtenElements;
+}
+#else
 void FilterMcfskelPlugin::exportMaskCapability(
 	const QString& format, int& capability, int& defaultBits) const
 {
@@ -154,6 +170,7 @@ RichParameterList FilterMcfskelPlugin::initSaveParameter(
 	const IOPlugin* other = jsonExport_.exporterOf(format, layer);
 	return other ? other->initSaveParameter(format, layer) : RichParameterList();
 }
+#endif
 
 void FilterMcfskelPlugin::fail(const QString& error)
 {
@@ -173,6 +190,11 @@ void FilterMcfskelPlugin::open(const QString&, const QString& file, MeshModel& l
 		fail(outcome.error);
 }
 
+#if MCFSKEL_IN_MESHLAB
+void FilterMcfskelPlugin::save(const QString&, const QString& file, MeshModel& layer, const int,
+	const RichParameterList&, vcg::CallBackPos*)
+{
+#else
 void FilterMcfskelPlugin::save(const QString& format, const QString& file, MeshModel& layer,
 	const int mask, const RichParameterList& parameters, vcg::CallBackPos* callback)
 {
@@ -180,11 +202,13 @@ void FilterMcfskelPlugin::save(const QString& format, const QString& file, MeshM
 		other->save(format, file, layer, mask, parameters, callback);
 		return;
 	}
+#endif
 	const FileOutcome outcome = saveSkeleton(file, layer);
 	for (const QString& warning : outcome.warnings)
 		log(GLLogStream::WARNING, warning.toStdString());
 	if (!outcome.error.isEmpty())
 		fail(outcome.error);
 }
+#endif
 
 MESHLAB_PLUGIN_NAME_EXPORTER(FilterMcfskelPlugin)

@@ -2,20 +2,35 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief The adapter for MeshLab and pymeshlab from 2021.05 on: the catalogue as a FilterPlugin, the
+#if MCFSKEL_FILES
+/// @brief The plugin for MeshLab and pymeshlab from 2021.05 on: the catalogue as a FilterPlugin, the
 /// file formats as an IOPlugin.
+#else
+/// @brief The plugin: the catalogue of filters as a FilterPlugin.
+#endif
 
 #ifndef MCFSKEL_MESHLAB_2021_H
 #define MCFSKEL_MESHLAB_2021_H
 
 #include "../filters.h"
+#if !MCFSKEL_IN_MESHLAB
 #include "json_export.h"
+#endif
 
-class FilterMcfskelPlugin : public QObject, public FilterPlugin, public IOPlugin
+class FilterMcfskelPlugin : public QObject,
+							public FilterPlugin
+#if MCFSKEL_FILES
+		,
+							public IOPlugin
+#endif
 {
 	Q_OBJECT
 	MESHLAB_PLUGIN_IID_EXPORTER(FILTER_PLUGIN_IID)
+#if MCFSKEL_FILES
 	Q_INTERFACES(FilterPlugin IOPlugin)
+#else
+	Q_INTERFACES(FilterPlugin)
+#endif
 
 public:
 	FilterMcfskelPlugin();
@@ -35,12 +50,15 @@ public:
 		const RichParameterList& parameters, MeshDocument& document,
 		unsigned int& postConditionMask, vcg::CallBackPos* callback) override;
 
+#if MCFSKEL_FILES
 	std::list<FileFormat> importFormats() const override;
 	std::list<FileFormat> exportFormats() const override;
 	void exportMaskCapability(
 		const QString& format, int& capability, int& defaultBits) const override;
+#if !MCFSKEL_IN_MESHLAB
 	RichParameterList initSaveParameter(
 		const QString& format, const MeshModel& layer) const override;
+#endif
 	using IOPlugin::open;
 	void open(const QString& format, const QString& file, MeshModel& layer, int& mask,
 		const RichParameterList& parameters, vcg::CallBackPos* callback) override;
@@ -51,7 +69,10 @@ private:
 	/// Ends a reading or writing that has failed.
 	[[noreturn]] void fail(const QString& error);
 
+#if !MCFSKEL_IN_MESHLAB
 	mcfskel::host::JsonExport jsonExport_ {this};
+#endif
+#endif
 };
 
 #endif

@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief From the catalogue to MeshLab's parameters and filter classes, and back: what the adapters
-/// of both ages share.
+/// @brief From the catalogue to MeshLab's parameters and filter classes, and back.
 
 #ifndef MCFSKEL_TRANSLATE_H
 #define MCFSKEL_TRANSLATE_H

@@ -4,7 +4,9 @@
 #include "all_filters.h"
 #include "convergence.h"
 #include "filter_support.h"
+#if MCFSKEL_SHEETS
 #include "sheet_choice.h"
+#endif
 
 #include <skeleton/pipeline.h>
 #include <skeleton/support.h>
@@ -29,6 +31,7 @@ Results run(FilterRun& run)
 	const double epsilon = readEpsilon(run.parameters);
 	logIfNotConverged(
 		run, *found.stage, "Run 'Contraction Step' on the stage until it has converged.");
+#if MCFSKEL_SHEETS
 	if (run.parameters.flag("keep_sheets")) {
 		const mcf::SheetCollapse collapse =
 			mcf::collapseWithSheets(*found.stage, epsilon, run.progress, noteLog(run));
@@ -40,6 +43,7 @@ Results run(FilterRun& run)
 		edit.commit();
 		return results;
 	}
+#endif
 	const mcf::CurveSkeleton skeleton = mcf::collapseInside(*found.stage, epsilon, run.progress);
 
 	DocumentEdit edit(run.document);
@@ -57,20 +61,30 @@ Results run(FilterRun& run)
 
 FilterSpec collapseToCurveFilter()
 {
-	return {"generate_curve_skeleton_from_meso_mcf", menuName("Collapse to Curve"),
-		helpPage(
-			"Turns a stage of the contraction into a curve skeleton, a new layer of nodes and edges: "
-			"collapses its shortest edges until no face is left, without changing its topology. A stage "
-			"that has not converged gives a curve that may be off the middle: the log says so, and the "
-			"result <i>converged</i> is 0. The "
-			"vertex quality is the local thickness of the shape, also kept as "
-			"<i>mcfskel_radius</i>.<br><br>"
-			"With <i>keep_sheets</i>, what has contracted to a sheet at this stage, or was kept as one by "
-			"the steps, stays a sheet of faces: early stages leave more of them, late ones curves.<br><br>"
-			"The surface layer, if it is still there, gets <i>mcfskel_node</i>: for each vertex the "
-			"skeleton vertex that it belongs to. Last stage of the skeletonization."),
-		FilterCategory::Remeshing, MeshModel::MM_FACENUMBER,
-		{epsilonParameter(), keepSheetsParameter()}, run};
+	return
+	{
+		"generate_curve_skeleton_from_meso_mcf", menuName("Collapse to Curve"),
+			helpPage(
+				"Turns a stage of the contraction into a curve skeleton, a new layer of nodes and edges: "
+				"collapses its shortest edges until no face is left, without changing its topology. A stage "
+				"that has not converged gives a curve that may be off the middle: the log says so, and the "
+				"result <i>converged</i> is 0. The "
+				"vertex quality is the local thickness of the shape, also kept as "
+				"<i>mcfskel_radius</i>.<br><br>"
+#if MCFSKEL_SHEETS
+				"With <i>keep_sheets</i>, what has contracted to a sheet at this stage, or was kept as one by "
+				"the steps, stays a sheet of faces: early stages leave more of them, late ones curves.<br><br>"
+#endif
+				"The surface layer, if it is still there, gets <i>mcfskel_node</i>: for each vertex the "
+				"skeleton vertex that it belongs to. Last stage of the skeletonization."),
+			FilterCategory::Remeshing, MeshModel::MM_FACENUMBER,
+#if MCFSKEL_SHEETS
+			{epsilonParameter(), keepSheetsParameter()},
+#else
+			{epsilonParameter()},
+#endif
+			run
+	};
 }
 
 } // namespace mcfskel

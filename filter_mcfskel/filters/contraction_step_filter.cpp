@@ -3,7 +3,9 @@
 
 #include "all_filters.h"
 #include "filter_support.h"
+#if MCFSKEL_SHEETS
 #include "sheet_choice.h"
+#endif
 
 #include <skeleton/pipeline.h>
 #include <skeleton/support.h>
@@ -42,10 +44,12 @@ Start startOf(FilterRun& run, const mcf::Parameters& parameters)
 			start.stage = std::make_shared<const mcf::Stage>(std::move(held));
 		}
 		start.link = found.surface;
+#if MCFSKEL_SHEETS
 		if (parameters.keepSheets && !found.stage->hasSheets())
 			run.log(
 				"This stage keeps no sheets: they are told from the surface, when the first step "
 				"is made with 'keep_sheets'.");
+#endif
 		return start;
 	}
 	// What was closed and is not any more has lost faces in an edit: it is no shape to be repaired.
@@ -70,7 +74,9 @@ Results run(FilterRun& run)
 	mcf::Parameters parameters;
 	readFlow(run.parameters, parameters);
 	readAdaptive(run.parameters, parameters);
+#if MCFSKEL_SHEETS
 	readSheets(run.parameters, parameters);
+#endif
 	const int steps = run.parameters.integer("steps");
 	if (steps < 1)
 		throw mcf::InvalidParameter("Parameter steps must be at least 1.");
@@ -133,8 +139,10 @@ FilterSpec contractionStepFilter()
 		"Iterations to make, at least 1; each leaves a layer of its own, NAME_meso_K."});
 	parameters.push_back(repairParameter());
 	parameters.push_back(fixSelectedParameter());
+#if MCFSKEL_SHEETS
 	parameters.push_back(keepSheetsParameter());
 	parameters.push_back(sheetThresholdParameter());
+#endif
 	return {"generate_meso_skeleton_mcf", menuName("Contraction Step"),
 		helpPage(
 			"Contracts the surface by one or more steps of mean curvature flow that is drawn to the "

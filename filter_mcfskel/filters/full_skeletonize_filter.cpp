@@ -4,7 +4,9 @@
 #include "all_filters.h"
 #include "convergence.h"
 #include "filter_support.h"
+#if MCFSKEL_SHEETS
 #include "sheet_choice.h"
+#endif
 
 #include <skeleton/skeletonize.h>
 #include <skeleton/support.h>
@@ -18,14 +20,18 @@ namespace mcf = vcg::tri::mcf;
 namespace {
 
 /// The numbers of a run, for Python and for the log.
-Results resultsOf(const mcf::Skeletonization& run, bool keepSheets)
+Results resultsOf(const mcf::Skeletonization& run, [[maybe_unused]] bool keepSheets)
 {
 	Results results = stageResults(*run.stage);
+#if MCFSKEL_SHEETS
 	if (run.sheets)
 		results.merge(sheetResults(*run.sheets));
 	else
 		results.merge(
 			keepSheets ? sheetResults(withoutSheets(run.curve)) : curveResults(run.curve));
+#else
+	results.merge(curveResults(run.curve));
+#endif
 	results["refined"] = run.refined;
 	results["bridges"] = run.bridges.count;
 	results["seconds_resample"] = run.seconds.resample;
@@ -42,7 +48,9 @@ Results run(FilterRun& run)
 	parameters.resample = run.parameters.flag("resample");
 	parameters.refine = run.parameters.flag("refine");
 	parameters.detail = run.parameters.real("detail");
+#if MCFSKEL_SHEETS
 	readSheets(run.parameters, parameters);
+#endif
 	readResampling(run.parameters, parameters);
 	readAdaptive(run.parameters, parameters);
 	readFlow(run.parameters, parameters);
@@ -107,9 +115,11 @@ Results run(FilterRun& run)
 	}
 	const SurfaceLink link = linkTo(*surface, contracted);
 	addStages(edit, input, *kept, link, run.progress.part(0.99, 1));
+#if MCFSKEL_SHEETS
 	if (result.sheets)
 		edit.addMesoSkeleton(input, name + "_skeleton", result.sheets->skeleton);
 	else
+#endif
 		edit.addCurve(input, name + "_skeleton", {result.curve, link, surface->label()});
 	if (!surfaceInput.poles)
 		edit.writePoles(*surface, contracted, result.poles);
@@ -171,11 +181,13 @@ FilterSpec fullSkeletonizeFilter()
 		"Refine the skeleton",
 		"Goes beyond the paper at the end: removes spurs, samples the branches evenly, centres and "
 		"smooths them, extends the tips to the ends of their features, and grows branches into limbs "
-		"that the curve lacks. Also a filter of its own."});
+		"that the curve lacks."});
 	parameters.push_back(detailParameter(defaults.detail));
 	parameters.push_back(fixSelectedParameter());
+#if MCFSKEL_SHEETS
 	parameters.push_back(keepSheetsParameter());
 	parameters.push_back(sheetThresholdParameter());
+#endif
 	return {"generate_curve_skeleton_mcf", menuName("Full Skeletonize"),
 		helpPage(
 			"Computes the curve skeleton (centerline, centreline, thinned medial axis): a graph in the "

@@ -1,10 +1,15 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+#if MCFSKEL_IN_MESHLAB
+/// @file
+/// @brief What the filters and layers take of MeshLab, under names of their own.
+#else
 /// @file
 /// @brief What differs between MeshLab's two plugin interfaces, under one name each, so that the
 /// filters and layers are written once. MCFSKEL_HOST_API is 2020 up to release 2020.12, 2021 since;
 /// MCFSKEL_RENAMED_PARAMETERS is 1 since release 2023.12.
+#endif
 
 #ifndef MCFSKEL_HOST_API_H
 #define MCFSKEL_HOST_API_H
@@ -20,7 +25,9 @@
 Q_DECLARE_METATYPE(Eigen::VectorXd)
 #else
 #include <common/plugins/interfaces/filter_plugin.h>
+#if MCFSKEL_FILES
 #include <common/plugins/interfaces/io_plugin.h>
+#endif
 
 #include <common/parameters/rich_parameter_list.h>
 #endif

@@ -9,6 +9,8 @@
 
 #include <QFile>
 
+#if defined(Q_OS_LINUX) && !defined(MCFSKEL_PORTABLE_FILES)
+
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/stat.h>
@@ -363,3 +365,5 @@ void writeFile(const QString& name, const std::function<void(std::ostream&)>& wr
 }
 
 } // namespace mcfskel
+
+#endif

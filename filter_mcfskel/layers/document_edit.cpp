@@ -93,6 +93,7 @@ MeshModel& DocumentEdit::addCurve(const QString& label, const CurveLayer& curve,
 	return layer;
 }
 
+#if MCFSKEL_SHEETS
 MeshModel& DocumentEdit::addMesoSkeleton(
 	const MeshModel& source, const QString& label, const mcf::MesoSkeleton& skeleton)
 {
@@ -119,6 +120,7 @@ MeshModel& DocumentEdit::addMesoSkeleton(
 	host::updateBoxAndNormals(layer);
 	return layer;
 }
+#endif
 
 MeshModel& DocumentEdit::addStage(const MeshModel& source, const QString& label,
 	std::shared_ptr<const mcf::Stage> stage, const StageFields& fields, const SurfaceLink& surface,

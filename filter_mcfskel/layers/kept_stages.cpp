@@ -3,7 +3,9 @@
 
 #include "kept_stages.h"
 
+#ifdef _OPENMP
 #include <omp.h>
+#endif
 
 #include <algorithm>
 #include <chrono>
@@ -14,9 +16,30 @@ namespace mcfskel {
 
 namespace mcf = vcg::tri::mcf;
 
+namespace {
+
+/// How many threads the loops of this thread use; one without OpenMP.
+int threadCount()
+{
+#ifdef _OPENMP
+	return omp_get_max_threads();
+#else
+	return 1;
+#endif
+}
+
+void setThreadCount([[maybe_unused]] int count)
+{
+#ifdef _OPENMP
+	omp_set_num_threads(count);
+#endif
+}
+
+} // namespace
+
 KeptStages::KeptStages()
 {
-	if (omp_get_max_threads() > 1)
+	if (threadCount() > 1)
 		try {
 			teller = std::thread([this] { tell(); });
 		}
@@ -58,7 +81,7 @@ KeptStages::Task KeptStages::begin(size_t i)
 
 void KeptStages::tell()
 {
-	omp_set_num_threads(1);
+	setThreadCount(1);
 	for (size_t i = 0;; ++i) {
 		{
 			std::unique_lock<std::mutex> lock(mutex);
@@ -80,14 +103,14 @@ StageFields KeptStages::takeFields(size_t i, const mcf::Progress& progress)
 	return kept[i].fields.get();
 }
 
-KeptStages::FlowShare::FlowShare() : threads(omp_get_max_threads())
+KeptStages::FlowShare::FlowShare() : threads(threadCount())
 {
-	omp_set_num_threads(std::max(threads - 1, 1));
+	setThreadCount(std::max(threads - 1, 1));
 }
 
 KeptStages::FlowShare::~FlowShare()
 {
-	omp_set_num_threads(threads);
+	setThreadCount(threads);
 }
 
 } // namespace mcfskel

@@ -194,10 +194,12 @@ public:
 	/// The same with all that the skeleton knows, its correspondence included.
 	MeshModel& addCurve(const MeshModel& source, const QString& label, const CurveLayer& curve);
 
+#if MCFSKEL_SHEETS
 	/// A new layer of curves and sheets, with mcfskel_kind and mcfskel_radius; the radius is also the
 	/// quality.
 	MeshModel& addMesoSkeleton(
 		const MeshModel& source, const QString& label, const vcg::tri::mcf::MesoSkeleton& skeleton);
+#endif
 
 	/// A new layer of a stage, with all that the next step needs. @throws Cancelled
 	MeshModel& addStage(const MeshModel& source, const QString& label,

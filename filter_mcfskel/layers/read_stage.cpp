@@ -61,11 +61,15 @@ StatePointer foundState(const MeshModel& layer, const StateSources& sources)
 			return state;
 		}
 	}
+#if MCFSKEL_FILES
 	StatePointer stored = storedState(layer);
 	if (stored)
 		sources.note(
 			"What is known of the layer " + quoted(layer) + " was read from its file again.");
 	return stored;
+#else
+	return nullptr;
+#endif
 }
 
 /// The values of an attribute; null if it is not there or of a foreign type.

@@ -3,17 +3,20 @@
 
 #include "stored_state.h"
 
+#if MCFSKEL_FILES
 #include "../io/files.h"
 
 #include <skeleton/skeleton_files.h>
 
 #include <QFile>
 #include <QFileInfo>
+#endif
 
 #include <numeric>
 
 namespace mcfskel {
 
+#if MCFSKEL_FILES
 namespace {
 
 /// Whether a file begins as those do that hold a stage or a skeleton.
@@ -55,6 +58,7 @@ LayerState readState(const mcf::PlyFile& ply)
 }
 
 } // namespace
+#endif
 
 bool hasTrianglesOf(const MeshModel& layer, const mcf::Stage& stage)
 {
@@ -107,6 +111,7 @@ Moved movedFrom(const MeshModel& layer, const std::vector<vcg::Point3d>& places)
 	return moved;
 }
 
+#if MCFSKEL_FILES
 StatePointer storedState(const MeshModel& layer)
 {
 	const QString name = layer.fullName();
@@ -123,5 +128,6 @@ StatePointer storedState(const MeshModel& layer)
 		return nullptr; // as any mesh: who wants the state in it uses Load Stage, which says what is wrong
 	}
 }
+#endif
 
 } // namespace mcfskel

@@ -27,11 +27,13 @@ struct Moved
 /// @pre the layer has as many vertices as there are places, none deleted.
 Moved movedFrom(const MeshModel& layer, const std::vector<vcg::Point3d>& places);
 
+#if MCFSKEL_FILES
 /**
  * The stage or skeleton in the PLY that a layer was loaded from, if the layer still has its triangles or edges;
  * null if there is none: MeshLab itself reads of such a file no more than a mesh. The surface is not looked for.
  */
 StatePointer storedState(const MeshModel& layer);
+#endif
 
 } // namespace mcfskel
 
