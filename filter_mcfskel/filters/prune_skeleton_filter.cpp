@@ -45,12 +45,18 @@ Results run(FilterRun& run)
 	for (size_t v = target.size(); v-- > 0;)
 		if (pruned.position[size_t(target[v])] == tracked.position[v])
 			pruned.radius[size_t(target[v])] = curve.skeleton.radius[v];
+	// Merged junctions move, and edges that lead to them may grow: what counts is the edges that are gone.
+	double lengthRemoved = 0;
+	for (const auto& [a, b] : tracked.edges)
+		if (target[size_t(a)] == target[size_t(b)])
+			lengthRemoved +=
+				vcg::Distance(tracked.position[size_t(a)], tracked.position[size_t(b)]);
 	const mcf::SkeletonStatistics before = mcf::statistics(tracked);
 	Results results = curveResults(pruned);
 	const mcf::SkeletonStatistics after = mcf::statistics(pruned);
 	results["terminals_removed"] = before.terminals - after.terminals;
 	results["junctions_removed"] = before.junctions - after.junctions;
-	results["length_removed"] = before.length - after.length;
+	results["length_removed"] = lengthRemoved;
 	addDerivedSkeleton(run, curve, std::move(pruned), "pruned", true, run.progress.part(0.9, 1));
 	return results;
 }

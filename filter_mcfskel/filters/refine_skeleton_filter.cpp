@@ -4,6 +4,7 @@
 #include "all_filters.h"
 #include "skeletons.h"
 
+#include <skeleton/curves.h>
 #include <skeleton/pipeline.h>
 
 #include <string>
@@ -18,12 +19,11 @@ namespace {
 Results run(FilterRun& run)
 {
 	const CurveLayer found = skeletonOn(run, run.layer());
-	if (!found.skeleton.bridge.empty())
-		throw mcf::InvalidInput(
-			"The current skeleton has bridges over gaps, which are outside the surface. Run Full Skeletonize "
-			"without 'join', and refine what that makes.");
 	const SkeletonSurface surface = requireSurface(run, found, run.progress.part(0, 0.1));
-	const CurveLayer curve = skeletonOf(run, found, surface, run.progress.part(0.1, 0.2));
+	CurveLayer curve = skeletonOf(run, found, surface, run.progress.part(0.1, 0.2));
+	// Bridges are outside of the surface: they are made again, between what the pieces have become.
+	const bool isJoined = !curve.skeleton.bridge.empty();
+	curve.skeleton = mcf::withoutBridges(curve.skeleton);
 	mcf::RefineParameters parameters;
 	parameters.spurProminence = run.parameters.real("spur_prominence");
 	parameters.smoothing = run.parameters.real("smoothing");
@@ -36,6 +36,8 @@ Results run(FilterRun& run)
 	if (const std::string text = refinement.report.text(); !text.empty())
 		run.log(QString::fromStdString(text));
 
+	if (isJoined)
+		mcf::joinPieces(refinement.skeleton, *surface.surface.mesh, run.progress.part(0.95, 0.95));
 	Results results = curveResults(refinement.skeleton);
 	results["refined"] = refinement.report.fraction();
 	addDerivedSkeleton(

@@ -3,12 +3,14 @@
 
 #include "formats.h"
 
+#include "../layers/fields.h"
 #include "files.h"
 
 #include <skeleton/skeleton_files.h>
 
 #include <QFileInfo>
 
+#include <algorithm>
 #include <exception>
 #include <new>
 #include <ostream>
@@ -172,7 +174,12 @@ FileOutcome openSkeleton(const QString& file, MeshModel& layer)
 		outcome.mask = vcg::tri::io::Mask::IOM_VERTCOORD | vcg::tri::io::Mask::IOM_EDGEINDEX;
 		if (!content.skeleton.radius.empty())
 			outcome.mask |= vcg::tri::io::Mask::IOM_VERTQUALITY;
+		const std::vector<double> radius = content.skeleton.radius;
 		fillCurve(layer, {std::move(content.skeleton), {}, {}});
+		if (!radius.empty()) {
+			setVertexColours(layer, radius, 0, *std::max_element(radius.begin(), radius.end()));
+			outcome.mask |= vcg::tri::io::Mask::IOM_VERTCOLOR;
+		}
 	});
 }
 

@@ -237,6 +237,7 @@ CurveLayer readCurve(const MeshModel& layer)
 	const CMeshO& mesh = layer.cm;
 	const auto* radius = findAttribute(mesh.vert_attr, radiusAttribute);
 	const auto* significance = findAttribute(mesh.vert_attr, significanceAttribute);
+	const auto* bridge = findAttribute(mesh.vert_attr, bridgeAttribute);
 	if (mesh.fn > 0)
 		throw mcf::InvalidInput("The layer " + label
 			+ " has faces, it is no curve skeleton: make a layer of nodes and edges current.");
@@ -257,6 +258,8 @@ CurveLayer readCurve(const MeshModel& layer)
 			curve.skeleton.radius.push_back(double(valuesOf<Scalarm>(*radius)[slot]));
 		if (significance && isOfType<Scalarm>(*significance))
 			curve.skeleton.significance.push_back(double(valuesOf<Scalarm>(*significance)[slot]));
+		if (bridge && isOfType<Scalarm>(*bridge))
+			curve.skeleton.bridge.push_back(valuesOf<Scalarm>(*bridge)[slot] > 0);
 	}
 	const auto isSignificance = [](double value) { return value >= 0 && value <= 1; };
 	auto& shown = curve.skeleton.significance;

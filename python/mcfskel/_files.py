@@ -28,7 +28,7 @@ PLY_TYPES = {"char": "i1", "uchar": "u1", "short": "<i2", "ushort": "<u2", "int"
              "uint": "<u4", "float": "<f4", "double": "<f8", "int8": "i1", "uint8": "u1",
              "int16": "<i2", "uint16": "<u2", "int32": "<i4", "uint32": "<u4", "float32": "<f4",
              "float64": "<f8"}
-Parts = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+Parts = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 
 
 def suffix_of(path: Path, known: tuple[str, ...]) -> str:
@@ -54,6 +54,8 @@ def save(skeleton: Skeleton, path: Path, options: dict[str, Any]) -> None:
     layer.add_vertex_custom_scalar_attribute(skeleton.radius, "mcfskel_radius")
     if len(skeleton.significance):
         layer.add_vertex_custom_scalar_attribute(skeleton.significance, "mcfskel_significance")
+    if len(skeleton.bridges):
+        layer.add_vertex_custom_scalar_attribute(middles(skeleton).astype(float), "mcfskel_bridge")
     layers.add_mesh(layer, "skeleton")
     if suffix == ".glb" and (skeleton.surface is None or not len(skeleton.correspondence)):
         raise SkeletonError(f"'{path}': .glb holds the surface, which a skeleton from a file does not "
@@ -80,6 +82,12 @@ def save(skeleton: Skeleton, path: Path, options: dict[str, Any]) -> None:
             cuts = [line[2:].strip() for line in lines if line.startswith("# cycle cut")]
         if cuts:
             _warn(f"SWC holds trees only; in '{path}': {'; '.join(cuts)}")
+
+
+def middles(skeleton: Skeleton) -> np.ndarray:
+    """Whether a node is the middle of a bridge, (N,): two edges, both of a bridge."""
+    of_bridge = np.bincount(skeleton.edges[skeleton.bridges].ravel(), minlength=len(skeleton.nodes))
+    return (of_bridge == 2) & (skeleton.degree == 2)
 
 
 def _warn(text: str) -> None:
@@ -115,14 +123,14 @@ def write_sheets(skeleton: Skeleton, path: Path) -> None:
 
 
 def load(path: Path) -> Parts:
-    """Nodes, edges, radius, correspondence, faces and significance from a file."""
+    """Nodes, edges, radius, correspondence, faces, significance and bridges from a file."""
     suffix = suffix_of(path, READ)
     if suffix in (".swc", ".cg"):
         layer = (layers := open_mesh(str(path))).current_mesh()
         radius = np.zeros(layer.vertex_number())
         if layer.has_vertex_scalar():
             radius = layer.vertex_custom_scalar_attribute_array("mcfskel_radius")
-        parts = (layer.vertex_matrix(), layer.edge_matrix(), radius, [], [], [])
+        parts = (layer.vertex_matrix(), layer.edge_matrix(), radius, [], [], [], [])
         del layers
         return checked(path, *parts)
     readers = {".json": read_json, ".graphml": read_graphml, ".vtp": read_vtp, ".ply": read_ply}
@@ -139,7 +147,7 @@ def load(path: Path) -> Parts:
 
 
 def checked(path: Path, nodes: Any, edges: Any, radius: Any, correspondence: Any, faces: Any,
-            significance: Any) -> Parts:
+            significance: Any, middle: Any) -> Parts:
     """The arrays of a skeleton, each as it has to be."""
     def fail(what: str) -> None:
         raise SkeletonError(f"'{path}' cannot be read: {what}.")
@@ -150,6 +158,7 @@ def checked(path: Path, nodes: Any, edges: Any, radius: Any, correspondence: Any
     faces = np.asarray(faces, np.int64).reshape(-1, 3)
     correspondence = np.asarray(correspondence, np.int64)
     significance = np.asarray(significance, float)
+    middle = np.asarray(middle, bool)
     if not len(nodes):
         fail("it has no nodes")
     if len(radius) != len(nodes):
@@ -160,14 +169,17 @@ def checked(path: Path, nodes: Any, edges: Any, radius: Any, correspondence: Any
         fail(f"the radius of node {int(np.argmin(np.isfinite(radius) & (radius >= 0)))} cannot be")
     if len(significance) not in (0, len(nodes)) or not ((significance >= 0) & (significance <= 1)).all():
         fail(f"the significance is not a number from 0 to 1 for each of the {len(nodes)} nodes")
+    if len(middle) not in (0, len(nodes)):
+        fail(f"of {len(nodes)} nodes, {len(middle)} say whether they are of a bridge")
     for name, ids, lowest in [("an edge", edges, 0), ("a face", faces, 0),
                               ("a surface vertex", correspondence, -1)]:
         if ids.size and (ids.min() < lowest or ids.max() >= len(nodes)):
             fail(f"{name} has a node that does not exist")
     if (edges[:, 0] == edges[:, 1]).any():
         fail("an edge goes from a node to itself")
-    return (nodes, np.unique(np.sort(edges, axis=1), axis=0), radius, correspondence, faces,
-            significance)
+    edges = np.unique(np.sort(edges, axis=1), axis=0)
+    bridges = middle[edges].any(axis=1) if middle.any() else np.empty(0, bool)
+    return nodes, edges, radius, correspondence, faces, significance, bridges
 
 
 def correspondence_of(sources: list[list[int]], count: int | None) -> np.ndarray:
@@ -193,7 +205,8 @@ def read_json(path: Path) -> tuple:
             [(row[link["source"]], row[link["target"]]) for link in links],
             [node.get("radius", 0) for node in graph["nodes"]],
             correspondence_of(sources, graph.get("graph", {}).get("surface_vertices")), [],
-            [node["significance"] for node in graph["nodes"] if "significance" in node])
+            [node["significance"] for node in graph["nodes"] if "significance" in node],
+            [node["bridge"] for node in graph["nodes"] if "bridge" in node])
 
 
 def read_graphml(path: Path) -> tuple:
@@ -218,7 +231,8 @@ def read_graphml(path: Path) -> tuple:
              for edge in graph.findall(f"{space}edge")],
             [float(node.get("radius", 0)) for node in of_node],
             correspondence_of(sources, None if count is None else int(count)), [],
-            [float(node["significance"]) for node in of_node if "significance" in node])
+            [float(node["significance"]) for node in of_node if "significance" in node],
+            [int(node["bridge"]) for node in of_node if "bridge" in node])
 
 
 def read_vtp(path: Path) -> tuple:
@@ -244,7 +258,8 @@ def read_vtp(path: Path) -> tuple:
     return (nodes, np.column_stack([chain[:-1], chain[1:]])[inner],
             radius if len(radius) else np.zeros(len(nodes)),
             numbers("FieldData", np.int64, "mcfskel_node"), [],
-            numbers("Piece/PointData", float, "mcfskel_significance"))
+            numbers("Piece/PointData", float, "mcfskel_significance"),
+            numbers("Piece/PointData", np.int64, "mcfskel_bridge"))
 
 
 def read_ply(path: Path) -> tuple:
@@ -279,12 +294,11 @@ def read_ply(path: Path) -> tuple:
     if at != len(content):
         raise ValueError("there is more after its last element")
     vertex, edge = tables["vertex"], tables["edge"]
-    radius = np.zeros(len(vertex))
-    if "mcfskel_radius" in (vertex.dtype.names or ()):
-        radius = vertex["mcfskel_radius"]
+    known = vertex.dtype.names or ()
+    radius = vertex["mcfskel_radius"] if "mcfskel_radius" in known else np.zeros(len(vertex))
     return (np.column_stack([vertex[axis] for axis in "xyz"]),
             np.column_stack([edge["vertex1"], edge["vertex2"]]), radius,
             tables["mcfskel_surface"]["node"] if "mcfskel_surface" in tables else [],
             tables["face"]["vertex_indices"] if "face" in tables else [],
-            vertex["mcfskel_significance"]
-            if "mcfskel_significance" in (vertex.dtype.names or ()) else [])
+            vertex["mcfskel_significance"] if "mcfskel_significance" in known else [],
+            vertex["mcfskel_bridge"] if "mcfskel_bridge" in known else [])

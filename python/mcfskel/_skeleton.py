@@ -270,14 +270,14 @@ def check_options(**options: Any) -> None:
 def load(path: str | os.PathLike[str]) -> Skeleton:
     """Reads a skeleton that ``Skeleton.save()`` or the filter Save Skeleton has written.
 
-    Radius, significance and correspondence are those that the format keeps; .cg has none (the radius is
+    Radius, significance, correspondence and bridges are those that the format keeps; .cg has none (the radius is
     then 0), .swc only the radius. SWC and curve graphs from elsewhere are read as well.
 
     Raises:
         SkeletonError: The file cannot be read; the text says where it is wrong.
     """
-    nodes, edges, radius, correspondence, faces, significance = _files.load(Path(path))
-    return Skeleton(nodes, edges, radius, correspondence, {}, faces, None, significance)
+    nodes, edges, radius, correspondence, faces, significance, bridges = _files.load(Path(path))
+    return Skeleton(nodes, edges, radius, correspondence, {}, faces, None, significance, bridges)
 
 
 def _document(vertices: Any, faces: Any) -> pymeshlab.MeshSet:

@@ -113,6 +113,9 @@ class TestSwc:
         assert sorted(scalars(mesh, "mcfskel_radius")) == sorted(scalars(skeleton, "mcfskel_radius"))
         assert mesh.edge_number() == skeleton.edge_number() - 3
         assert mesh.vertex_scalar_array() == pytest.approx(scalars(mesh, "mcfskel_radius"))
+        # Coloured by it, as a new skeleton is: red where it is thickest.
+        red, _, blue, _ = mesh.vertex_color_matrix()[mesh.vertex_scalar_array().argmax()]
+        assert mesh.has_vertex_color() and red > 0.9 and blue < 0.2
 
     def test_a_file_from_elsewhere(self, tmp_path):
         (tmp_path / "neuron.swc").write_text(

@@ -4,7 +4,9 @@
 program's own reader gives."""
 
 import json
+import os
 import re
+import subprocess
 from collections.abc import Callable
 from pathlib import Path
 from typing import Optional
@@ -48,7 +50,7 @@ class Plate:
     def compare(self, nodes: np.ndarray, edges: np.ndarray, radius: Optional[np.ndarray] = None,
                 sources: Optional[int] = None) -> Found:
         """What of the skeleton is there; nodes may be in another order, and in single precision."""
-        near = np.linalg.norm(np.asarray(nodes)[:, None] - self.nodes[None], axis=2)
+        near = np.linalg.norm(np.asarray(nodes, float)[:, None] - self.nodes[None], axis=2)
         number = near.argmin(axis=1)
         all_nodes = near.min(axis=1).max() < 1e-5 and len(set(number)) == len(self.nodes)
         pairs = {frozenset(number[e].tolist()) for e in np.asarray(edges, int).reshape(-1, 2)}
@@ -123,18 +125,58 @@ def glb_in_trimesh(plate: Plate, folder: Path) -> Found:
     return dict.fromkeys(COLUMNS, False)
 
 
+def elsewhere(program: str, path: Path) -> dict:
+    """What a program finds that runs in another Python; the test is skipped where there is none."""
+    python = os.environ.get("MCFSKEL_READERS_PYTHON")
+    if not python:
+        pytest.skip("MCFSKEL_READERS_PYTHON names no Python with scripts/requirements-readers.txt")
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    run = subprocess.run([python, str(Path(__file__).with_name("other_readers.py")), program, str(path)],
+                         capture_output=True, text=True, env=environment)
+    assert run.returncode == 0, run.stderr
+    return json.loads(run.stdout.rpartition("ANSWER")[2])
+
+
+def found_elsewhere(program: str, plate: Plate, path: Path) -> Found:
+    found = elsewhere(program, path)
+    if "error" in found or path.suffix == ".glb":
+        return dict.fromkeys(COLUMNS, False)
+    radius = found.get("radius")
+    return plate.compare(np.array(found["nodes"]), np.array(found["edges"], int).reshape(-1, 2),
+                         None if radius is None else np.array(radius), found.get("sources"))
+
+
+def refused_by_meshio(plate: Plate, folder: Path) -> Found:
+    assert "SystemExit" in elsewhere("meshio", plate.save(folder / "s.ply"))["error"]
+    return dict.fromkeys(COLUMNS, False)
+
+
+def glb_in_blender(plate: Plate, folder: Path) -> Found:
+    found = elsewhere("Blender", plate.save(folder / "s.glb"))
+    assert len(found["nodes"]) == plate.surface.vertex_number()
+    return dict.fromkeys(COLUMNS, False)
+
+
 READERS: dict[tuple[str, str], Callable[[Plate, Path], Found]] = {
     ("`.swc`", "morphio"): swc_in_morphio,
     ("`.swc`", "MeshLab"): lambda p, f: of_mesh(p, p.export(f / "s.swc")),
+    ("`.swc`", "navis"): lambda p, f: found_elsewhere("navis", p, p.export(f / "s.swc")),
     ("`.cg`", "MeshLab"): lambda p, f: of_mesh(p, p.export(f / "s.cg")),
     ("`.graphml`", "networkx"): graphml_in_networkx,
     ("`.json`", "networkx"): json_in_networkx,
+    ("`.vtp`", "VTK"): lambda p, f: found_elsewhere("VTK", p, p.export(f / "s.vtp")),
     ("`.ply`", "plyfile"): ply_in_plyfile,
     ("`.ply`", "MeshLab"): lambda p, f: of_mesh(p, p.save(f / "s.ply")),
     ("`.ply`", "trimesh"): lambda p, f: lines_in_trimesh(p, p.save(f / "s.ply")),
+    ("`.ply`", "Blender"): lambda p, f: found_elsewhere("Blender", p, p.save(f / "s.ply")),
+    ("`.ply`", "VTK"): lambda p, f: found_elsewhere("VTK", p, p.save(f / "s.ply")),
+    ("`.ply`", "meshio"): refused_by_meshio,
     ("`.glb`", "trimesh"): glb_in_trimesh,
+    ("`.glb`", "Blender"): glb_in_blender,
     ("`.ply`, MeshLab's own", "MeshLab"): lambda p, f: of_mesh(p, p.export(f / "s.ply")),
     ("`.obj`, MeshLab's own", "trimesh"): lambda p, f: lines_in_trimesh(p, p.export(f / "s.obj")),
+    ("`.obj`, MeshLab's own", "Blender"): lambda p, f: found_elsewhere("Blender", p, p.export(f / "s.obj")),
+    ("`.obj`, MeshLab's own", "meshio"): lambda p, f: found_elsewhere("meshio", p, p.export(f / "s.obj")),
 }
 
 
@@ -154,3 +196,30 @@ def test_every_reader_is_in_the_table():
 def test_the_table_tells_what_is_found(plate: Plate, tmp_path: Path, file: str, program: str):
     found = READERS[file, program](plate, tmp_path)
     assert table()[file, program] == ["yes" if found[column] else "no" for column in COLUMNS]
+
+
+def test_an_armature_poses_in_blender(tmp_path: Path):
+    """One root that moves all, weights that add up, a bone that bends its limb and leaves the rest, and no triangle
+    that is torn."""
+    layers = opened("animal450")
+    layers.apply_filter(FULL, **COARSE)
+    nodes = layers.current_mesh().vertex_matrix()
+    layers.apply_filter("save_skeleton_mcf", file=str(tmp_path / "s.glb"))
+    posed = elsewhere("pose", tmp_path / "s.glb")
+    assert "error" not in posed, posed
+    rest, moved, bent = (np.array(posed[key]) for key in ("rest", "moved", "bent"))
+    assert len(rest) == layers.mesh(1).vertex_number() and posed["roots"] == 1 and len(posed["bones"]) > 10
+    assert np.allclose(posed["weights"], 1, atol=1e-5)
+    # Not one vertex is left behind.
+    assert np.allclose(moved - rest, [0.5, 0.25, 0.125], atol=1e-4)
+    way = np.linalg.norm(bent - rest, axis=1)
+    assert (way > 0.01).any() and (way < 1e-5).mean() > 0.5
+    # Smooth across the joint, which is within a limb: turned by 0.6 radians, no edge grows by half.
+    ends = np.array([(face[k - 1], face[k]) for face in posed["faces"] for k in range(3)])
+    lengths = [np.linalg.norm(place[ends[:, 0]] - place[ends[:, 1]], axis=1) for place in (rest, bent)]
+    assert (lengths[1] / lengths[0]).max() < 1.5
+    # Bones stand in the skeleton, whichever way up Blender holds it.
+    heads = np.array([head for head, _, _ in posed["bones"]])[:, [0, 2, 1]] * [1, 1, -1]
+    away = [np.linalg.norm(place[:, None] - nodes[None], axis=2).min(axis=1).max()
+            for place in (heads, np.array([head for head, _, _ in posed["bones"]]))]
+    assert min(away) < 1e-4

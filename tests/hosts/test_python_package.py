@@ -451,6 +451,25 @@ def test_save_and_load(run, tmp_path):
     assert all(answer["all"]) and len(answer["all"]) == 20
 
 
+def test_bridges_are_kept_in_files(run):
+    answer = run("""
+        import mcfskel
+        s = mcfskel.skeletonize(MESHES + "/capsule.off", target_length="2%").surface
+        width = np.ptp(s.vertices, axis=0).max()
+        three = [s.vertices + [0, 0.6 * k * width, 0] for k in range(3)]
+        faces = np.vstack([s.faces + k * len(s.vertices) for k in range(3)])
+        s = mcfskel.skeletonize(np.vstack(three), faces, target_length="2%", join=True)
+        answer = [int(s.bridges.sum())]
+        for kind in ("graphml", "json", "vtp", "ply"):
+            s.save("s." + kind)
+            t = mcfskel.load("s." + kind)
+            answer.append(bool(np.array_equal(t.bridges, s.bridges) and np.array_equal(t.edges, s.edges)))
+        s.save("s.cg")
+        answer.append(len(mcfskel.load("s.cg").bridges))
+    """)
+    assert answer == [4, True, True, True, True, 0]
+
+
 ERRORS = {
     "mesh.vertices, mesh.faces[:-1], repair='off'": "Close Holes",
     "mesh, epsilom=0.2": "no option epsilom",

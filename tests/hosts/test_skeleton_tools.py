@@ -175,8 +175,9 @@ def with_twig(name: str, length: float, radius: float) -> tuple[pymeshlab.MeshSe
 
 class TestPrune:
     def test_a_spur_goes(self):
-        layers, _ = with_twig("bent_tube", 0.5, 0.1)
+        layers, root = with_twig("bent_tube", 0.5, 0.1)
         results = layers.apply_filter(PRUNE, surface=0)
+        assert results["length_removed"] == pytest.approx(0.5 * known_skeleton("bent_tube")[2][root])
         assert (results["terminals_removed"], results["junctions_removed"]) == (1, 1)
         assert (results["branches"], results["terminals"]) == (1, 2)
         nodes, edges, _ = known_skeleton("bent_tube")
@@ -184,6 +185,15 @@ class TestPrune:
         assert pruned.label() == "drawn_pruned"
         assert np.array_equal(pruned.vertex_matrix(), nodes)
         assert pruned.edge_number() == len(edges)
+
+    def test_merged_junctions_do_not_make_it_longer(self):
+        """The limbs of a hand reach to where its junctions have become one, and grow by that."""
+        layers = opened("hand")
+        layers.apply_filter(FULL, target_length=pymeshlab.PercentageValue(1.5))
+        before = edge_lengths(layers.current_mesh()).sum()
+        results = layers.apply_filter(PRUNE, min_length=pymeshlab.PercentageValue(8))
+        assert results["length_removed"] >= 0
+        assert results["skeleton_length"] >= before - results["length_removed"] - 1e-6
 
     def test_a_branch_that_reaches_out_stays(self):
         layers, _ = with_twig("bent_tube", 1.5, 0.1)

@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <utility>
 #include <vector>
 
 using namespace vcg::tri::mcf;
@@ -56,6 +58,33 @@ TEST(JoinPieces, BridgesTheNarrowestGaps)
 		EXPECT_LT(a, b);
 		EXPECT_TRUE(curve.bridge[size_t(b)]);
 	}
+}
+
+TEST(WithoutBridges, GivesThePiecesBack)
+{
+	Balls balls({0, 3.5, 2});
+	const CurveSkeleton before = balls.curve;
+	joinPieces(balls.curve, balls.surface);
+	// Somebody has put a bridge's middle first, and a vertex onto it.
+	CurveSkeleton& curve = balls.curve;
+	std::swap(curve.position[0], curve.position[3]);
+	std::swap(curve.bridge[0], curve.bridge[3]);
+	std::swap(curve.radius[0], curve.radius[3]);
+	const auto swapped = [](int v) { return v == 0 ? 3 : v == 3 ? 0 : v; };
+	for (std::array<int, 2>& edge : curve.edges)
+		for (int& v : edge)
+			v = swapped(v);
+	for (int& v : curve.node)
+		v = swapped(v);
+	curve.node.front() = 0;
+	const CurveSkeleton pieces = withoutBridges(curve);
+	EXPECT_EQ(pieces.position.size(), 3u);
+	EXPECT_TRUE(pieces.edges.empty());
+	EXPECT_TRUE(pieces.bridge.empty());
+	for (size_t s = 1; s < pieces.node.size(); ++s)
+		EXPECT_EQ(pieces.position[size_t(pieces.node[s])], before.position[size_t(before.node[s])]);
+	EXPECT_GE(pieces.node.front(), 0);
+	EXPECT_EQ(withoutBridges(before).node, before.node);
 }
 
 TEST(JoinPieces, LeavesASinglePieceAsItIs)

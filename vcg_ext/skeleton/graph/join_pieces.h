@@ -129,6 +129,40 @@ inline Bridges joinPieces(
 	return made;
 }
 
+/**
+ * What joinPieces() was given: the skeleton without its bridges. What belongs to the middle of a bridge goes to the
+ * end with the lower number.
+ * Complexity: O(V + E + surface vertices).
+ */
+inline CurveSkeleton withoutBridges(const CurveSkeleton& skeleton)
+{
+	if (skeleton.bridge.empty())
+		return skeleton;
+	CurveSkeleton pieces;
+	std::vector<int> number(skeleton.position.size(), -1);
+	for (size_t v = 0; v < number.size(); ++v) {
+		if (skeleton.bridge[v])
+			continue;
+		number[v] = int(pieces.position.size());
+		pieces.position.push_back(skeleton.position[v]);
+		pieces.radius.push_back(skeleton.radius[v]);
+		if (!skeleton.significance.empty())
+			pieces.significance.push_back(skeleton.significance[v]);
+	}
+	std::vector<int> target = number;
+	for (const auto& [a, b] : skeleton.edges) {
+		if (number[size_t(a)] >= 0 && number[size_t(b)] >= 0)
+			pieces.edges.push_back({number[size_t(a)], number[size_t(b)]});
+		else if (target[size_t(b)] < 0)
+			target[size_t(b)] = number[size_t(a)];
+		else if (target[size_t(a)] < 0)
+			target[size_t(a)] = number[size_t(b)];
+	}
+	for (int v : skeleton.node)
+		pieces.node.push_back(v < 0 ? -1 : target[size_t(v)]);
+	return pieces;
+}
+
 } // namespace vcg::tri::mcf
 
 #endif

@@ -100,8 +100,8 @@ inline double prominence(const CurveSkeleton& skeleton, int end, int root)
 
 /**
  * Merges nodes: node v goes into node target[v], which must be a node that goes into itself. Edges
- * within a merged node vanish, double edges become one. Positions, radii and significance are those of
- * the targets; the correspondence follows.
+ * within a merged node vanish, double edges become one. Positions, radii, significance and what is a bridge are
+ * those of the targets; the correspondence follows.
  * Complexity: O(V + E log E + surface vertices).
  */
 inline CurveSkeleton mergeNodes(const CurveSkeleton& skeleton, const std::vector<int>& target)
@@ -115,6 +115,8 @@ inline CurveSkeleton mergeNodes(const CurveSkeleton& skeleton, const std::vector
 			merged.radius.push_back(skeleton.radius[v]);
 			if (!skeleton.significance.empty())
 				merged.significance.push_back(skeleton.significance[v]);
+			if (!skeleton.bridge.empty())
+				merged.bridge.push_back(skeleton.bridge[v]);
 		}
 	for (const auto& [a, b] : skeleton.edges) {
 		const int A = number[target[a]], B = number[target[b]];

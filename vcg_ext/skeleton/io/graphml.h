@@ -35,7 +35,7 @@ inline std::string xmlText(const std::string& text)
 
 /**
  * Writes a skeleton as GraphML: nodes 0, 1, ... with the numbers x, y, z and radius (mesh units),
- * significance and the text surface_vertices (ids from 0, blanks between); edges with their length;
+ * significance, bridge (1 in the middle of one, else 0) and the text surface_vertices (ids from 0, blanks between); edges with their length;
  * the graph with the name of the surface and, as surface_vertices, how many vertices it has. What is not
  * known is left out.
  * @param surfaceName what the mesh is called whose vertices surface_vertices counts, in UTF-8.
@@ -47,6 +47,7 @@ inline void writeGraphml(
 	requireWritable(skeleton);
 	const bool hasRadius = !skeleton.radius.empty(), hasSources = !skeleton.node.empty();
 	const bool hasSignificance = !skeleton.significance.empty();
+	const bool hasBridges = !skeleton.bridge.empty();
 	const auto key = [&](const char* name, const char* of, const char* type) {
 		out << "  <key id=\"" << name << "\" for=\"" << of << "\" attr.name=\"" << name
 			<< "\" attr.type=\"" << type << "\"/>\n";
@@ -62,6 +63,8 @@ inline void writeGraphml(
 		key("radius", "node", "double");
 	if (hasSignificance)
 		key("significance", "node", "double");
+	if (hasBridges)
+		key("bridge", "node", "int");
 	if (hasSources)
 		key("surface_vertices", "node", "string");
 	key("length", "edge", "double");
@@ -92,6 +95,8 @@ inline void writeGraphml(
 			data("radius", numberText(skeleton.radius[v]));
 		if (hasSignificance)
 			data("significance", numberText(skeleton.significance[v]));
+		if (hasBridges)
+			data("bridge", std::to_string(int(skeleton.bridge[v])));
 		if (hasSources) {
 			std::string list;
 			for (int s : sources[v])

@@ -32,8 +32,8 @@ inline std::string jsonText(const std::string& text)
 } // namespace detail
 
 /**
- * Writes a skeleton as JSON: `nodes` with id, position (three numbers), radius, significance and
- * surface_vertices (ids from 0); `edges` with source, target and length; `graph` with the counts of statistics(), the name of
+ * Writes a skeleton as JSON: `nodes` with id, position (three numbers), radius, significance, bridge (1 in the middle
+ * of one, else 0) and surface_vertices (ids from 0); `edges` with source, target and length; `graph` with the counts of statistics(), the name of
  * the surface and how many vertices it has.
  * Lengths are mesh units; what is not known is left out.
  * @param surfaceName what the mesh is called whose vertices surface_vertices counts, in UTF-8.
@@ -62,6 +62,8 @@ inline void writeJson(
 			out << ", \"radius\": " << numberText(skeleton.radius[v]);
 		if (!skeleton.significance.empty())
 			out << ", \"significance\": " << numberText(skeleton.significance[v]);
+		if (!skeleton.bridge.empty())
+			out << ", \"bridge\": " << int(skeleton.bridge[v]);
 		if (!skeleton.node.empty()) {
 			out << ", \"surface_vertices\": [";
 			for (size_t i = 0; i < sources[v].size(); ++i)

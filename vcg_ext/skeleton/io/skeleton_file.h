@@ -84,6 +84,10 @@ inline void requireWritable(const CurveSkeleton& skeleton)
 		if (!isUsableSignificance(skeleton.significance[v]))
 			throw InvalidInput("Node " + std::to_string(v) + " has the significance "
 				+ numberText(skeleton.significance[v]) + ", which is not between 0 and 1.");
+	if (!skeleton.bridge.empty() && int(skeleton.bridge.size()) != n)
+		throw InvalidInput("The skeleton has " + std::to_string(n) + " nodes, but of "
+			+ std::to_string(skeleton.bridge.size())
+			+ " of them it is known whether they are of a bridge.");
 	for (const auto& [a, b] : skeleton.edges)
 		if (a < 0 || b < 0 || a >= n || b >= n || a == b)
 			throw InvalidInput("Edge " + std::to_string(a) + " " + std::to_string(b)

@@ -15,7 +15,7 @@
 namespace vcg::tri::mcf {
 
 /**
- * A skeleton as tables: elements vertex (position, radius, significance, and quality for MeshLab), edge (vertex1,
+ * A skeleton as tables: elements vertex (position, radius, significance, bridge, and quality for MeshLab), edge (vertex1,
  * vertex2), mcfskel_surface (for each surface vertex its node) and mcfskel_skeleton (the rest).
  * @param surfaceFingerprint, diagonal as in SkeletonFile.
  * @throws InvalidInput: see requireWritable().
@@ -32,6 +32,8 @@ inline PlyFile skeletonPly(
 	}
 	if (!skeleton.significance.empty())
 		vertex.add("mcfskel_significance", PlyType::Double, skeleton.significance);
+	if (!skeleton.bridge.empty())
+		vertex.add("mcfskel_bridge", PlyType::UInt8, skeleton.bridge);
 	PlyElement edge {"edge", skeleton.edges.size(), {}};
 	for (size_t end = 0; end < 2; ++end) {
 		std::vector<int> ends;
@@ -85,6 +87,9 @@ inline SkeletonFile readSkeletonPly(const PlyFile& ply)
 			throw vertex.error(v,
 				"'mcfskel_significance' is " + numberText(skeleton.significance[v])
 					+ ", not between 0 and 1.");
+	if (vertex.has("mcfskel_bridge"))
+		for (int isBridge : vertex.integers("mcfskel_bridge", 0, 1))
+			skeleton.bridge.push_back(char(isBridge));
 	const std::vector<int> first = edge.integers("vertex1", 0, last);
 	const std::vector<int> second = edge.integers("vertex2", 0, last);
 	for (size_t e = 0; e < first.size(); ++e) {

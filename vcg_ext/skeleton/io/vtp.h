@@ -25,7 +25,7 @@ namespace vcg::tri::mcf {
  * Writes a skeleton as .vtp, in text. Points are the nodes, in their order, shared by the branches that meet
  * there. Lines are the branches of skeletonBranches(), isolated nodes are vertex cells.
  *
- * Point data: `MaximumInscribedSphereRadius`, mesh units, and `mcfskel_significance`, as far as they are known. Cell data, as VMTK has
+ * Point data: `MaximumInscribedSphereRadius`, mesh units, `mcfskel_significance` and `mcfskel_bridge`, as far as they are known. Cell data, as VMTK has
  * them after its branch extraction: `GroupIds` and `CenterlineIds` (the branch, from 0; -1 at an isolated
  * node), `TractIds` 0, `Blanking` 0 (1: not a branch). Field data: `mcfskel_node`, for each
  * surface vertex its node or -1, if the correspondence is known.
@@ -75,13 +75,15 @@ inline void writeVtp(std::ostream& out, const CurveSkeleton& skeleton)
 		<< isolated.size() << "\" NumberOfLines=\"" << branches.size()
 		<< "\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n";
 	const bool hasRadius = !skeleton.radius.empty();
-	if (hasRadius || !skeleton.significance.empty()) {
+	if (hasRadius || !skeleton.significance.empty() || !skeleton.bridge.empty()) {
 		out << (hasRadius ? "<PointData Scalars=\"MaximumInscribedSphereRadius\">\n"
 						  : "<PointData>\n");
 		if (hasRadius)
 			array("Float64", "MaximumInscribedSphereRadius", skeleton.radius);
 		if (!skeleton.significance.empty())
 			array("Float64", "mcfskel_significance", skeleton.significance);
+		if (!skeleton.bridge.empty())
+			array("Int32", "mcfskel_bridge", skeleton.bridge);
 		out << "</PointData>\n";
 	}
 
