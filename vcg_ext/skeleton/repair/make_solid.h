@@ -7,7 +7,7 @@
 #ifndef VCG_MCF_MAKE_SOLID_H
 #define VCG_MCF_MAKE_SOLID_H
 
-#include "layers.h"
+#include "surface_layers.h"
 #include "mend.h"
 #include "overlap.h"
 #include "solid_pieces.h"

@@ -4,8 +4,8 @@
 /// @file
 /// @brief Where a surface is there more than once: scans that overlap, walls between bodies that touch.
 
-#ifndef VCG_MCF_LAYERS_H
-#define VCG_MCF_LAYERS_H
+#ifndef VCG_MCF_SURFACE_LAYERS_H
+#define VCG_MCF_SURFACE_LAYERS_H
 
 #include "winding_number.h"
 
@@ -50,10 +50,11 @@ inline std::vector<double> layerWeights(const TriangleTree& tree, const std::vec
 				for (const auto& at : places) {
 					const Point3d p = a * at[0] + b * at[1] + c * at[2];
 					crossings.clear();
-					tree.forEachCrossing(p - step, p + step, [&](int g, double t, bool alongNormal) {
-						if (g != f && open[size_t(g)])
-							crossings.emplace_back(2 * t - 1, alongNormal);
-					});
+					tree.forEachCrossing(
+						p - step, p + step, [&](int g, double t, bool alongNormal) {
+							if (g != f && open[size_t(g)])
+								crossings.emplace_back(2 * t - 1, alongNormal);
+						});
 					double before = 2, after = 2; // the nearest that face the other way
 					for (const auto& [t, along] : crossings)
 						if (!along)

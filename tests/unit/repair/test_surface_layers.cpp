@@ -3,7 +3,7 @@
 
 #include "shapes.h"
 
-#include <skeleton/repair/layers.h>
+#include <skeleton/repair/surface_layers.h>
 #include <skeleton/repair/winding_number.h>
 
 #include <gtest/gtest.h>
@@ -37,9 +37,9 @@ TEST(Layers, CountAsOneWhereScansOverlap)
 	ASSERT_EQ(weights.size(), soup.triangles.size());
 	for (size_t f = 0; f < weights.size(); ++f) {
 		const Triangle& t = soup.triangles[f];
-		const double z = ((soup.points[size_t(t[0])] + soup.points[size_t(t[1])]
-							  + soup.points[size_t(t[2])])
-			/ 3.0)[2];
+		const double z =
+			((soup.points[size_t(t[0])] + soup.points[size_t(t[1])] + soup.points[size_t(t[2])])
+				/ 3.0)[2];
 		if (std::abs(z) < 0.4) {
 			EXPECT_NEAR(weights[f], 0.5, 1e-12);
 		}
@@ -58,8 +58,7 @@ TEST(Layers, AreNeitherClosedPiecesNorWallsTurnedAgainstEachOther)
 {
 	const shapes::Soup nested = shapes::joined({shapes::sphere(3, 1), shapes::sphere(3, 1.004)});
 	const TriangleTree tree(nested.points, nested.triangles);
-	EXPECT_TRUE(
-		layerWeights(tree, std::vector<char>(nested.triangles.size(), 0), 0.02).empty());
+	EXPECT_TRUE(layerWeights(tree, std::vector<char>(nested.triangles.size(), 0), 0.02).empty());
 	const shapes::Soup plate = shapes::box(1, 1, 0.004);
 	const TriangleTree thin(plate.points, plate.triangles);
 	EXPECT_TRUE(layerWeights(thin, std::vector<char>(plate.triangles.size(), 1), 0.02).empty());
