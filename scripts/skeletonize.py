@@ -36,10 +36,15 @@ def parse_arguments(arguments: list[str] | None = None) -> argparse.Namespace:
         epilog="Lengths are mesh units, or with a % sign percent of the bounding box diagonal. "
                "What is not given takes the plugin's own default.")
     parser.add_argument("mesh", nargs="?", type=Path, default=DEFAULT_MESH, metavar="MESH",
-                        help="closed triangle mesh, any format that MeshLab opens "
-                             f"(default: meshes/{DEFAULT_MESH.name})")
+                        help="triangle mesh, or points with normals, any format that MeshLab opens; or "
+                             f"voxels, .npy, .npz or .nrrd (default: meshes/{DEFAULT_MESH.name})")
     parser.add_argument("output", nargs="?", type=Path, default=Path("out"), metavar="OUTPUT_FOLDER",
                         help="where the results go (default: out)")
+    voxels = parser.add_argument_group("voxels")
+    voxels.add_argument("--spacing", type=float, nargs="+", metavar="S",
+                        help="distance of the voxels' middles, one number or three (the file's own, or 1)")
+    voxels.add_argument("--level", type=float, metavar="VALUE",
+                        help="what is above is inside (0.5)")
     flow = parser.add_argument_group("the skeletonization")
     flow.add_argument("--preset", choices=["default", "paper"],
                       help="paper: the paper's algorithm and nothing else, to compare with")
@@ -89,6 +94,8 @@ def parse_arguments(arguments: list[str] | None = None) -> argparse.Namespace:
     options = parser.parse_args(arguments)
     if options.keep_stages is not None and options.keep_stages < 1:
         parser.error("argument --keep-stages: must be at least 1")
+    if options.spacing is not None and len(options.spacing) not in (1, 3):
+        parser.error("argument --spacing: one number, or three")
     return options
 
 
@@ -107,6 +114,44 @@ def filter_parameters(options: argparse.Namespace) -> dict[str, Any]:
         if value is not None:
             parameters[name] = value
     return parameters
+
+
+def volumes() -> Any:
+    """The Python package's module of voxels and points; the package itself would load its own plugin."""
+    import importlib.util
+    path = Path(__file__).resolve().parent.parent / "python" / "mcfskel" / "_volumes.py"
+    spec = importlib.util.spec_from_file_location("mcfskel_volumes", path)
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+def read_surface(options: argparse.Namespace, layers: Any) -> None:
+    """The mesh as one layer: voxels as the surface around them, points as a triangle each."""
+    import numpy as np
+    import pymeshlab
+    module = volumes()
+    try:
+        if options.mesh.suffix.lower() in module.VOLUME_FILES:
+            spacing = options.spacing if options.spacing is None or len(options.spacing) == 3 \
+                else options.spacing[0]
+            made = module.voxel_surface(module.read_volume(options.mesh, spacing),
+                                        0.5 if options.level is None else options.level)
+        else:
+            if options.spacing is not None or options.level is not None:
+                raise ValueError("--spacing and --level are options of voxels: .npy, .npz or .nrrd")
+            layers.load_new_mesh(str(options.mesh.resolve()))
+            if layers.mesh_number() > 1:
+                layers.generate_by_merging_visible_meshes()
+            mesh = layers.current_mesh()
+            if mesh.face_number() or not mesh.vertex_number() or not mesh.vertex_normal_matrix().any():
+                return
+            made = module.point_triangles(mesh.vertex_matrix(), mesh.vertex_normal_matrix())
+            layers.clear()
+    except ValueError as error:
+        raise UserError(f"{options.mesh}: {error}") from None
+    layers.add_mesh(pymeshlab.Mesh(made[0], made[1].astype(np.int32)), options.mesh.stem)
 
 
 def run_filter(options: argparse.Namespace) -> tuple[Any, dict[str, float]]:
@@ -141,9 +186,7 @@ def run_filter(options: argparse.Namespace) -> tuple[Any, dict[str, float]]:
 
         with host_output(on_progress, messages.append):
             try:
-                layers.load_new_mesh(str(options.mesh.resolve()))
-                if layers.mesh_number() > 1:
-                    layers.generate_by_merging_visible_meshes()
+                read_surface(options, layers)
                 bar.reset()
                 messages.clear()
                 results = layers.apply_filter(FILTER, **parameters)

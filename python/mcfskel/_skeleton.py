@@ -18,6 +18,7 @@ import pymeshlab
 from . import _branches, _convert, _files, _measures, _picture, _plot
 from ._run import (INT_MAX, Length, SkeletonError, SkeletonWarning, apply, filter_options,
                    open_mesh)
+from ._volumes import VOLUME_FILES, point_triangles, read_volume, volume_of, voxel_surface
 
 if TYPE_CHECKING:
     import navis
@@ -216,16 +217,23 @@ class Skeleton:
 
 def skeletonize(vertices: Any, faces: npt.ArrayLike | None = None, *,
                 target_length: Length | None = None, epsilon: Length | None = None,
-                **options: Any) -> Skeleton:
-    """Computes the curve skeleton of a closed triangle mesh. Ctrl-C ends it at once.
+                normals: npt.ArrayLike | None = None, spacing: Any = None,
+                level: float | None = None, **options: Any) -> Skeleton:
+    """Computes the curve skeleton of a mesh, of voxels, or of points with normals. Ctrl-C ends it at once.
 
     Args:
         vertices: Positions, (V, 3); or the path of a file that MeshLab reads; or an object with
-            ``vertices`` and ``faces``, such as a ``trimesh.Trimesh``. In the latter cases no ``faces``.
+            ``vertices`` and ``faces``, such as a ``trimesh.Trimesh``; or voxels, (X, Y, Z), or the path of
+            a file of them (.npy, .npz, .nrrd). ``faces`` only with positions.
         faces: Triangles as vertex ids, (F, 3), counter-clockwise seen from outside.
         target_length: Edge length of the resampling; by default chosen from the mesh.
         epsilon: Edges shorter than this are collapsed; by default 0.2 % of the diagonal. A length is
             a number of mesh units, or a text such as ``"0.2%"`` of the bounding box diagonal.
+        normals: Of points without faces, outward, (V, 3). The surface of the skeleton then has three vertices for
+            each point, one point's after the other's. Needs scipy.
+        spacing: Of voxels, the distance of their middles, one number or one for each axis; by default the
+            file's own, or 1.
+        level: Of voxels, the value above which they are inside; by default 0.5.
         **options: Further parameters of the filter Full Skeletonize, by their names in pymeshlab:
             ``w_l``, ``w_h``, ``w_m``, ``resample``, ``denoise``, ``refine``, ``preset``, ``pole_method``,
             ``max_iterations``, ``keep_sheets``, ... None stands for the default.
@@ -240,13 +248,13 @@ def skeletonize(vertices: Any, faces: npt.ArrayLike | None = None, *,
     Warns:
         SkeletonWarning: The contraction has not converged within ``max_iterations``.
     """
-    layers = _document(vertices, faces)
+    layers = _document(vertices, faces, normals, spacing, level)
     surface = Surface(layers.current_mesh().vertex_matrix(), layers.current_mesh().face_matrix())
     options = filter_options("skeletonize()", options | {"target_length": target_length,
                                                          "epsilon": epsilon},
                              layers.filter_parameter_values(FILTER))
     if not len(surface.faces):
-        raise SkeletonError("There are no faces: faces is empty, or the file is one of points only.")
+        raise SkeletonError("There are no faces: faces is empty, or the file is one of points without normals.")
     mesh = layers.current_mesh_id()
     results = apply(layers, FILTER, options)
     if not results.get("converged", 1):
@@ -280,12 +288,45 @@ def load(path: str | os.PathLike[str]) -> Skeleton:
     return Skeleton(nodes, edges, radius, correspondence, {}, faces, None, significance, bridges)
 
 
-def _document(vertices: Any, faces: Any) -> pymeshlab.MeshSet:
+def _document(vertices: Any, faces: Any, normals: Any = None, spacing: Any = None,
+              level: float | None = None) -> pymeshlab.MeshSet:
     """A document with the mesh as its current layer."""
-    if isinstance(vertices, (str, os.PathLike)):
+    is_path = isinstance(vertices, (str, os.PathLike))
+    volume = None
+    if is_path and os.fspath(vertices).lower().endswith(VOLUME_FILES) and os.path.isfile(vertices):
+        try:
+            volume = read_volume(vertices, spacing)
+        except ValueError as error:
+            raise SkeletonError(f"'{os.fspath(vertices)}' cannot be read: {error}.") from None
+        except OSError as error:
+            raise SkeletonError(f"'{os.fspath(vertices)}' cannot be read: {error.strerror or error}.") from None
+    elif isinstance(vertices, np.ndarray) and vertices.ndim == 3:
+        try:
+            volume = volume_of(vertices, spacing)
+        except ValueError as error:
+            raise SkeletonError(f"{error}.") from None
+    if volume is not None:
+        if faces is not None or normals is not None:
+            raise SkeletonError("Voxels have neither faces nor normals: give them alone.")
+        try:
+            return _layer(*voxel_surface(volume, 0.5 if level is None else level))
+        except ValueError as error:
+            raise SkeletonError(f"{error}.") from None
+    for name, value in (("spacing", spacing), ("level", level)):
+        if value is not None:
+            raise SkeletonError(f"{name} is an option of voxels, and these are none.")
+    if normals is not None:
+        if faces is not None or is_path:
+            raise SkeletonError("normals are those of points: give positions without faces.")
+        return _points(_array(vertices, "vertices", np.float64), _array(normals, "normals", np.float64))
+    if is_path:
         if faces is not None:
             raise SkeletonError("faces must not be given where vertices is the path of a file.")
-        return open_mesh(os.fspath(vertices))
+        layers = open_mesh(os.fspath(vertices))
+        mesh = layers.current_mesh()
+        if mesh.face_number() == 0 and mesh.vertex_number() and mesh.vertex_normal_matrix().any():
+            return _points(mesh.vertex_matrix(), mesh.vertex_normal_matrix())
+        return layers
     if faces is None:
         try:
             vertices, faces = vertices.vertices, vertices.faces
@@ -297,9 +338,23 @@ def _document(vertices: Any, faces: Any) -> pymeshlab.MeshSet:
     if triangles.size and (triangles.min() < 0 or triangles.max() >= len(points)):
         raise SkeletonError("faces: a face has a vertex that is not one of the "
                             f"{len(points)} vertices.")
+    return _layer(points, triangles)
+
+
+def _layer(points: np.ndarray, triangles: np.ndarray) -> pymeshlab.MeshSet:
     layers = pymeshlab.MeshSet()
-    layers.add_mesh(pymeshlab.Mesh(vertex_matrix=points, face_matrix=triangles), "mesh")
+    layers.add_mesh(pymeshlab.Mesh(vertex_matrix=points, face_matrix=triangles.astype(np.int32)), "mesh")
     return layers
+
+
+def _points(points: np.ndarray, normals: np.ndarray) -> pymeshlab.MeshSet:
+    """A document with a triangle for each point."""
+    try:
+        return _layer(*point_triangles(points, normals))
+    except ValueError as error:
+        raise SkeletonError(f"{error}.") from None
+    except ImportError:
+        raise SkeletonError("Points need scipy: pip install scipy.") from None
 
 
 def _from_layer(layer: pymeshlab.Mesh, mesh: pymeshlab.Mesh, results: dict[str, Any],

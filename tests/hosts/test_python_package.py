@@ -40,7 +40,7 @@ def python(plugin, tmp_path_factory) -> Path:
     interpreter = folder / "env" / "bin" / "python"
     environment = {name: value for name, value in os.environ.items() if name != "MCFSKEL_PLUGIN"}
     subprocess.run([str(interpreter), "-m", "pip", "install", "-q", "--disable-pip-version-check",
-                    str(folder / "project" / "python") + "[networkx,trimesh,pyvista,plot]"],
+                    str(folder / "project" / "python") + "[networkx,trimesh,pyvista,plot,points]"],
                    check=True, env=environment)
     shutil.rmtree(folder / "project")  # nothing of it is needed any more
     return interpreter
@@ -534,6 +534,40 @@ def test_errors_are_one_sentence_with_the_cure(run, tmp_path):
         assert word in text and "\n" not in text, (call, text, word)
     assert answer[-2] is True
     assert answer[-1] > 0, "after all these errors the next mesh is done"
+
+
+def test_voxels_and_points_go_through_the_same_door(run):
+    """A torus as voxels, in a file, and as points with normals, as arrays and in a file: each one its circle."""
+    answer = run("""
+        import mcfskel
+        grid = np.stack(np.meshgrid(*[np.arange(30)] * 3, indexing="ij"), axis=-1) - 14.5
+        voxels = np.hypot(np.hypot(grid[..., 0], grid[..., 1]) - 9, grid[..., 2]) < 3.5
+        np.savez("torus.npz", volume=voxels, spacing=[0.5, 0.5, 0.5], origin=[-7.25] * 3)
+        turn, tilt = np.random.default_rng(1).random((2, 2000)) * 2 * np.pi
+        normals = np.column_stack([np.cos(turn) * np.cos(tilt), np.sin(turn) * np.cos(tilt), np.sin(tilt)])
+        points = 3 * np.column_stack([np.cos(turn), np.sin(turn), 0 * turn]) + normals
+        np.savetxt("torus.xyz", np.hstack([points, normals]))
+        answer = []
+        for made, scale in [(mcfskel.skeletonize(voxels, spacing=0.5), 4.5), (mcfskel.skeletonize("torus.npz"), 4.5),
+                            (mcfskel.skeletonize(points, normals=normals), 3), (mcfskel.skeletonize("torus.xyz"), 3)]:
+            nodes = made.nodes - made.nodes.mean(axis=0)
+            away = np.hypot(np.hypot(nodes[:, 0], nodes[:, 1]) - scale, nodes[:, 2]).max() / scale
+            answer.append([made.results["components"], made.results["cycles"], made.results["terminals"],
+                           float(away), made.nodes.mean(axis=0).tolist()])
+        for wrong in [lambda: mcfskel.skeletonize(voxels, level=2), lambda: mcfskel.skeletonize(points, spacing=1),
+                      lambda: mcfskel.skeletonize(points, normals=0 * normals)]:
+            try:
+                wrong()
+                answer.append("no error")
+            except mcfskel.SkeletonError as error:
+                answer.append(str(error))
+    """)
+    for components, cycles, terminals, away, _ in answer[:4]:
+        assert (components, cycles, terminals) == (1, 1, 0)
+        assert away < 0.05
+    assert answer[0][4] == pytest.approx([7.25] * 3, abs=0.1)
+    assert answer[1][4] == pytest.approx([0] * 3, abs=0.1)
+    assert "level" in answer[4] and "voxels" in answer[5] and "normals" in answer[6]
 
 
 def test_a_file_is_read_as_meshlab_reads_it(run):
