@@ -467,6 +467,31 @@ TEST(Skeletonize, APlateThinnerThanItsResampledEdgesIsContractedAsItIs)
 		}
 }
 
+TEST(Skeletonize, WhatIsContractedAsItIsMustNotLoseLimbs)
+{
+	const SurfaceMesh tube = shapes::capsule(10, 0.1, 12).mesh();
+	const auto straight = [](double from, double to) {
+		CurveSkeleton curve;
+		curve.position = {{from, 0, 0}, {to, 0, 0}};
+		curve.edges = {{0, 1}};
+		curve.radius.assign(2, 0.1);
+		return curve;
+	};
+	Skeletonization asItIs, resampled;
+	asItIs.poles = std::make_shared<const PoleSet>(medialPoles(tube, PoleMethod::Balls));
+	asItIs.refined = 1;
+	resampled.curve = straight(-5, 5);
+	asItIs.curve = straight(-5, 2);
+	EXPECT_NEAR(detail::partLeftOut(tube, *asItIs.poles, resampled.curve, Progress()), 0, 1e-9);
+	EXPECT_NEAR(detail::partLeftOut(tube, *asItIs.poles, asItIs.curve, Progress()), 0.3, 0.05);
+	EXPECT_FALSE(detail::isBetter(tube, asItIs, resampled, Progress()));
+	resampled.refinement.nodesOutside = 1;
+	EXPECT_TRUE(detail::isBetter(tube, asItIs, resampled, Progress())) << "half is outside";
+	resampled.refinement.nodesOutside = 0;
+	asItIs.curve = straight(-5, 4.9);
+	EXPECT_TRUE(detail::isBetter(tube, asItIs, resampled, Progress())) << "as much is described";
+}
+
 TEST(Skeletonize, ThePapersPresetIsFig4AndNothingElse)
 {
 	const shapes::Soup soup = shapes::fromFile("animal450");

@@ -9,11 +9,13 @@
 
 #include <skeleton/collapse/curve_inside.h>
 #include <skeleton/core/notes.h>
+#include <skeleton/core/parallel.h>
 #include <skeleton/core/parameters.h>
 #include <skeleton/core/progress.h>
 #include <skeleton/flow/flow.h>
 #include <skeleton/flow/held_vertices.h>
 #include <skeleton/flow/start_of_flow.h>
+#include <skeleton/graph/closest_curve.h>
 #include <skeleton/graph/join_pieces.h>
 #include <skeleton/input/check_input.h>
 #include <skeleton/mesh/surface_rounding.h>
@@ -214,14 +216,63 @@ inline Skeletonization skeletonizeOnce(const SurfaceInput& input, const Paramete
 	return result;
 }
 
-/// Whether a skeleton of the surface as it is replaces one of the resampled surface that could not be refined.
-inline bool isBetter(const Skeletonization& asItIs, const Skeletonization& resampled)
+/**
+ * How much of a shape a curve does not describe: the part of its limbs, by length, that is farther from the curve
+ * than three times as thick as it is there.
+ * @param poles of all vertices of the surface. @return 0 to 1; 1 for a curve without nodes.
+ * @throws Cancelled. Complexity: O((V + N) log N).
+ */
+inline double partLeftOut(const SurfaceMesh& surface, const PoleSet& poles,
+	const CurveSkeleton& curve, const Progress& progress)
 {
-	constexpr double muchShorter = 0.5;
-	if (asItIs.refined != resampled.refined)
+	constexpr double far = 3; // local thicknesses
+	constexpr const char* what = "Comparing skeletons";
+	if (curve.position.empty())
+		return 1;
+	const ClosestCurve closest(curve);
+	std::vector<char> isLeftOut(size_t(surface.vertexSlots()), 0);
+	forEachBlock(surface.vertexSlots(), progress, what, [&](int begin, int end) {
+		for (int v = begin; v < end; ++v)
+			isLeftOut[v] = poles.has(v)
+				&& closest.closest(surface.position[v]).distance > far * poles.radius[v];
+	});
+	double leftOut = 0, all = 0;
+	for (int f = 0; f < surface.faceSlots(); ++f) {
+		const double area = surface.areaVector(f).Norm();
+		for (int v : surface.triangle(f))
+			if (poles.has(v) && poles.radius[v] > 0) {
+				const double length = area / poles.radius[v];
+				all += length;
+				leftOut += isLeftOut[v] ? length : 0;
+			}
+	}
+	return all > 0 ? leftOut / all : 0;
+}
+
+/**
+ * Whether a skeleton of the surface as it is replaces one of the resampled surface that could not be refined.
+ * Not where it describes much less of the shape, as of limbs whose triangles are many times as long as thick, while
+ * the other one describes nearly all of it and hardly leaves it.
+ * @throws Cancelled
+ */
+inline bool isBetter(const SurfaceMesh& surface, const Skeletonization& asItIs,
+	const Skeletonization& resampled, const Progress& progress)
+{
+	constexpr double muchShorter = 0.5, mostOutside = 0.01, mostLeftOut = 0.05, muchMore = 2;
+	if (asItIs.sheets)
 		return asItIs.refined > resampled.refined;
-	return !asItIs.sheets
-		&& statistics(asItIs.curve).length < muchShorter * statistics(resampled.curve).length;
+	const bool isMuchShorter =
+		statistics(asItIs.curve).length < muchShorter * statistics(resampled.curve).length;
+	if (!isMuchShorter
+		&& double(resampled.refinement.nodesOutside)
+			<= mostOutside * double(resampled.curve.position.size())) {
+		const double leftOut = partLeftOut(surface, *asItIs.poles, resampled.curve, progress);
+		if (leftOut <= mostLeftOut
+			&& partLeftOut(surface, *asItIs.poles, asItIs.curve, progress)
+				> muchMore * leftOut + mostOutside)
+			return false;
+	}
+	return asItIs.refined != resampled.refined ? asItIs.refined > resampled.refined : isMuchShorter;
 }
 
 } // namespace detail
@@ -231,7 +282,7 @@ inline bool isBetter(const Skeletonization& asItIs, const Skeletonization& resam
  *
  * A surface that is thinner than the edges of its resampling is cut off, or crosses itself, when it is resampled.
  * That shows in the end: its curve cannot be refined, since that would leave the surface. Then the surface is
- * contracted as it is as well, and the better curve is taken, which is said.
+ * contracted as it is as well, and the better curve is taken, see detail::isBetter(), which is said.
  *
  * @param given      all of them are read. What is too thin for a resampled surface to follow, see
  *                   fieldOfResampling(), is not contracted and refined adaptively either.
@@ -264,7 +315,7 @@ inline Skeletonization skeletonize(const SurfaceInput& input, const Parameters& 
 		try {
 			Skeletonization other =
 				detail::skeletonizeOnce(input, asItIs, progress.part(once, 1), ofOther, refinement);
-			isAsItIs = detail::isBetter(other, result);
+			isAsItIs = detail::isBetter(*input.mesh, other, result, progress.part(1, 1));
 			other.noise = result.noise;
 			result.seconds += other.seconds;
 			other.seconds = result.seconds;
