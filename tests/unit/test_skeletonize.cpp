@@ -110,6 +110,29 @@ TEST(Skeletonize, DoubleAndSinglePrecisionGiveTheSameBits)
 	expectSame(run(beyond, coarse()).curve, expected.curve);
 }
 
+TEST(Skeletonize, AMirroredShapeHasTheMirroredSkeleton)
+{
+	// One that is symmetric, but for its triangles, and one that is not.
+	for (const char* name : {"hand", "horn"}) {
+		const shapes::Soup soup = shapes::fromFile(name);
+		const Skeletonization expected = run(soup, coarse());
+		const double tolerance = 1e-12 * expected.surface->bounds().Diag();
+		for (int k = 0; k < 3; ++k) {
+			const auto mirror = [&](vcg::Point3d p) {
+				p[k] = -p[k];
+				return p;
+			};
+			const CurveSkeleton image =
+				run(shapes::insideOut(shapes::transformed(soup, mirror)), coarse()).curve;
+			EXPECT_EQ(image.edges, expected.curve.edges);
+			ASSERT_EQ(image.position.size(), expected.curve.position.size());
+			for (size_t v = 0; v < image.position.size(); ++v)
+				ASSERT_LT(
+					Distance(mirror(image.position[v]), expected.curve.position[v]), tolerance);
+		}
+	}
+}
+
 TEST(Skeletonize, ReadsEveryParameter)
 {
 	const shapes::Soup soup = shapes::fromFile("animal450");

@@ -81,13 +81,41 @@ TEST(PrincipalFrame, DoesNotDependOnTheTriangles)
 		ASSERT_LT(Distance(frame.in(p), finer.in(p)), 1e-12);
 }
 
-TEST(PrincipalFrame, KeepsTheHandAndTheRatios)
+TEST(PrincipalFrame, KeepsTheRatios)
 {
 	const PrincipalFrame frame = frameOf(pebble().mesh());
 	const Point3d o = frame.in(Point3d(0, 0, 0));
 	const Point3d x = frame.in(Point3d(1, 0, 0)) - o, y = frame.in(Point3d(0, 1, 0)) - o,
 				  z = frame.in(Point3d(0, 0, 1)) - o;
-	EXPECT_NEAR((x ^ y) * z * std::pow(frame.unitLength(), 3), 1, 1e-12);
+	const double hand = frame.isMirrored() ? -1 : 1;
+	EXPECT_NEAR((x ^ y) * z * std::pow(frame.unitLength(), 3), hand, 1e-12);
+}
+
+TEST(PrincipalFrame, OfAMirroredShapeIsMirrored)
+{
+	const shapes::Soup soup = pebble();
+	const SurfaceMesh mesh = soup.mesh();
+	const PrincipalFrame frame = frameOf(mesh);
+	for (int k = 0; k < 3; ++k) {
+		const auto mirror = [&](Point3d p) {
+			p[k] = -p[k];
+			return p;
+		};
+		SurfaceMesh image = shapes::insideOut(shapes::transformed(soup, mirror)).mesh();
+		const PrincipalFrame other = frameOf(image);
+		EXPECT_NE(other.isMirrored(), frame.isMirrored());
+		for (const Point3d& p : soup.points)
+			ASSERT_EQ(other.onGrid(mirror(p)), frame.onGrid(p));
+		// In the frames both look outwards.
+		SurfaceMesh inside[] = {mesh, image};
+		const PrincipalFrame* own[] = {&frame, &other};
+		for (int i = 0; i < 2; ++i) {
+			for (Point3d& p : inside[i].position)
+				p = own[i]->in(p);
+			turnOverMirrored(inside[i], std::vector<int>(inside[i].position.size(), 0), {*own[i]});
+			EXPECT_GT(inside[i].volume(), 0);
+		}
+	}
 }
 
 TEST(PrincipalFrame, ShapesWithoutAxesTakeThoseOfTheCoordinates)

@@ -126,7 +126,7 @@ inline std::vector<double> epsilonLimits(const MeasuredSurface& surface, const P
 /**
  * Merges edges shorter than two epsilon, see coarsen(), and halves those of coarse components that
  * are too long, see coarseComponents().
- * @param surface  compact, closed.
+ * @param given    the surface; compact, closed.
  * @param epsilon  as in Parameters, of the diagonal of each component.
  * @param polesOfSurface (progress): gives the poles of all vertices of the surface, a PoleSet; called
  *                 once if a component may be coarse.
@@ -134,11 +134,26 @@ inline std::vector<double> epsilonLimits(const MeasuredSurface& surface, const P
  * @throws Cancelled. Complexity: O(V + F), and O(s log s) for s halved edges.
  */
 template <class PolesOfSurface>
-FlowSurface surfaceForFlow(const SurfaceMesh& surface, double epsilon,
+FlowSurface surfaceForFlow(const SurfaceMesh& given, double epsilon,
 	PolesOfSurface&& polesOfSurface, const Progress& progress = Progress(),
 	const std::vector<double>& epsilonLimit = {})
 {
 	FlowSurface result;
+	// All orders are those of the surface in its frames, where mirror images are alike.
+	std::vector<PrincipalFrame> frames;
+	std::optional<SurfaceMesh> turnedOver;
+	{
+		const Progress begin = progress.part(0, 0);
+		const MeasuredSurface measured(given, begin);
+		frames = measured.allFrames();
+		result.rests = componentsAtRest(measured, begin);
+		for (const PrincipalFrame& frame : frames)
+			if (frame.isMirrored() && !turnedOver) {
+				turnedOver = given.copied(begin);
+				turnOverMirrored(*turnedOver, measured.component(), frames, begin);
+			}
+	}
+	const SurfaceMesh& surface = turnedOver ? *turnedOver : given;
 	Numbering number = breadthFirstOrder(surface, {}, progress.part(0, 0.1));
 	SurfaceMesh& mesh = result.mesh;
 	mesh = surface.renumbered(number.vertex, number.face, {}, progress.part(0.1, 0.2));
@@ -156,7 +171,6 @@ FlowSurface surfaceForFlow(const SurfaceMesh& surface, double epsilon,
 			mesh, number.component, number.components, progress.part(0.2, 0.3));
 		result.diagonal = measured.diagonals();
 		result.area = measured.areas();
-		result.rests = componentsAtRest(measured, progress.part(0.3, 0.3));
 		mayBeCoarse =
 			isAny(moving(coarseComponents(measured, epsilon, {}, progress.part(0.3, 0.3))));
 	}
@@ -196,7 +210,10 @@ FlowSurface surfaceForFlow(const SurfaceMesh& surface, double epsilon,
 	};
 	std::vector<int> mergedInto = coarsen(mesh, lengthAt, progress.part(0.3, 0.9));
 	const std::vector<int> place = mesh.compact(progress.part(0.9, 0.93));
+	if (result.finer)
+		turnOverMirrored(*result.finer, number.component, frames, progress.part(0.93, 0.93));
 	result.component = renumbered(number.component, place, mesh.vertexSlots());
+	turnOverMirrored(mesh, result.component, frames, progress.part(0.93, 0.93));
 	if (!limit.empty())
 		limit = renumbered(limit, place, mesh.vertexSlots());
 	result.survivor.assign(mesh.vertexSlots(), -1);

@@ -40,7 +40,8 @@ public:
 		frames = stage.frames;
 	}
 
-	/// Takes the positions, poles and lengths of a stage into the frames. Held vertices are not rounded.
+	/// Takes the positions, poles and lengths of a stage into the frames, where faces look outwards as well. Held
+	/// vertices are not rounded.
 	void enter(Stage& stage)
 	{
 		diagonal = stage.diagonal;
@@ -59,6 +60,7 @@ public:
 		}
 		for (size_t c = 0; c < frames->size(); ++c)
 			stage.diagonal[c] /= (*frames)[c].unitLength();
+		turnOverMirrored(stage.mesh, stage.component, *frames);
 	}
 
 	/// The area and volume outside of a stage that has entered.
@@ -88,6 +90,7 @@ public:
 			stage.pole[v] = (*frames)[c].out(stage.pole[v]);
 		}
 		stage.diagonal = diagonal;
+		turnOverMirrored(stage.mesh, stage.component, *frames);
 	}
 
 private:

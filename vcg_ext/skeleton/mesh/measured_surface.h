@@ -53,6 +53,8 @@ public:
 	const std::vector<int>& component() const { return ofVertex; }
 	int components() const { return count; }
 
+	/// The frames of all components.
+	const std::vector<PrincipalFrame>& allFrames() const { return frames; }
 	/// The frame of a component.
 	const PrincipalFrame& frame(int c) const { return frames[c]; }
 	/// The area of a component, mesh units squared.

@@ -29,16 +29,18 @@ namespace vcg::tri::mcf {
  *
  * The axes are the eigenvectors of the second moments S = int (x - m)(x - m)^T dA, m the centroid,
  * by falling eigenvalue. An axis points to where the third moment int (u . (x - m))^3 dA is
- * positive; the axis with the smallest follows from the right hand. A shape that does not tell its
+ * positive, or where that is 0, the sum of the cubes over the middles of the triangles. So a mirrored shape has
+ * the mirrored axes, and they may be a left hand's: see isMirrored(). A shape that does not tell its
  * axes apart (a sphere, a cube, a torus) takes those of the coordinates, and a direction in which it
- * is symmetric points the way of the nearest coordinate axis: harmless, since all choices are alike.
+ * is symmetric points where the right hand says, or if there are more of them, the way of the nearest
+ * coordinate axis: harmless, since all choices are alike.
  *
  * The size is the diagonal of the bounding box along these axes. Unlike that along the coordinate
  * axes, which changes by up to a factor of sqrt 3, it stays when the shape is turned; of a box that
  * stands straight it is the same. The unit is sqrt(12 tr S / A), which is the size of a rod and of a
  * sphere; unlike the size it does not hang on single points.
  *
- * The integrals over a surface do not depend on how it is cut into triangles.
+ * The integrals over a surface do not depend on how it is cut into triangles; signs do, where it is symmetric.
  */
 class PrincipalFrame
 {
@@ -96,6 +98,9 @@ public:
 	double size() const { return diagonal; }
 	/// The same in the coordinates inside, rounded for the same bits.
 	double sizeInside() const { return rounded(diagonal / unit, 40); }
+	/// Whether the axes are a left hand's: inside, the shape is its mirror image, and faces that are to look
+	/// outwards have to be turned over, see turnOverMirrored().
+	bool isMirrored() const { return (axes[0] ^ axes[1]) * axes[2] < 0; }
 	/// The unit of the coordinates inside, mesh units.
 	double unitLength() const { return unit; }
 	Point3d in(const Point3d& p) const { return turned(p - origin) / unit; }
@@ -152,6 +157,9 @@ private:
 		Point3d first = Point3d(0, 0, 0);
 		Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
 		std::array<double, 3> third = {0, 0, 0}; ///< along the axes
+		/// The same of the cells' middles, each of weight 1: they tell how the surface is cut into triangles.
+		std::array<double, 3> thirdOfMiddles = {0, 0, 0};
+		double cells = 0;
 
 		/// Adds all but the third moments of a cell, a point or a triangle:
 		///     int x dA = A s / n,  int x x^T dA = A (s s^T + sum_i x_i x_i^T) / (n (n + 1)),
@@ -253,7 +261,12 @@ private:
 				for (size_t i = 0; i < u.size(); ++i)
 					u[i] = (corners[i] - frame[c].origin) * frame[c].axes[k] * scale;
 				moments[c].third[k] += area * Moments::meanCube(u);
+				double middle = 0;
+				for (double x : u)
+					middle += x / double(u.size());
+				moments[c].thirdOfMiddles[k] += middle * middle * middle;
 			}
+			++moments[c].cells;
 		});
 		std::vector<Box3d> along(components);
 		for (size_t c = 0; c < components; ++c)
@@ -290,27 +303,44 @@ private:
 	/// Chooses the signs of the axes.
 	void orient(const Moments& m)
 	{
-		constexpr double leastSkew = 1e-6;
+		constexpr double leastSkew = 1e-6, leastSkewOfMiddles = 1e-8;
 		if (axes == coordinateAxes())
 			return;
-		int least = 0;
+		int symmetric = -1;
 		for (int k = 0; k < 3; ++k) {
-			if (std::abs(m.third[k]) < std::abs(m.third[least]))
-				least = k;
 			double towards = m.third[k];
 			if (std::abs(towards) <= leastSkew * m.weight) {
-				towards = axes[k][0];
-				for (int i = 1; i < 3; ++i)
-					if (std::abs(axes[k][i]) > std::abs(towards))
-						towards = axes[k][i];
+				towards = m.thirdOfMiddles[k];
+				if (std::abs(towards) <= leastSkewOfMiddles * m.cells) {
+					symmetric = k;
+					towards = axes[k][0];
+					for (int i = 1; i < 3; ++i)
+						if (std::abs(axes[k][i]) > std::abs(towards))
+							towards = axes[k][i];
+				}
 			}
 			if (towards < 0)
 				axes[k] *= -1;
 		}
-		if ((axes[0] ^ axes[1]) * axes[2] < 0)
-			axes[least] *= -1;
+		if (symmetric >= 0 && isMirrored())
+			axes[symmetric] *= -1;
 	}
 };
+
+/**
+ * Turns over the faces of the components whose frames are mirrored: in these frames they look outwards then.
+ * Done twice, the mesh is as it was.
+ * @param component of each vertex. @throws Cancelled. Complexity: O(V + F), without such frames O(components).
+ */
+inline void turnOverMirrored(SurfaceMesh& mesh, const std::vector<int>& component,
+	const std::vector<PrincipalFrame>& frames, const Progress& progress = Progress())
+{
+	std::vector<char> isMirrored;
+	for (const PrincipalFrame& frame : frames)
+		isMirrored.push_back(frame.isMirrored());
+	if (std::find(isMirrored.begin(), isMirrored.end(), 1) != isMirrored.end())
+		mesh.turnOver([&](int v) { return isMirrored[component[v]] != 0; }, progress);
+}
 
 } // namespace vcg::tri::mcf
 

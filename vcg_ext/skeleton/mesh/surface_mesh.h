@@ -610,6 +610,30 @@ public:
 		return result;
 	}
 
+	/**
+	 * Turns faces over: (a, b, c) becomes (a, c, b). Done twice, the mesh is as it was.
+	 * @param isTurned bool(vertex): whether the faces at it are; the same for all vertices of a component.
+	 * @throws Cancelled. Complexity: O(V + F).
+	 */
+	template <class IsTurned>
+	void turnOver(IsTurned&& isTurned, const Progress& progress = Progress())
+	{
+		const auto newId = [](int h) { return h + 2 - 2 * (h % 3); };
+		detail::reportedLoop(faceSlots(), progress.part(0, 0.5), ordering, [&](int f) {
+			if (!isFace(f) || !isTurned(origins[3 * f]))
+				return;
+			std::swap(origins[3 * f + 1], origins[3 * f + 2]);
+			std::swap(twins[3 * f], twins[3 * f + 2]);
+			for (int h = 3 * f; h < 3 * f + 3; ++h)
+				twins[h] = newId(twins[h]);
+		});
+		const int last = halfEdgeSlots() - 1;
+		detail::reportedLoop(halfEdgeSlots(), progress.part(0.5, 1), ordering, [&](int i) {
+			if (const int h = last - i; isHalfEdge(h))
+				outgoings[origins[h]] = h;
+		});
+	}
+
 private:
 	static constexpr const char* checking = "Checking the surface";
 	static constexpr const char* measuring = "Measuring the surface";

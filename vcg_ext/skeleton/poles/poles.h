@@ -49,6 +49,8 @@ inline PoleSet polesOfComponent(const SurfaceMesh& mesh, const PrincipalFrame& f
 	SurfaceMesh own = mesh.copied(progress.part(0, 0));
 	reportedLoop(own.vertexSlots(), progress.part(0, 0.01), "Measuring the surface",
 		[&](int v) { own.position[v] = frame.onGrid(own.position[v]); });
+	if (frame.isMirrored())
+		own.turnOver([](int) { return true; }, progress.part(0.01, 0.01));
 	const Progress ofSearch = progress.part(0.01, 1);
 	PoleSet poles;
 	if (method == PoleMethod::Balls)

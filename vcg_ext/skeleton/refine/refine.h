@@ -555,6 +555,7 @@ inline Refinement refineChecked(const CurveSkeleton& curve, const SurfaceMesh& s
 	SurfaceMesh unit = surface.copied(progress.part(0.02, 0.02));
 	detail::reportedLoop(surface.vertexSlots(), progress.part(0.02, 0.03), what,
 		[&](int v) { unit.position[v] = toUnit(surface.position[v], component[v]); });
+	turnOverMirrored(unit, component, frame, progress.part(0.03, 0.03));
 
 	Refinement result;
 	CurveSkeleton& refined = result.skeleton;

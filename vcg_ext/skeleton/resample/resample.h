@@ -24,6 +24,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -82,11 +83,17 @@ inline SurfaceMesh resampleAll(const MeasuredSurface& surface,
 	// The input as the passes like it: neighbours near each other, no triangles without a normal.
 	const char* const what = "Ordering the surface";
 	const auto onGrid = [&](int c, const Point3d& p) { return surface.frame(c).onGrid(p); };
+	std::optional<SurfaceMesh> turnedOver;
+	for (const PrincipalFrame& frame : surface.allFrames())
+		if (frame.isMirrored() && !turnedOver) {
+			turnedOver = surface.mesh().copied(progress.part(0, 0));
+			turnOverMirrored(*turnedOver, component, surface.allFrames(), progress.part(0, 0));
+		}
+	const SurfaceMesh& outwards = turnedOver ? *turnedOver : surface.mesh();
 	const std::vector<int> seeds = leastHalfEdges(
-		surface.mesh(), component, components,
-		[&](int v) { return onGrid(component[v], surface.mesh().position[v]); },
-		progress.part(0, 0.01));
-	const Numbering number = breadthFirstOrder(surface.mesh(), seeds, progress.part(0.01, 0.06));
+		outwards, component, components,
+		[&](int v) { return onGrid(component[v], outwards.position[v]); }, progress.part(0, 0.01));
+	const Numbering number = breadthFirstOrder(outwards, seeds, progress.part(0.01, 0.06));
 	std::vector<double> localLength; // on the grid
 	if (!field.empty()) {
 		std::vector<double> ofInput;
@@ -99,7 +106,7 @@ inline SurfaceMesh resampleAll(const MeasuredSurface& surface,
 	const auto lengthAt = [&](int v) {
 		return localLength.empty() ? targetLength[number.component[v]] : localLength[v];
 	};
-	SurfaceMesh reference = surface.mesh().renumbered(
+	SurfaceMesh reference = outwards.renumbered(
 		number.vertex, number.face, number.firstCorner, progress.part(0.06, 0.1));
 	detail::reportedLoop(reference.vertexSlots(), progress.part(0.1, 0.12), what,
 		[&](int v) { reference.position[v] = onGrid(number.component[v], reference.position[v]); });
@@ -129,6 +136,7 @@ inline SurfaceMesh resampleAll(const MeasuredSurface& surface,
 		const int c = componentOfResult[v];
 		result.position[v] = surface.frame(c).out(frameOfResult[c].snapped(result.position[v]));
 	});
+	turnOverMirrored(result, componentOfResult, surface.allFrames(), end);
 	return result;
 }
 
