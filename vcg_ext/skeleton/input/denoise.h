@@ -310,9 +310,9 @@ inline NoiseReport measureNoise(const MeasuredSurface& surface,
 	NoiseReport report;
 	for (int c = 0; c < components; ++c) {
 		const double edge = edgeSum[c] / edgeCount[c] / surface.diagonal(c);
-		const bool isShape = edge > coarsestEdge || noise[c].whiteness < leastWhiteness;
-		const double level = isShape ? 0 : noise[c].deviation / surface.diagonal(c);
-		const bool clean = level < least || level < leastOfEdge * edge;
+		const double level = edge > coarsestEdge ? 0 : noise[c].deviation / surface.diagonal(c);
+		const bool clean =
+			level < least || level < leastOfEdge * edge || noise[c].whiteness < leastWhiteness;
 		report.level = std::max(report.level, level);
 		report.rounds.push_back(clean ? 0 : level < strong ? fewRounds : manyRounds);
 	}
