@@ -44,7 +44,11 @@ Results run(FilterRun& run)
 		return results;
 	}
 #endif
-	const mcf::CurveSkeleton skeleton = mcf::collapseInside(*found.stage, epsilon, run.progress);
+	mcf::CutCurves cut;
+	const mcf::CurveSkeleton skeleton =
+		mcf::collapseInside(*found.stage, epsilon, run.progress, &cut);
+	if (cut.components > 0)
+		run.log(QString::fromStdString(cut.text()));
 
 	DocumentEdit edit(run.document);
 	const MeshModel* surface = layerOf(run.document, found.surface);

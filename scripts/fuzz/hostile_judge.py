@@ -80,12 +80,14 @@ class Judge:
             2 * reach * (SINGLE_EPSILON if single else 2.0 ** -52), promised) + 1e-12
         count, self.component = component_of_vertices(len(self.vertices), self.faces)
         self.solids = []
+        self.diagonals = 0.0  # of the components, together
         for number in np.unique(self.component[self.faces[:, 0]]):
             own = self.faces[self.component[self.faces[:, 0]] == number]
             corner = [self.vertices[own[:, k]] - self.vertices[own[0, 0]] for k in range(3)]
             if np.einsum("ij,ij->", corner[0], np.cross(corner[1], corner[2])) < 0:
                 own = own[:, ::-1]
             points, numbers = np.unique(own, return_inverse=True)
+            self.diagonals += float(np.linalg.norm(np.ptp(self.vertices[points], axis=0)))
             self.solids.append((number, self.vertices[points], numbers.reshape(-1, 3)))
         # Whose vertices the attribute mcfskel_node of the input can be asked for.
         self.corresponds = mesh.solid is None
@@ -114,8 +116,8 @@ class Judge:
         extent = self.expected.extent / self.unit
         if not length <= MAX_LENGTH * extent:
             found.append(("explosion", f"length {length:.4g}, the features' is {extent:.4g}"))
-        bound = MAX_NODES_PER_DIAGONAL * (
-            self.expected.components + extent / np.linalg.norm(self.high - self.low))
+        # The features' lengths are known together only: each component's share is as its diagonal.
+        bound = MAX_NODES_PER_DIAGONAL * self.expected.components * (1 + extent / (self.diagonals or 1))
         if len(nodes) > bound:
             found.append(("explosion", f"{len(nodes)} nodes"))
         all_edges = np.vstack([edges, edges_of(faces)]) if len(faces) else edges

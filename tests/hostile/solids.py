@@ -8,7 +8,7 @@ import numpy as np
 
 from .expectation import Hostile, either, skeleton, skeleton_if, standing_for
 from .primitives import (Mesh, Rng, box, cell_surface, component_of_vertices, diagonal,
-                         filled_to_manifold, genus, halved, hull, joined, log_uniform, prism, revolved,
+                         edges as edges_of, filled_to_manifold, genus, halved, hull, joined, log_uniform, prism, revolved,
                          rotation, sphere, tube, turned)
 
 # The pipeline takes coordinates in single precision: a body that is thinner than this, compared with its
@@ -575,9 +575,14 @@ def self_crossing_spiral(rng: Rng) -> Hostile:
 def noise(rng: Rng) -> Hostile:
     """A ball whose vertices are moved by up to half its size, in any direction."""
     vertices, faces = sphere(int(rng.integers(1, 4)))
-    return either((vertices + rng.uniform(0.02, 1) * rng.normal(size=vertices.shape) * 0.5, faces),
+    vertices = vertices + rng.uniform(0.02, 1) * rng.normal(size=vertices.shape) * 0.5
+    reach = np.linalg.norm(vertices, axis=1)
+    beside = reach.copy()  # the farthest of the neighbours
+    for a, b in edges_of(faces):
+        beside[a], beside[b] = max(beside[a], reach[b]), max(beside[b], reach[a])
+    return either((vertices, faces),
                   "parts that are inside out may outweigh the others, and no volume be left",
-                  extent=20.0)
+                  extent=20.0 + float(reach[reach >= beside].sum()))
 
 
 def waist(rng: Rng) -> Hostile:

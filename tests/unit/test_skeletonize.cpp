@@ -537,6 +537,33 @@ TEST(Skeletonize, ThePapersPresetIsFig4AndNothingElse)
 	EXPECT_TRUE(differ(result.curve, run(soup, coarse()).curve));
 }
 
+TEST(Skeletonize, ACrowdSharesTheWorkAndSaysSo)
+{
+	constexpr int count = 72;
+	shapes::Soup few, crowd;
+	for (int i = 0; i < count; ++i) {
+		crowd = shapes::joined(
+			{crowd, shapes::moved(shapes::box(3, 1, 1), {5.0 * (i % 9), 3.0 * (i / 9), 0})});
+		if (i == 20)
+			few = crowd;
+	}
+	Observer observer;
+	std::string log;
+	observer.onNote = [&](const std::string& text) { log += text + "\n"; };
+	const Skeletonization shared =
+		skeletonize(crowd.points, crowd.triangles, Parameters(), Progress(), observer);
+	EXPECT_NEAR(shared.stage->epsilon, 0.002 * std::sqrt(count / 50.0), 1e-12);
+	EXPECT_NE(log.find("72 components: epsilon is 0.24 %"), std::string::npos) << log;
+	EXPECT_EQ(statistics(shared.curve).components, count);
+	EXPECT_EQ(statistics(shared.curve).cycles, 0);
+	EXPECT_EQ(shared.refined, 1);
+
+	Parameters chosen;
+	chosen.epsilon = 0.003;
+	EXPECT_EQ(skeletonize(crowd.points, crowd.triangles, chosen).stage->epsilon, 0.003);
+	EXPECT_EQ(skeletonize(few.points, few.triangles).stage->epsilon, 0.002);
+}
+
 TEST(Skeletonize, DoesNotEndWhereWallsHavePassedEachOther)
 {
 	// The walls of a box go to its middle, and through each other, in the first steps: its volume is gone, and

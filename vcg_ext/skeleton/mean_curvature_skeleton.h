@@ -221,9 +221,12 @@ public:
 		Begin();
 		if (stage->hasSheets())
 			return CollapseKeepingSheets();
+		mcf::CutCurves cut;
 		curve = parameters.tidyCurve
-			? mcf::collapseInside(*stage, parameters.epsilon, progress)
+			? mcf::collapseInside(*stage, parameters.epsilon, progress, &cut)
 			: mcf::collapseToCurve(*stage, parameters.epsilon, progress, false);
+		if (params.on_note && cut.components > 0)
+			params.on_note(cut.text());
 		sheets.reset();
 	}
 

@@ -18,6 +18,7 @@
 #include <skeleton/graph/closest_curve.h>
 #include <skeleton/graph/join_pieces.h>
 #include <skeleton/input/check_input.h>
+#include <skeleton/mesh/components.h>
 #include <skeleton/mesh/surface_rounding.h>
 #include <skeleton/poles/poles.h>
 #include <skeleton/refine/refine.h>
@@ -26,7 +27,9 @@
 #include <skeleton/sheets/collapse_with_sheets.h>
 #include <skeleton/spatial/transferred_nodes.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -95,7 +98,9 @@ struct Skeletonization
 	std::shared_ptr<const Stage> stage;
 	/// The noise of the input; not measured if it is not resampled.
 	NoiseReport noise;
-	/// Fraction of the components whose curve is refined; 0 if it was not asked for.
+	/// The components whose curve was cut when it was brought inside.
+	CutCurves cut;
+	/// Fraction of the components whose curve is refined, and whole, see CutCurves; 0 if it was not asked for.
 	double refined = 0;
 	/// What became of each component in the refinement.
 	RefineReport refinement;
@@ -139,6 +144,22 @@ private:
 } // namespace detail
 
 namespace detail {
+
+/**
+ * Of many components none is looked at as closely as one alone: beyond `fewComponents` the default epsilon grows
+ * with the root of their number, so that the work grows no faster than it. A choice of the user's stays, and so does the
+ * paper's.
+ */
+inline Parameters sharedAmong(Parameters parameters, int components)
+{
+	constexpr double fewComponents = 50, rounding = 1e-6;
+	const double usual = Parameters().epsilon;
+	const bool isUsual = std::abs(parameters.epsilon - usual) <= rounding * usual;
+	if (isUsual && parameters.tidyCurve && components > fewComponents)
+		parameters.epsilon = std::min(
+			parameters.epsilon * std::sqrt(components / fewComponents), Parameters::maxEpsilon);
+	return parameters;
+}
 
 /// skeletonize(), on the surface that the parameters say, whatever comes out.
 inline Skeletonization skeletonizeOnce(const SurfaceInput& input, const Parameters& given,
@@ -188,7 +209,8 @@ inline Skeletonization skeletonizeOnce(const SurfaceInput& input, const Paramete
 		result.sheets = collapseWithSheets(
 			stage, parameters.epsilon, progress.part(0.85, 0.9), observer.onNote);
 	else if (parameters.tidyCurve)
-		result.curve = collapseInside(stage, parameters.epsilon, progress.part(0.85, 0.9));
+		result.curve =
+			collapseInside(stage, parameters.epsilon, progress.part(0.85, 0.9), &result.cut);
 	else
 		result.curve = collapseToCurve(stage, parameters.epsilon, progress.part(0.85, 0.9), false);
 	result.seconds.collapse = clock.end(Phase::Collapse);
@@ -205,14 +227,19 @@ inline Skeletonization skeletonizeOnce(const SurfaceInput& input, const Paramete
 		Refinement refined = refineChecked(result.curve, surface, scaled, progress.part(0.9, 0.99),
 			parameters.poleMethod == PoleMethod::Balls ? result.poles.get() : nullptr);
 		result.curve = std::move(refined.skeleton);
-		result.refined = refined.report.fraction();
 		result.refinement = refined.report;
+		result.refined = result.refinement.fraction();
+		if (result.cut.components > 0)
+			result.refined = double(std::max(result.refinement.refined - result.cut.components, 0))
+				/ result.refinement.components;
 	}
 	result.seconds.refine = clock.end(Phase::Refine);
 
 	result.node = parameters.resample
-		? transferredNodes(surface, result.nodeOfSurface(), *input.mesh, progress.part(0.99, 1))
+		? transferredNodes(surface, result.nodeOfSurface(), *input.mesh, progress.part(0.99, 0.99))
 		: result.nodeOfSurface();
+	if (parameters.resample && parameters.refine && !result.sheets && held.empty())
+		bringInsideInput(result.curve, surface, *input.mesh, result.node, progress.part(0.99, 1));
 	return result;
 }
 
@@ -284,25 +311,55 @@ inline bool isBetter(const SurfaceMesh& surface, const Skeletonization& asItIs,
  * That shows in the end: its curve cannot be refined, since that would leave the surface. Then the surface is
  * contracted as it is as well, and the better curve is taken, see detail::isBetter(), which is said.
  *
- * @param given      all of them are read. What is too thin for a resampled surface to follow, see
+ * @param parameters all of them are read; the default epsilon is larger for more than 50 components, see
+ *                   sharedAmong(). What is too thin for a resampled surface to follow, see
  *                   fieldOfResampling(), is not contracted and refined adaptively either.
  * @param refinement the knobs of refine(), where parameters.refine is set.
  * @throws InvalidParameter, InvalidInput, SolverError, Cancelled.
  * Complexity: O(V log V) and some 10 to 40 steps of the flow; twice that for what is too thin.
  */
-inline Skeletonization skeletonize(const SurfaceInput& input, const Parameters& given,
+inline Skeletonization skeletonize(const SurfaceInput& input, const Parameters& parameters,
 	const Progress& progress = Progress(), const Observer& observer = Observer(),
 	const RefineParameters& refinement = RefineParameters())
 {
 	constexpr int maxVerticesAsItIs = 100000;
 	constexpr double once = 0.97; // of the time: it is seldom that both are needed
-	given.check();
+	parameters.check();
 	refinement.check();
+	int components = 0;
+	connectedComponents(*input.mesh, &components, progress.part(0, 0));
+	const Parameters given = detail::sharedAmong(parameters, components);
+	const auto note = [&](const std::string& text) {
+		if (observer.onNote && !text.empty())
+			observer.onNote(text);
+	};
+	if (given.epsilon != parameters.epsilon)
+		note(detail::sentence(2, components, " components: epsilon is ", 100 * given.epsilon,
+			" % of the diagonal of each."));
 	Skeletonization result =
 		detail::skeletonizeOnce(input, given, progress.part(0, once), observer, refinement);
+	if (result.sheets && result.sheets->givenUp > 0 && result.sheets->skeleton.faces.empty()
+		&& input.held.empty()) {
+		// A sheet that is collapsed to a curve only in the end leaves a thicket.
+		note("No sheet could be kept: the shape is contracted without sheets.");
+		if (observer.onStartOver)
+			observer.onStartOver();
+		Parameters curvesOnly = given;
+		curvesOnly.keepSheets = curvesOnly.refine = false;
+		const SheetCollapse found = std::move(*result.sheets);
+		const PhaseSeconds seconds = result.seconds;
+		Observer ofOther = observer;
+		ofOther.onPhase = nullptr; // each has ended once
+		result =
+			detail::skeletonizeOnce(input, curvesOnly, progress.part(once, 1), ofOther, refinement);
+		result.seconds += seconds;
+		result.sheets = withoutSheets(result.curve);
+		result.sheets->sheets = result.sheets->givenUp = found.sheets;
+	}
+	const bool isStopped =
+		!result.stage->converged && given.maxIterations < Parameters().maxIterations;
 	const bool isDoubtful = given.resample && given.refine && !result.sheets && input.held.empty()
-		&& result.refined < 1 && result.stage->converged
-		&& input.mesh->vertexCount() <= maxVerticesAsItIs;
+		&& result.refined < 1 && !isStopped && input.mesh->vertexCount() <= maxVerticesAsItIs;
 	std::vector<Stage> stages;
 	bool isAsItIs = false;
 	if (isDoubtful) {
@@ -326,10 +383,6 @@ inline Skeletonization skeletonize(const SurfaceInput& input, const Parameters& 
 			// Then there is nothing to choose from.
 		}
 	}
-	const auto note = [&](const std::string& text) {
-		if (observer.onNote && !text.empty())
-			observer.onNote(text);
-	};
 	if (isAsItIs) {
 		note(
 			"The shape is too thin for its resampled surface: the skeleton is that of the surface as it is.");
@@ -338,6 +391,7 @@ inline Skeletonization skeletonize(const SurfaceInput& input, const Parameters& 
 		for (Stage& stage : stages)
 			observer.onStage(std::move(stage));
 	}
+	note(result.cut.text());
 	note(result.refinement.text());
 	if (given.join && result.sheets)
 		note("The pieces are not joined: that is for curves without sheets.");

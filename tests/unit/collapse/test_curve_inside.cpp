@@ -143,6 +143,117 @@ TEST(CurveInside, AWayThatHalvingDoesNotFindGoesOverTheSurface)
 	EXPECT_GT(statistics(inside).length, 15) << "round the bend";
 }
 
+namespace {
+
+/// A tight U, and a curve that goes up one arm and then ten times from arm to arm, outside.
+Curve zigzagOverAGap()
+{
+	shapes::Soup soup = shapes::subdivided(shapes::subdivided(shapes::box(10, 0.4, 0.4)));
+	soup = shapes::transformed(soup, [](const Point3d& p) {
+		const double angle = M_PI * p[0] / 10;
+		return Point3d((1 + p[1]) * 3 * std::cos(angle), (1 + p[1]) * std::sin(angle) * 9, p[2]);
+	});
+	std::vector<Point3d> places;
+	std::vector<std::array<int, 2>> edges;
+	for (int i = 0; i < 8; ++i) // up the arm, along the middle
+		places.emplace_back(
+			1.2 * 3 * std::cos(0.05 + 0.1 * i), 1.2 * 9 * std::sin(0.05 + 0.1 * i), 0.2);
+	for (int i = 0; i < 20; ++i)
+		places.emplace_back(
+			(i % 2 ? 3.6 : -3.6) * std::cos(0.03), 1.2 * 9 * std::sin(0.03), 0.15 + 0.005 * i);
+	for (int i = 0; i + 1 < int(places.size()); ++i)
+		edges.push_back({i, i + 1});
+	return Curve(soup, places, edges);
+}
+
+} // namespace
+
+TEST(CurveInside, WhatWouldBeFarTooLongIsCutOffAndSaid)
+{
+	Curve curve = zigzagOverAGap();
+	ASSERT_GT(outside(curve.surface, curve.skeleton), 0.1);
+	CutCurves cut;
+	const CurveSkeleton inside = broughtInside(curve.skeleton, curve.surface.position,
+		curve.surface.triangles(), std::vector<int>(curve.surface.position.size(), 0), 1,
+		curve.component, Progress(), TooFarOutside::CutOff, &cut);
+	EXPECT_EQ(cut.components, 1);
+	EXPECT_NE(cut.text().find("1 component "), std::string::npos);
+	EXPECT_LT(outside(curve.surface, inside), 1e-6);
+	EXPECT_EQ(statistics(inside).components, 1);
+	EXPECT_EQ(statistics(inside).cycles, 0);
+	// The arm's own part is the longest.
+	ASSERT_GE(inside.position.size(), 8u);
+	for (int i = 0; i < 8; ++i)
+		EXPECT_EQ(inside.position[i], curve.skeleton.position[i]);
+	EXPECT_EQ(curve.component, std::vector<int>(inside.position.size(), 0));
+	for (int A : inside.node) {
+		ASSERT_GE(A, 0);
+		ASSERT_LT(A, int(inside.position.size()));
+	}
+}
+
+TEST(CurveInside, WhatWouldBeFarTooLongStaysWhereThatIsAskedFor)
+{
+	Curve curve = zigzagOverAGap();
+	const CurveSkeleton inside = broughtInside(curve.skeleton, curve.surface.position,
+		curve.surface.triangles(), std::vector<int>(curve.surface.position.size(), 0), 1,
+		curve.component, Progress(), TooFarOutside::Stay);
+	EXPECT_TRUE(checks::sameBits(inside, curve.skeleton));
+}
+
+TEST(CurveInside, OfATooLongCurveTheCyclesStay)
+{
+	// A long oval; from its narrow part a curve leads over the gap, to and fro.
+	const auto stretched = [](const Point3d& p) { return Point3d(8 * p[0], p[1], p[2]); };
+	const shapes::Soup oval = shapes::transformed(shapes::torus(1, 0.02, 200, 8), stretched);
+	std::vector<Point3d> places;
+	for (const Point3d& p : ring(100, 1))
+		places.push_back(stretched(Point3d(p[0], p[1], 0)));
+	std::vector<std::array<int, 2>> edges = closed(100);
+	int last = 25;
+	for (int i = 0; i < 40; ++i) {
+		places.emplace_back(0, i % 2 ? 1 : -1, 0.0002 * (i + 1));
+		edges.push_back({last, int(places.size()) - 1});
+		last = int(places.size()) - 1;
+	}
+	std::sort(edges.begin(), edges.end());
+	Curve curve(oval, places, edges);
+	const CurveSkeleton inside = curve.inside();
+	EXPECT_LT(outside(curve.surface, inside), 1e-6);
+	EXPECT_EQ(statistics(inside).components, 1);
+	EXPECT_EQ(statistics(inside).cycles, 1);
+	EXPECT_NEAR(statistics(inside).length, 32.7, 1) << "the oval's perimeter, and no more";
+}
+
+TEST(CurveInside, TheCurveOfAFatterSurfaceComesIntoTheOneThatItStandsFor)
+{
+	const shapes::Soup fat = shapes::torus(1, 0.3, 60, 20), thin = shapes::torus(1, 0.1, 60, 12);
+	Curve curve(fat, ring(40, 1.2), closed(40));
+	curve.skeleton.significance.assign(40, 0.5);
+	curve.skeleton.significance[7] = 0.25;
+	const SurfaceMesh input = thin.mesh();
+	std::vector<int> node;
+	for (const Point3d& p : input.position) {
+		const double angle = std::atan2(p[1], p[0]);
+		node.push_back(int(std::lround(angle / (2 * M_PI) * 40) + 40) % 40);
+	}
+	CurveSkeleton inside = curve.skeleton;
+	bringInsideInput(inside, curve.surface, input, node);
+	EXPECT_LT(outside(input, inside), 1e-6);
+	EXPECT_EQ(statistics(inside).cycles, 1);
+	EXPECT_EQ(statistics(inside).components, 1);
+	EXPECT_EQ(inside.node, curve.skeleton.node);
+	ASSERT_EQ(inside.radius.size(), inside.position.size());
+	ASSERT_EQ(inside.significance.size(), inside.position.size());
+	for (double s : inside.significance)
+		EXPECT_TRUE(s == 0.5 || s == 0.25);
+
+	Curve centred(fat, ring(40, 1), closed(40));
+	CurveSkeleton same = centred.skeleton;
+	bringInsideInput(same, centred.surface, input, node);
+	EXPECT_TRUE(checks::sameBits(same, centred.skeleton));
+}
+
 TEST(CurveInside, EachComponentIsBroughtIntoItsOwn)
 {
 	const shapes::Soup both = shapes::joined(

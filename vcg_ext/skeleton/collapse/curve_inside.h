@@ -15,6 +15,7 @@
 #include <skeleton/graph/curve_skeleton.h>
 #include <skeleton/graph/skeleton_radius.h>
 #include <skeleton/mesh/component_meshes.h>
+#include <skeleton/mesh/components.h>
 #include <skeleton/mesh/surface_mesh.h>
 #include <skeleton/spatial/solid_test.h>
 
@@ -23,7 +24,10 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
+#include <numeric>
 #include <queue>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -57,11 +61,18 @@ public:
 	const std::vector<char>& changedNodes() const { return changed; }
 	const std::vector<std::array<int, 2>>& curveEdges() const { return edges; }
 
+	enum class Outcome {
+		AllInside, ///< already
+		Brought,
+		TooLong, ///< nodes are inside, edges are not: the ways would be longer than the curve deserves
+	};
+
 	/**
-	 * Moves nodes that are outside, then bends the edges that are. @return whether anything was outside.
-	 * @throws SolverError if something still is; Cancelled.
+	 * Moves nodes that are outside, then bends the edges that are; not where that would make the curve longer
+	 * than twice itself and three diagonals, as where a surface runs into itself all over.
+	 * @throws SolverError if something still is outside; Cancelled.
 	 */
-	bool bringInside()
+	Outcome bringInside()
 	{
 		changed.assign(place.size(), 0);
 		std::vector<char> isOutside(place.size(), 0);
@@ -71,11 +82,8 @@ public:
 			isOutside[A] = !solid.isInside(place[A], tolerance);
 			any |= isOutside[A];
 		}
-		const auto isInside = [&](const std::array<int, 2>& edge) {
-			return segmentIsInside(place[edge[0]], place[edge[1]]);
-		};
-		if (!any && std::all_of(edges.begin(), edges.end(), isInside))
-			return false;
+		if (!any && allInside())
+			return Outcome::AllInside;
 		std::vector<std::vector<int>> neighbours(place.size());
 		for (const auto& [A, B] : edges) {
 			neighbours[A].push_back(B);
@@ -87,22 +95,125 @@ public:
 		double length = 0;
 		for (const auto& [A, B] : edges)
 			length += Distance(place[A], place[B]);
-		const double maxLength = longestOfCurve * (length + 1);
-		bool anyStraight = false;
+		return bendEdges(longerOfCurve * length + longerOfDiagonal) ? Outcome::Brought
+																	: Outcome::TooLong;
+	}
+
+	/**
+	 * Cuts off what hangs on the rest by edges that are outside: all but edges of cycles, and of ways between them,
+	 * which are bent however long that makes them. The rest is that with the cycles; in a tree the longest part.
+	 * @return for each node that was there the one that takes its place: itself, or the nearest along the tree that
+	 *         is left.
+	 * @throws SolverError if something still is outside.
+	 */
+	std::vector<int> cutOff()
+	{
+		const int n = int(place.size());
+		std::vector<std::vector<int>> all(place.size()), inner(place.size());
+		for (const auto& edge : edges) {
+			const bool isInner = segmentIsInside(place[edge[0]], place[edge[1]]);
+			for (int k = 0; k < 2; ++k) {
+				all[edge[k]].push_back(edge[1 - k]);
+				if (isInner)
+					inner[edge[k]].push_back(edge[1 - k]);
+			}
+		}
+		std::vector<int> degree, leafs;
+		for (int A = 0; A < n; ++A) {
+			degree.push_back(int(all[A].size()));
+			if (degree[A] <= 1)
+				leafs.push_back(A);
+		}
+		std::vector<char> kept(place.size(), 1);
+		while (!leafs.empty()) {
+			const int A = leafs.back();
+			leafs.pop_back();
+			kept[A] = 0;
+			for (int B : all[A])
+				if (--degree[B] == 1)
+					leafs.push_back(B);
+		}
+		std::vector<int> seeds;
+		for (int A = 0; A < n; ++A)
+			if (kept[A])
+				seeds.push_back(A);
+		if (seeds.empty())
+			seeds.push_back(longestPart(inner));
+		const auto reach = [&](const std::vector<std::vector<int>>& over, const auto& visit) {
+			for (size_t i = 0; i < seeds.size(); ++i)
+				for (int B : over[seeds[i]])
+					visit(seeds[i], B);
+		};
+		for (int A : seeds)
+			kept[A] = 1;
+		reach(inner, [&](int, int B) {
+			if (!kept[B]) {
+				kept[B] = 1;
+				seeds.push_back(B);
+			}
+		});
+		std::vector<int> heir(place.size(), -1);
+		for (int A : seeds)
+			heir[A] = A;
+		reach(all, [&](int A, int B) {
+			if (heir[B] < 0) {
+				heir[B] = heir[A];
+				seeds.push_back(B);
+			}
+		});
+		const auto isCut = [&](const std::array<int, 2>& edge) {
+			return !kept[edge[0]] || !kept[edge[1]];
+		};
+		edges.erase(std::remove_if(edges.begin(), edges.end(), isCut), edges.end());
+		bendEdges(std::numeric_limits<double>::infinity());
+		return heir;
+	}
+
+private:
+	using Path = std::vector<Point3d>;
+
+	/// How long ways inside may make a curve: so many times itself and so many diagonals.
+	static constexpr double longerOfCurve = 2, longerOfDiagonal = 3;
+
+	static double lengthOf(const Path& between, const Point3d& first, const Point3d& last)
+	{
+		double length = 0;
+		const Point3d* from = &first;
+		for (const Point3d& p : between) {
+			length += Distance(*from, p);
+			from = &p;
+		}
+		return length + Distance(*from, last);
+	}
+
+	bool allInside() const
+	{
+		return std::all_of(edges.begin(), edges.end(), [&](const std::array<int, 2>& edge) {
+			return segmentIsInside(place[edge[0]], place[edge[1]]);
+		});
+	}
+
+	/// Bends the edges that are outside, unless the curve becomes longer than that: then it stays as it is.
+	/// @throws SolverError if something still is outside.
+	bool bendEdges(double maxLength)
+	{
+		const size_t nodes = place.size();
+		double length = 0;
+		for (const auto& [A, B] : edges)
+			length += Distance(place[A], place[B]);
 		std::vector<std::array<int, 2>> bent;
 		for (const auto& edge : edges) {
-			if (isInside(edge)) {
+			const Point3d from = place[edge[0]], to = place[edge[1]];
+			if (segmentIsInside(from, to)) {
 				bent.push_back(edge);
 				continue;
 			}
-			const Path way = inside(place[edge[0]], place[edge[1]]);
-			length += lengthOf(way, place[edge[0]], place[edge[1]])
-				- Distance(place[edge[0]], place[edge[1]]);
+			const Path way = inside(from, to);
+			length += lengthOf(way, from, to) - Distance(from, to);
 			if (!(length <= maxLength)) {
-				length = maxLength;
-				anyStraight = true;
-				bent.push_back(edge);
-				continue;
+				place.resize(nodes);
+				changed.resize(nodes);
+				return false;
 			}
 			int last = edge[0];
 			for (const Point3d& p : way) {
@@ -115,26 +226,37 @@ public:
 			bent.push_back({last, edge[1]});
 		}
 		edges = std::move(bent);
-		if (!anyStraight && !std::all_of(edges.begin(), edges.end(), isInside))
+		if (!allInside())
 			throw SolverError("The curve could not be brought inside the shape.");
 		return true;
 	}
 
-private:
-	using Path = std::vector<Point3d>;
-
-	/// Ways inside may make a curve this many times as long as itself and the diagonal together, no longer.
-	static constexpr double longestOfCurve = 3;
-
-	static double lengthOf(const Path& between, const Point3d& first, const Point3d& last)
+	/// A node of the connected part of a graph on the places that is the longest.
+	int longestPart(const std::vector<std::vector<int>>& neighbours) const
 	{
-		double length = 0;
-		const Point3d* from = &first;
-		for (const Point3d& p : between) {
-			length += Distance(*from, p);
-			from = &p;
+		std::vector<char> seen(place.size(), 0);
+		double most = -1;
+		int best = 0;
+		for (size_t first = 0; first < place.size(); ++first) {
+			if (seen[first])
+				continue;
+			double length = 0; // twice
+			std::vector<int> part(1, int(first));
+			seen[first] = 1;
+			for (size_t i = 0; i < part.size(); ++i)
+				for (int B : neighbours[part[i]]) {
+					length += Distance(place[part[i]], place[B]);
+					if (!seen[B]) {
+						seen[B] = 1;
+						part.push_back(B);
+					}
+				}
+			if (length > most) {
+				most = length;
+				best = int(first);
+			}
 		}
-		return length + Distance(*from, last);
+		return best;
 	}
 
 	const SolidTest& solid;
@@ -352,6 +474,54 @@ private:
 
 } // namespace detail
 
+namespace detail {
+
+/// Leaves the nodes out whose place another one takes. @param heir of each node: itself for those that stay.
+inline CurveSkeleton withoutHeirless(
+	CurveSkeleton skeleton, const std::vector<int>& heir, std::vector<int>& ofNode)
+{
+	std::vector<int> number(heir.size(), -1);
+	size_t count = 0;
+	for (size_t A = 0; A < heir.size(); ++A)
+		if (heir[A] == int(A)) {
+			number[A] = int(count);
+			skeleton.position[count] = skeleton.position[A];
+			ofNode[count++] = ofNode[A];
+		}
+	skeleton.position.resize(count);
+	ofNode.resize(count);
+	for (auto& [A, B] : skeleton.edges) {
+		A = number[A];
+		B = number[B];
+	}
+	for (int& A : skeleton.node)
+		A = number[heir[A]];
+	return skeleton;
+}
+
+} // namespace detail
+
+/// How many components have lost parts of their curves, see TooFarOutside::CutOff.
+struct CutCurves
+{
+	int components = 0;
+
+	/// One plain line; empty if there are none.
+	std::string text() const
+	{
+		return components == 0 ? ""
+							   : "The curve of " + std::to_string(components)
+				+ (components == 1 ? " component" : " components")
+				+ " was far outside: only what could be brought inside is left.";
+	}
+};
+
+/// What broughtInside() does with a curve that it cannot bring inside at a reasonable length.
+enum class TooFarOutside {
+	CutOff, ///< what hangs on the rest by edges that are outside is left out, the smaller part
+	Stay,
+};
+
 /**
  * Brings a curve inside the solids that it came from: nodes go to the middle of a chord of the solid,
  * edges are bent, with new nodes. Its topology stays, as do the nodes that are inside, to the last bit.
@@ -359,17 +529,20 @@ private:
  * crosses itself may be turned inside out by it.
  *
  * @param surface     the vertices of all components, mesh units, and @param triangles between them.
- * @param component   of each vertex; @param ofNode of each node, grows with the nodes.
+ * @param component   of each vertex; @param ofNode of each node, follows the nodes.
+ * @param tooFar      for a component whose curve would become longer than twice itself, its nodes inside, and three diagonals by
+ *                    the ways inside, as where a surface runs into itself all over.
+ * @param cut         receives how many such components there are; may be null.
  * @return the curve; edges in order, new nodes last. Radii are not its business.
- * @post no node is outside by more than 5e-7 of the diagonal, and no edge, unless the ways inside would make
- *       the curve longer than three times itself and the diagonal, as where a surface runs into itself all
- *       over: the last edges then stay straight.
+ * @post no node is outside by more than 5e-7 of the diagonal, and no edge, but for components that are too far
+ *       outside and stay.
  * @throws SolverError, Cancelled. Complexity: O(F) for a curve that is inside; at most O(F log F) for each
  *         edge that is not.
  */
 inline CurveSkeleton broughtInside(CurveSkeleton skeleton, const std::vector<Point3d>& surface,
 	const std::vector<Triangle>& triangles, const std::vector<int>& component, int components,
-	std::vector<int>& ofNode, const Progress& progress = Progress())
+	std::vector<int>& ofNode, const Progress& progress = Progress(),
+	TooFarOutside tooFar = TooFarOutside::CutOff, CutCurves* cut = nullptr)
 {
 	const Progress begin = progress.part(0, 0);
 	const ComponentVertices vertices(component, components, begin);
@@ -387,6 +560,9 @@ inline CurveSkeleton broughtInside(CurveSkeleton skeleton, const std::vector<Poi
 	std::vector<std::vector<std::array<int, 2>>> edges(components);
 	for (const auto& [A, B] : skeleton.edges)
 		edges[ofNode[A]].push_back({number[A], number[B]});
+	std::vector<int> heir(skeleton.position.size());
+	std::iota(heir.begin(), heir.end(), 0);
+	CutCurves found;
 	std::vector<std::array<int, 2>> all;
 	for (int c = 0; c < components; ++c) {
 		const Progress part = progress.part(double(c) / components, double(c + 1) / components);
@@ -398,26 +574,111 @@ inline CurveSkeleton broughtInside(CurveSkeleton skeleton, const std::vector<Poi
 		for (int A : nodes[c])
 			place.push_back(solid.in(skeleton.position[A]));
 		const Progress bending = part.part(0.5, 1);
-		detail::CurveIntoSolid curve(solid, place, edges[c], bending);
+		using Curve = detail::CurveIntoSolid;
+		Curve curve(solid, place, edges[c], bending);
 		curve.merged.resize(place.size());
 		for (size_t i = 0; i < points.size(); ++i)
-			curve.merged[number[node[vertices.ids[c][i]]]].push_back(int(i));
-		if (curve.bringInside())
+			if (const int A = node[vertices.ids[c][i]]; A >= 0 && ofNode[A] == c)
+				curve.merged[number[A]].push_back(int(i));
+		const Curve::Outcome outcome = curve.bringInside();
+		const bool isCut = outcome == Curve::Outcome::TooLong && tooFar == TooFarOutside::CutOff;
+		std::vector<int> ofComponent;
+		if (isCut) {
+			++found.components;
+			ofComponent = curve.cutOff();
+		}
+		std::vector<std::array<int, 2>> remaining = curve.curveEdges();
+		if (outcome == Curve::Outcome::TooLong && !isCut)
+			remaining = edges[c];
+		else if (outcome != Curve::Outcome::AllInside) {
 			for (size_t i = 0; i < curve.places().size(); ++i) {
 				if (i >= nodes[c].size()) {
 					nodes[c].push_back(int(skeleton.position.size()));
+					heir.push_back(int(skeleton.position.size()));
 					skeleton.position.push_back(Point3d(0, 0, 0));
 					ofNode.push_back(c);
 				}
 				if (curve.changedNodes()[i])
 					skeleton.position[nodes[c][i]] = solid.out(curve.places()[i]);
 			}
-		for (const auto& [i, j] : curve.curveEdges())
+			for (size_t i = 0; i < ofComponent.size(); ++i)
+				heir[nodes[c][i]] = nodes[c][ofComponent[i]];
+		}
+		for (const auto& [i, j] : remaining)
 			all.push_back({std::min(nodes[c][i], nodes[c][j]), std::max(nodes[c][i], nodes[c][j])});
 	}
 	std::sort(all.begin(), all.end());
 	skeleton.edges = std::move(all);
-	return skeleton;
+	if (cut)
+		*cut = found;
+	if (found.components == 0)
+		return skeleton;
+	return detail::withoutHeirless(std::move(skeleton), heir, ofNode);
+}
+
+/**
+ * Brings the curve of a resampled surface inside the one that was resampled, see broughtInside(): the edges of
+ * the resampling cut its corners. Radii and significance are completed.
+ *
+ * @param surface  that the curve came from, to which its correspondence refers.
+ * @param input    that was resampled, and @param node of each of its vertices its node of the curve.
+ * @post nothing has changed where all was inside, or where the components of the two surfaces do not pair off.
+ * @throws SolverError, Cancelled. Complexity: O(F log F).
+ */
+inline void bringInsideInput(CurveSkeleton& curve, const SurfaceMesh& surface,
+	const SurfaceMesh& input, const std::vector<int>& node, const Progress& progress = Progress())
+{
+	const Progress begin = progress.part(0, 0);
+	int components = 0, ofSurface = 0;
+	const std::vector<int> component = connectedComponents(input, &components, begin);
+	const std::vector<int> ofCurve =
+		componentOfNodes(curve, connectedComponents(surface, &ofSurface, begin));
+	// The nearest vertex may be a neighbouring body's: most of them tell.
+	std::vector<std::map<int, int>> votes(static_cast<size_t>(components));
+	for (size_t v = 0; v < node.size(); ++v)
+		if (node[v] >= 0)
+			++votes[size_t(component[v])][ofCurve[size_t(node[v])]];
+	std::vector<int> partner(static_cast<size_t>(ofSurface), -1);
+	for (int c = 0; c < components; ++c) {
+		const auto& count = votes[size_t(c)];
+		const auto most = std::max_element(count.begin(), count.end(),
+			[](const auto& a, const auto& b) { return a.second < b.second; });
+		if (most == count.end() || most->first < 0 || partner[size_t(most->first)] >= 0)
+			return;
+		partner[size_t(most->first)] = c;
+	}
+	std::vector<int> ofNode;
+	for (int c : ofCurve) {
+		if (c < 0 || partner[size_t(c)] < 0)
+			return;
+		ofNode.push_back(partner[size_t(c)]);
+	}
+	const size_t nodes = curve.position.size();
+	const std::vector<Point3d> before = curve.position;
+	std::vector<int> correspondence = std::exchange(curve.node, node);
+	curve = broughtInside(std::move(curve), input.position, input.triangles(), component,
+		components, ofNode, progress, TooFarOutside::Stay);
+	curve.node = std::move(correspondence);
+	if (curve.position == before)
+		return;
+	const std::vector<std::vector<int>> neighbours = curve.neighbours();
+	if (!curve.significance.empty()) {
+		const auto endOfWay = [&](int v, int next) {
+			for (int last = v; size_t(next) >= nodes;) {
+				const std::vector<int>& around = neighbours[size_t(next)];
+				last = std::exchange(next, around[0] == last ? around[1] : around[0]);
+			}
+			return curve.significance[size_t(next)];
+		};
+		std::vector<double> added;
+		for (size_t v = nodes; v < curve.position.size(); ++v)
+			added.push_back(
+				std::min(endOfWay(int(v), neighbours[v][0]), endOfWay(int(v), neighbours[v][1])));
+		curve.significance.insert(curve.significance.end(), added.begin(), added.end());
+	}
+	curve.radius =
+		meanSurfaceDistance(curve.position, surface.position, curve.node, progress.part(1, 1));
+	fillUnknownRadii(curve.radius, neighbours);
 }
 
 /**
@@ -426,8 +687,8 @@ inline CurveSkeleton broughtInside(CurveSkeleton skeleton, const std::vector<Poi
  * not known.
  * @throws SolverError, Cancelled.
  */
-inline CurveSkeleton collapseInside(
-	Stage stage, double shortestEdge = 1e-4, const Progress& progress = Progress())
+inline CurveSkeleton collapseInside(Stage stage, double shortestEdge = 1e-4,
+	const Progress& progress = Progress(), CutCurves* cut = nullptr)
 {
 	const bool isKnown = stage.surfaceTriangles && stage.heldCount() == 0;
 	if (!isKnown)
@@ -454,7 +715,7 @@ inline CurveSkeleton collapseInside(
 			}
 	const std::vector<Point3d> before = curve.position;
 	curve = broughtInside(std::move(curve), *surface, *triangles, component, components, ofNode,
-		progress.part(0.95, 1));
+		progress.part(0.95, 1), TooFarOutside::CutOff, cut);
 	if (curve.position != before) {
 		curve.radius =
 			meanSurfaceDistance(curve.position, *surface, curve.node, progress.part(1, 1));

@@ -17,6 +17,8 @@
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 
+#include <vcg/space/box3.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -113,7 +115,7 @@ struct SampledBranch
  * Minimises, with the ends fixed,
  *     sum_i |x_i - y_i|^2 + (l / h)^4 sum_i |x_(i-1) - 2 x_i + x_(i+1)|^2,
  * the smoothing spline of the points y_i at distances h. Waves along the line of a length under
- * 2 pi l are flattened, longer ones stay.
+ * 2 pi l are flattened, longer ones stay. No point leaves the line's bounding box.
  */
 inline void smoothSpline(SampledBranch& branch, double l)
 {
@@ -159,9 +161,12 @@ inline void smoothSpline(SampledBranch& branch, double l)
 	if (factor.info() != Eigen::Success)
 		throw SolverError("The skeleton could not be smoothed: choose a smaller smoothing length.");
 	const Eigen::MatrixX3d x = factor.solve(right);
+	Box3d box; // of the line: a spline swings beyond it where the line turns sharply
+	for (const Point3d& p : branch.points)
+		box.Add(p);
 	for (int i = cycle ? 0 : 1; i < n; ++i)
 		for (int axis = 0; axis < 3; ++axis)
-			branch.points[i][axis] = x(unknown(i), axis);
+			branch.points[i][axis] = std::clamp(x(unknown(i), axis), box.min[axis], box.max[axis]);
 	if (cycle)
 		branch.points[n] = branch.points[0];
 }

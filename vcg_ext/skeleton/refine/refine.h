@@ -409,7 +409,8 @@ inline std::optional<CurveSkeleton> broughtBack(
 	for (const double tolerance : {0.0, detail::outsideTolerance}) {
 		detail::CurveIntoSolid into(solid, place, edges, progress, tolerance);
 		try {
-			into.bringInside();
+			if (into.bringInside() == detail::CurveIntoSolid::Outcome::TooLong)
+				continue;
 		}
 		catch (const SolverError&) {
 			continue;

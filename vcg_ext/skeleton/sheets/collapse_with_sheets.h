@@ -55,7 +55,10 @@ inline SheetCollapse collapseWithSheets(const Stage& stage, double epsilon,
 		&& !detail::isInside(
 			result.skeleton, *stage.surface, *stage.surfaceTriangles, progress.part(0.9, 0.95))) {
 		const int sheets = result.sheets;
-		result = withoutSheets(collapseInside(stage, epsilon, progress.part(0.95, 1)));
+		CutCurves cut;
+		result = withoutSheets(collapseInside(stage, epsilon, progress.part(0.95, 1), &cut));
+		if (onNote && cut.components > 0)
+			onNote(cut.text());
 		result.sheets = result.givenUp = sheets;
 	}
 	if (!onNote)
