@@ -132,7 +132,7 @@ constexpr double noticeableWalls = 0.002;
 constexpr double layersApart = 0.01;
 
 /// The lattice of a wrap has a spacing between those of which this many squares have the surface's area.
-constexpr double usualSquares = 15000, mostSquares = 150000;
+constexpr double usualSquares = 30000, mostSquares = 150000;
 
 /// Triangles that cross others with which they share no vertex. Complexity: O(F log F) on even surfaces.
 inline int selfIntersections(const std::vector<Point3d>& points,
