@@ -206,9 +206,14 @@ inline SheetCollapse collapseOneKeepingSheets(
 		neighbours[b].push_back(a);
 	}
 	fillUnknownRadii(skeleton.radius, neighbours);
-	removeFins(skeleton);
-	openFolds(skeleton);
-	removeWhiskers(skeleton);
+	// Where walls were joined badly one of these may cut or close a loop: then it is left out.
+	const BettiNumbers before = skeleton.betti();
+	for (void (*tidied)(MesoSkeleton&) : {&removeFins, &openFolds, &removeWhiskers}) {
+		MesoSkeleton candidate = skeleton;
+		tidied(candidate);
+		if (candidate.betti() == before)
+			skeleton = std::move(candidate);
+	}
 	constexpr int smoothingRounds = 3;
 	smoothSheets(skeleton, smoothingRounds);
 	progress.report(1, "Collapsing to curves and sheets");
