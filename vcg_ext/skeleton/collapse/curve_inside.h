@@ -13,6 +13,7 @@
 #include <skeleton/core/progress.h>
 #include <skeleton/flow/stage.h>
 #include <skeleton/graph/curve_skeleton.h>
+#include <skeleton/graph/skeleton_branches.h>
 #include <skeleton/graph/skeleton_radius.h>
 #include <skeleton/mesh/component_meshes.h>
 #include <skeleton/mesh/components.h>
@@ -64,7 +65,7 @@ public:
 	enum class Outcome {
 		AllInside, ///< already
 		Brought,
-		TooLong, ///< nodes are inside, edges are not: the ways would be longer than the curve deserves
+		TooLong, ///< nodes are inside, edges are not: the detours would be too long
 	};
 
 	/**
@@ -92,16 +93,13 @@ public:
 		for (size_t A = 0; A < place.size(); ++A)
 			if (isOutside[A])
 				moveInside(int(A), neighbours[A]);
-		double length = 0;
-		for (const auto& [A, B] : edges)
-			length += Distance(place[A], place[B]);
-		return bendEdges(longerOfCurve * length + longerOfDiagonal) ? Outcome::Brought
-																	: Outcome::TooLong;
+		return bendEdges(longerOfCurve * length() + longerOfDiagonal) ? Outcome::Brought
+																	  : Outcome::TooLong;
 	}
 
 	/**
-	 * Cuts off what hangs on the rest by edges that are outside: all but edges of cycles, and of ways between them,
-	 * which are bent however long that makes them. The rest is that with the cycles; in a tree the longest part.
+	 * Removes subtrees that are attached by an edge outside. Edges of cycles, and of paths between cycles, are
+	 * bent however long that makes them. In a tree the longest part that is inside is kept.
 	 * @return for each node that was there the one that takes its place: itself, or the nearest along the tree that
 	 *         is left.
 	 * @throws SolverError if something still is outside.
@@ -186,6 +184,14 @@ private:
 		return length + Distance(*from, last);
 	}
 
+	double length() const
+	{
+		double sum = 0;
+		for (const auto& [A, B] : edges)
+			sum += Distance(place[A], place[B]);
+		return sum;
+	}
+
 	bool allInside() const
 	{
 		return std::all_of(edges.begin(), edges.end(), [&](const std::array<int, 2>& edge) {
@@ -193,14 +199,12 @@ private:
 		});
 	}
 
-	/// Bends the edges that are outside, unless the curve becomes longer than that: then it stays as it is.
+	/// Bends the edges that are outside. @return false, with nothing changed, if the curve would exceed maxLength.
 	/// @throws SolverError if something still is outside.
 	bool bendEdges(double maxLength)
 	{
 		const size_t nodes = place.size();
-		double length = 0;
-		for (const auto& [A, B] : edges)
-			length += Distance(place[A], place[B]);
+		double bentLength = length();
 		std::vector<std::array<int, 2>> bent;
 		for (const auto& edge : edges) {
 			const Point3d from = place[edge[0]], to = place[edge[1]];
@@ -209,8 +213,8 @@ private:
 				continue;
 			}
 			const Path way = inside(from, to);
-			length += lengthOf(way, from, to) - Distance(from, to);
-			if (!(length <= maxLength)) {
+			bentLength += lengthOf(way, from, to) - Distance(from, to);
+			if (!(bentLength <= maxLength)) {
 				place.resize(nodes);
 				changed.resize(nodes);
 				return false;
@@ -231,7 +235,7 @@ private:
 		return true;
 	}
 
-	/// A node of the connected part of a graph on the places that is the longest.
+	/// A node of the connected component of a graph on the places that has the greatest length.
 	int longestPart(const std::vector<std::vector<int>>& neighbours) const
 	{
 		std::vector<char> seen(place.size(), 0);
@@ -474,33 +478,6 @@ private:
 
 } // namespace detail
 
-namespace detail {
-
-/// Leaves the nodes out whose place another one takes. @param heir of each node: itself for those that stay.
-inline CurveSkeleton withoutHeirless(
-	CurveSkeleton skeleton, const std::vector<int>& heir, std::vector<int>& ofNode)
-{
-	std::vector<int> number(heir.size(), -1);
-	size_t count = 0;
-	for (size_t A = 0; A < heir.size(); ++A)
-		if (heir[A] == int(A)) {
-			number[A] = int(count);
-			skeleton.position[count] = skeleton.position[A];
-			ofNode[count++] = ofNode[A];
-		}
-	skeleton.position.resize(count);
-	ofNode.resize(count);
-	for (auto& [A, B] : skeleton.edges) {
-		A = number[A];
-		B = number[B];
-	}
-	for (int& A : skeleton.node)
-		A = number[heir[A]];
-	return skeleton;
-}
-
-} // namespace detail
-
 /// How many components have lost parts of their curves, see TooFarOutside::CutOff.
 struct CutCurves
 {
@@ -518,7 +495,7 @@ struct CutCurves
 
 /// What broughtInside() does with a curve that it cannot bring inside at a reasonable length.
 enum class TooFarOutside {
-	CutOff, ///< what hangs on the rest by edges that are outside is left out, the smaller part
+	CutOff, ///< subtrees that are attached by an edge outside are removed
 	Stay,
 };
 
@@ -530,8 +507,8 @@ enum class TooFarOutside {
  *
  * @param surface     the vertices of all components, mesh units, and @param triangles between them.
  * @param component   of each vertex; @param ofNode of each node, follows the nodes.
- * @param tooFar      for a component whose curve would become longer than twice itself, its nodes inside, and three diagonals by
- *                    the ways inside, as where a surface runs into itself all over.
+ * @param tooFar      for a component whose curve the detours inside would make longer than twice itself plus three
+ *                    diagonals, as where a surface intersects itself all over.
  * @param cut         receives how many such components there are; may be null.
  * @return the curve; edges in order, new nodes last. Radii are not its business.
  * @post no node is outside by more than 5e-7 of the diagonal, and no edge, but for components that are too far
@@ -613,7 +590,13 @@ inline CurveSkeleton broughtInside(CurveSkeleton skeleton, const std::vector<Poi
 		*cut = found;
 	if (found.components == 0)
 		return skeleton;
-	return detail::withoutHeirless(std::move(skeleton), heir, ofNode);
+	skeleton.radius.resize(skeleton.position.size(), 0);
+	std::vector<int> ofRemaining;
+	for (size_t A = 0; A < heir.size(); ++A)
+		if (heir[A] == int(A))
+			ofRemaining.push_back(ofNode[A]);
+	ofNode = std::move(ofRemaining);
+	return mergeNodes(skeleton, heir);
 }
 
 /**
