@@ -28,7 +28,9 @@ Results run(FilterRun& run)
 						  : lost)
 			+ " Make a layer NAME_meso_K current, or run 'Contraction Step' first.");
 	}
-	const double epsilon = readEpsilon(run.parameters);
+	mcf::Parameters parameters;
+	parameters.epsilon = readEpsilon(run.parameters);
+	const double epsilon = mcf::sharedAmong(parameters, int(found.stage->diagonal.size())).epsilon;
 	logIfNotConverged(
 		run, *found.stage, "Run 'Contraction Step' on the stage until it has converged.");
 #if MCFSKEL_SHEETS

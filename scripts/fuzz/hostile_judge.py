@@ -81,13 +81,19 @@ class Judge:
         count, self.component = component_of_vertices(len(self.vertices), self.faces)
         self.solids = []
         self.diagonals = 0.0  # of the components, together
+        self.relative_area = 0.0  # of the components, together, each in squares of its diagonal
         for number in np.unique(self.component[self.faces[:, 0]]):
             own = self.faces[self.component[self.faces[:, 0]] == number]
             corner = [self.vertices[own[:, k]] - self.vertices[own[0, 0]] for k in range(3)]
             if np.einsum("ij,ij->", corner[0], np.cross(corner[1], corner[2])) < 0:
                 own = own[:, ::-1]
             points, numbers = np.unique(own, return_inverse=True)
-            self.diagonals += float(np.linalg.norm(np.ptp(self.vertices[points], axis=0)))
+            own_diagonal = float(np.linalg.norm(np.ptp(self.vertices[points], axis=0)))
+            self.diagonals += own_diagonal
+            with np.errstate(all="ignore"):
+                areas = np.linalg.norm(np.cross(corner[1] - corner[0], corner[2] - corner[0]), axis=1) / 2
+                relative = float(areas.sum()) / own_diagonal**2
+            self.relative_area += relative if np.isfinite(relative) else 0.0
             self.solids.append((number, self.vertices[points], numbers.reshape(-1, 3)))
         # Whose vertices the attribute mcfskel_node of the input can be asked for.
         self.corresponds = mesh.solid is None

@@ -45,6 +45,7 @@ from hostile_judge import (MEMORY, Finding, Judge, graph_components, message_fin
 ATTRIBUTES = ["mcfskel_pole_radius", "mcfskel_fixed", "mcfskel_held", "mcfskel_radius", "mcfskel_node",
               "mcfskel_kind", "mcfskel_part"]
 MESH = "hostile"
+TARGET_LENGTH = 0.03  # of the job that resamples; of the diagonal
 
 
 class Stop(Exception):
@@ -300,13 +301,15 @@ class Job:
         self.step("full", FULL, self.curve, pole_method="voronoi", resample=False)
 
     def job_resample(self) -> None:
-        self.step("", RESAMPLE, self.resampled, target_length=pymeshlab.PercentageValue(3))
+        self.step("", RESAMPLE, self.resampled, target_length=pymeshlab.PercentageValue(100 * TARGET_LENGTH))
 
     # Judges of single tools.
 
     def resampled(self, results: dict[str, Any]) -> list[Finding]:
         findings = self.stage()
-        if int(results["vertices"]) > 200_000:
+        # Each body is asked to be covered with triangles of a part of its own diagonal.
+        asked = self.judge.relative_area / (np.sqrt(0.75) * TARGET_LENGTH**2)
+        if int(results["vertices"]) > max(200_000, 4 * asked):
             findings.append(("explosion", f"{results['vertices']} vertices"))
         return findings
 

@@ -558,6 +558,17 @@ TEST(Skeletonize, ACrowdSharesTheWorkAndSaysSo)
 	EXPECT_EQ(statistics(shared.curve).cycles, 0);
 	EXPECT_EQ(shared.refined, 1);
 
+	const SurfaceMesh surface = resampledSurface(
+		checkedSurface(roundedCoordinates(crowd.points), crowd.triangles).mesh, Parameters())
+									.mesh;
+	Stage stage =
+		startOfFlow(surface, medialPoles(surface, Parameters().poleMethod), {}, Parameters());
+	while (!stage.converged)
+		stage = step(stage, Parameters());
+	EXPECT_EQ(surface.position, shared.surface->position) << "stage by stage";
+	EXPECT_EQ(stage.mesh.position, shared.stage->mesh.position) << "stage by stage";
+	EXPECT_EQ(stage.epsilon, shared.stage->epsilon);
+
 	Parameters chosen;
 	chosen.epsilon = 0.003;
 	EXPECT_EQ(skeletonize(crowd.points, crowd.triangles, chosen).stage->epsilon, 0.003);

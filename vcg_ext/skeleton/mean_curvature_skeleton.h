@@ -222,9 +222,8 @@ public:
 		if (stage->hasSheets())
 			return CollapseKeepingSheets();
 		mcf::CutCurves cut;
-		curve = parameters.tidyCurve
-			? mcf::collapseInside(*stage, parameters.epsilon, progress, &cut)
-			: mcf::collapseToCurve(*stage, parameters.epsilon, progress, false);
+		curve = parameters.tidyCurve ? mcf::collapseInside(*stage, Epsilon(), progress, &cut)
+									 : mcf::collapseToCurve(*stage, Epsilon(), progress, false);
 		if (params.on_note && cut.components > 0)
 			params.on_note(cut.text());
 		sheets.reset();
@@ -234,7 +233,7 @@ public:
 	void CollapseKeepingSheets()
 	{
 		Begin();
-		sheets = mcf::collapseWithSheets(*stage, parameters.epsilon, progress, params.on_note);
+		sheets = mcf::collapseWithSheets(*stage, Epsilon(), progress, params.on_note);
 		curve.reset();
 	}
 
@@ -395,6 +394,11 @@ private:
 		if (params.keep_stages < 0)
 			throw mcf::InvalidParameter("Parameter keep_stages must be at least 0.");
 		return result;
+	}
+
+	double Epsilon() const
+	{
+		return mcf::sharedAmong(parameters, int(stage->diagonal.size())).epsilon;
 	}
 
 	/// @throws mcf::InvalidInput if the order of the stages is not kept.

@@ -141,26 +141,6 @@ private:
 	Clock::time_point begin = Clock::now();
 };
 
-} // namespace detail
-
-namespace detail {
-
-/**
- * Of many components none is looked at as closely as one alone: beyond `fewComponents` the default epsilon grows
- * with the root of their number, so that the work grows no faster than it. A choice of the user's stays, and so does the
- * paper's.
- */
-inline Parameters sharedAmong(Parameters parameters, int components)
-{
-	constexpr double fewComponents = 50, rounding = 1e-6;
-	const double usual = Parameters().epsilon;
-	const bool isUsual = std::abs(parameters.epsilon - usual) <= rounding * usual;
-	if (isUsual && parameters.tidyCurve && components > fewComponents)
-		parameters.epsilon = std::min(
-			parameters.epsilon * std::sqrt(components / fewComponents), Parameters::maxEpsilon);
-	return parameters;
-}
-
 /// skeletonize(), on the surface that the parameters say, whatever comes out.
 inline Skeletonization skeletonizeOnce(const SurfaceInput& input, const Parameters& given,
 	const Progress& progress, const Observer& observer, const RefineParameters& refinement)
@@ -328,7 +308,7 @@ inline Skeletonization skeletonize(const SurfaceInput& input, const Parameters& 
 	refinement.check();
 	int components = 0;
 	connectedComponents(*input.mesh, &components, progress.part(0, 0));
-	const Parameters given = detail::sharedAmong(parameters, components);
+	const Parameters given = sharedAmong(parameters, components);
 	const auto note = [&](const std::string& text) {
 		if (observer.onNote && !text.empty())
 			observer.onNote(text);

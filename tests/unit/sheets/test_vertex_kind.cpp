@@ -96,6 +96,14 @@ TEST(VertexKinds, TheSameAtAnySizeAndForEachBodyAsAlone)
 			<< times;
 }
 
+TEST(VertexKinds, AWallOfAnotherBodyIsNone)
+{
+	// Two boxes face each other across a gap of far less than epsilon.
+	const shapes::Soup box = fineBox(1, 1, 1);
+	const Stage stage = stageOf(shapes::joined({box, shapes::moved(box, {1 + 1e-4, 0, 0})}));
+	EXPECT_EQ(share(vertexKinds(stage), VertexKind::Volume), 1);
+}
+
 TEST(VertexKinds, TheSameInAnyNumbering)
 {
 	// Narrow enough at one end to be a curve there: its kinds differ, and some are told one by one.

@@ -245,15 +245,18 @@ FlowSurface surfaceForFlow(const SurfaceMesh& given, double epsilon,
  * halved edges have theirs against those of the finer surface.
  *
  * @param surface    compact, closed; see checkedSurface().
- * @param parameters epsilon, poleMethod, adaptive and relativeLength are used.
+ * @param given      epsilon, poleMethod, adaptive and relativeLength are used; see sharedAmong().
  * @param poles      of all vertices of the surface where they are known already; null: they are
  *                   computed. Those in the middle of halved edges are always computed.
  * @throws SolverError, Cancelled, InvalidParameter. Complexity: O(V log V), dominated by the poles.
  */
-inline Stage firstStage(const SurfaceMesh& surface, const Parameters& parameters,
+inline Stage firstStage(const SurfaceMesh& surface, const Parameters& given,
 	const PoleSet* poles = nullptr, const Progress& progress = Progress())
 {
-	parameters.check();
+	given.check();
+	int components = 0;
+	connectedComponents(surface, &components, progress.part(0, 0));
+	const Parameters parameters = sharedAmong(given, components);
 	const double polesFrom = poles ? 1 : 0.3;
 	PoleSet found;
 	const auto polesOfSurface = [&](const Progress& part) -> const PoleSet& {

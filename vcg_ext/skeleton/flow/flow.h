@@ -37,8 +37,9 @@ constexpr int renumberEvery = 4;
 
 /// step() of a stage that has entered its frames.
 inline void stepInFrames(
-	Stage& stage, const StageFrames& frames, const Parameters& parameters, const Progress& progress)
+	Stage& stage, const StageFrames& frames, const Parameters& given, const Progress& progress)
 {
+	const Parameters parameters = sharedAmong(given, int(stage.diagonal.size()));
 	SurfaceMesh& mesh = stage.mesh;
 	const int before = mesh.vertexSlots();
 	contract(stage, parameters, progress.part(0, 0.8));

@@ -148,14 +148,16 @@ inline std::optional<SizingField> fieldOfResampling(const MeasuredSurface& surfa
  * with the edge length of defaultTargetLength() or, with parameters.adaptive, less where the shape is thin,
  * see sizingField(). What is thin is not smoothed: its facets cannot be told from noise.
  * @param mesh   closed two-manifold, compact.
+ * @param given  see sharedAmong() for more than 50 components.
  * @param onNote receives what was found and done; may be empty.
  * @throws InvalidParameter, Cancelled. Complexity: as resample().
  */
-inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Parameters& parameters,
+inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Parameters& given,
 	const Progress& progress = Progress(), const NoteCallback& onNote = {})
 {
-	parameters.check();
+	given.check();
 	const MeasuredSurface surface(mesh, progress.part(0, 0.05));
+	const Parameters parameters = sharedAmong(given, surface.components());
 	ResampledSurface result;
 	result.noise = measureNoise(surface, progress.part(0.05, 0.1));
 	std::vector<char> still; // what the noise is not to be measured and smoothed on

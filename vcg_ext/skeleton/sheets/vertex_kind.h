@@ -11,13 +11,13 @@
 #include <skeleton/core/parallel.h>
 #include <skeleton/flow/stage.h>
 #include <skeleton/mesh/closest_point_walk.h>
+#include <skeleton/mesh/component_meshes.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
 #include <vector>
 
 namespace vcg::tri::mcf {
@@ -56,7 +56,7 @@ struct Piece
 	int face;
 };
 
-/// The triangles of a stage in pieces, in the order of the cells of a grid.
+/// The triangles of a component of a stage in pieces, in the order of the cells of a grid.
 class PiecesByCell
 {
 public:
@@ -81,20 +81,22 @@ public:
 	/**
 	 * Each triangle is halved at its longest edge until none is longer than longestPiece, or 16 times;
 	 * less often where that would give millions of pieces, as with an epsilon far below the edges.
-	 * @param box      of the grid; pieces whose middles are outside are left out.
+	 * @param faces    of the component.
+	 * @param middle   of its box.
 	 * @param epsilon  mesh units.
 	 * @throws Cancelled
 	 */
-	PiecesByCell(const Stage& stage, const Box3d& box, const CellGrid& grid, double epsilon,
-		const Progress& progress) :
-			origin(box.Center()),
+	PiecesByCell(const SurfaceMesh& mesh, const std::vector<int>& faces, const Point3d& middle,
+		const CellGrid& grid, double epsilon, const Progress& progress) :
+			origin(middle),
 			unit(epsilon > 0 ? std::exp2(std::ilogb(epsilon)) : 1)
 	{
-		const SurfaceMesh& mesh = stage.mesh;
-		const int halvings = mostHalvings(stage, progress.part(0, 0.05));
+		const double longest = longestPiece * epsilon;
+		const int halvings = mostHalvings(mesh, faces, longest, progress.part(0, 0.05));
 		std::vector<Piece> unsorted;
-		unsorted.reserve(size_t(mesh.faceSlots()));
-		reportedLoop(mesh.faceSlots(), progress.part(0.05, 0.3), tellingKinds, [&](int f) {
+		unsorted.reserve(faces.size());
+		reportedLoop(int(faces.size()), progress.part(0.05, 0.3), tellingKinds, [&](int i) {
+			const int f = faces[size_t(i)];
 			const Triangle t = mesh.triangle(f);
 			const std::array<Point3d, 3> corners = {
 				mesh.position[t[0]], mesh.position[t[1]], mesh.position[t[2]]};
@@ -103,8 +105,7 @@ public:
 			Piece whole {{0, 0, 0}, float(length / 2 / unit / unit), {0, 0, 0}, f};
 			if (length > 0)
 				whole.normal = Point3f::Construct(areaVector / length);
-			addPieces(
-				unsorted, whole, corners, longestPiece * epsilonAt(stage, t[0]), box, halvings);
+			addPieces(unsorted, whole, corners, longest, halvings);
 		});
 		const PointsByCell sorted(
 			int(unsorted.size()),
@@ -131,16 +132,19 @@ public:
 
 private:
 	/// How often a triangle may be halved: two halvings halve its longest edge.
-	static int mostHalvings(const Stage& stage, const Progress& progress)
+	static int mostHalvings(const SurfaceMesh& mesh, const std::vector<int>& faces, double longest,
+		const Progress& progress)
 	{
 		constexpr int most = 16;
-		const double maxPieces = std::max(double(1 << 22), 64.0 * stage.mesh.faceSlots());
+		// Of all components together as of one.
+		const double maxPieces =
+			double(faces.size()) * std::max(double(1 << 22) / mesh.faceSlots(), 64.0);
 		std::array<double, most + 1> triangles = {}; // by the halvings that they need
-		const SurfaceMesh& mesh = stage.mesh;
-		reportedLoop(mesh.faceSlots(), progress, tellingKinds, [&](int f) {
-			const double longest = std::sqrt(std::max({mesh.squaredLength(3 * f),
-				mesh.squaredLength(3 * f + 1), mesh.squaredLength(3 * f + 2)}));
-			const double ratio = longest / (longestPiece * epsilonAt(stage, mesh.origin(3 * f)));
+		reportedLoop(int(faces.size()), progress, tellingKinds, [&](int i) {
+			const int h = 3 * faces[size_t(i)];
+			const double length = std::sqrt(std::max(
+				{mesh.squaredLength(h), mesh.squaredLength(h + 1), mesh.squaredLength(h + 2)}));
+			const double ratio = length / longest;
 			++triangles[size_t(std::clamp(std::ceil(2 * std::log2(ratio)), 0.0, double(most)))];
 		});
 		const auto pieces = [&](int halvings) {
@@ -156,28 +160,25 @@ private:
 	}
 
 	void addPieces(std::vector<Piece>& found, const Piece& whole,
-		const std::array<Point3d, 3>& corners, double longest, const Box3d& box, int halvings) const
+		const std::array<Point3d, 3>& corners, double longest, int halvings) const
 	{
 		const auto& [a, b, c] = corners;
 		const double ab = SquaredDistance(a, b), bc = SquaredDistance(b, c),
 					 ca = SquaredDistance(c, a);
 		if (bc > ab && bc >= ca)
-			return addPieces(found, whole, {b, c, a}, longest, box, halvings);
+			return addPieces(found, whole, {b, c, a}, longest, halvings);
 		if (ca > ab)
-			return addPieces(found, whole, {c, a, b}, longest, box, halvings);
+			return addPieces(found, whole, {c, a, b}, longest, halvings);
 		if (ab > longest * longest && halvings > 0) {
 			Piece half = whole;
 			half.area /= 2;
 			const Point3d middle = (a + b) / 2.0;
-			addPieces(found, half, {b, c, middle}, longest, box, halvings - 1);
-			addPieces(found, half, {c, a, middle}, longest, box, halvings - 1);
+			addPieces(found, half, {b, c, middle}, longest, halvings - 1);
+			addPieces(found, half, {c, a, middle}, longest, halvings - 1);
 			return;
 		}
-		const Point3d middle = (a + b + c) / 3.0;
-		if (!box.IsIn(middle))
-			return;
 		found.push_back(whole);
-		found.back().middle = inside(middle);
+		found.back().middle = inside((a + b + c) / 3.0);
 	}
 };
 
@@ -357,7 +358,7 @@ inline void tellSomeKinds(const Stage& stage, const PiecesByCell& surface,
 	double d = 0;
 	const auto isApart = [&](int w) {
 		const double distance = Distance(stage.mesh.position[w], centre);
-		if (distance > toldTogether * epsilon || stage.component[w] != stage.component[v])
+		if (distance > toldTogether * epsilon)
 			return true;
 		d = std::max(d, distance);
 		return false;
@@ -374,36 +375,6 @@ inline void tellSomeKinds(const Stage& stage, const PiecesByCell& surface,
 	for (auto w = some; w != closed.end(); ++w)
 		kind[*w] = told;
 	closed.erase(some, closed.end());
-}
-
-/// Vertices of components that can share a grid.
-struct LikeSizes
-{
-	double epsilon; ///< the largest of theirs, less than twice the smallest
-	std::vector<int> vertices;
-};
-
-inline std::vector<LikeSizes> verticesOfLikeSizes(const Stage& stage, const Progress& progress)
-{
-	const std::vector<double>& diagonal = stage.diagonal;
-	std::vector<int> order(diagonal.size());
-	std::iota(order.begin(), order.end(), 0);
-	std::stable_sort(order.begin(), order.end(),
-		[&](int a, int b) { return diagonal[size_t(a)] < diagonal[size_t(b)]; });
-	std::vector<LikeSizes> groups;
-	std::vector<int> groupOf(diagonal.size());
-	double smallest = 0;
-	for (int c : order) {
-		if (groups.empty() || diagonal[size_t(c)] >= 2 * smallest) {
-			groups.emplace_back();
-			smallest = diagonal[size_t(c)];
-		}
-		groups.back().epsilon = stage.epsilon * diagonal[size_t(c)];
-		groupOf[size_t(c)] = int(groups.size()) - 1;
-	}
-	reportedLoop(stage.mesh.vertexSlots(), progress, tellingKinds,
-		[&](int v) { groups[size_t(groupOf[size_t(stage.component[v])])].vertices.push_back(v); });
-	return groups;
 }
 
 /// The kind that most of a vertex and its neighbours have; its own if there is no such kind.
@@ -440,6 +411,7 @@ inline std::vector<VertexKind> majority(
 /**
  * The kind of each vertex of a stage.
  *
+ * Each component by itself, with its own epsilon:
  * Volume: a vertex that is not fixed by the flow and has no wall opposite, turned the other way, within
  * 2 epsilon; on which side does not matter, since walls may have passed each other. Of the others, on
  * which the surface has closed, sheets are told from curves by the area of the stage within a ball of
@@ -464,25 +436,30 @@ inline std::vector<VertexKind> vertexKinds(
 	const SurfaceMesh& mesh = stage.mesh;
 	const std::vector<Point3d> normal = mesh.vertexNormals(progress.part(0, 0.1));
 	std::vector<VertexKind> kind(size_t(mesh.vertexSlots()), VertexKind::Volume);
+	const int components = int(stage.diagonal.size());
+	const ComponentVertices vertices(stage.component, components, progress.part(0.1, 0.1));
+	std::vector<std::vector<int>> faces(vertices.ids.size());
+	detail::reportedLoop(mesh.faceSlots(), progress.part(0.1, 0.1), detail::tellingKinds,
+		[&](int f) { faces[size_t(stage.component[mesh.origin(3 * f)])].push_back(f); });
 	int done = 0;
-	for (const detail::LikeSizes& some :
-		detail::verticesOfLikeSizes(stage, progress.part(0.1, 0.1))) {
-		const int count = int(some.vertices.size());
+	for (int c = 0; c < components; ++c) {
+		const std::vector<int>& own = vertices.ids[size_t(c)];
+		const int count = int(own.size());
 		const auto bar = [&](int told) {
 			return 0.1 + 0.8 * told / std::max(mesh.vertexSlots(), 1);
 		};
 		const Progress part = progress.part(bar(done), bar(done + count));
 		done += count;
+		const double epsilon = stage.epsilon * stage.diagonal[size_t(c)];
 		Box3d box;
-		detail::reportedLoop(count, part.part(0, 0), detail::tellingKinds,
-			[&](int i) { box.Add(mesh.position[some.vertices[size_t(i)]]); });
-		const double cellSize = detail::kindCell * some.epsilon;
-		box.Offset(2 * cellSize);
-		const detail::CellGrid grid(box, cellSize);
+		for (int v : own)
+			box.Add(mesh.position[v]);
+		const detail::CellGrid grid(box, detail::kindCell * epsilon);
 		const detail::PointsByCell sorted(
-			count, [&](int i) { return mesh.position[some.vertices[size_t(i)]]; }, grid,
-			part.part(0, 0.1), detail::tellingKinds);
-		const detail::PiecesByCell surface(stage, box, grid, some.epsilon, part.part(0.1, 0.4));
+			count, [&](int i) { return mesh.position[own[size_t(i)]]; }, grid, part.part(0, 0.1),
+			detail::tellingKinds);
+		const detail::PiecesByCell surface(
+			mesh, faces[size_t(c)], box.Center(), grid, epsilon, part.part(0.1, 0.4));
 		const auto cells = [&](int begin, int end) {
 			detail::CellsAround around(surface.cells, sorted.cell[begin]);
 			std::vector<int> near, closed;
@@ -492,7 +469,7 @@ inline std::vector<VertexKind> vertexKinds(
 				around.find(cell, 1, near);
 				closed.clear();
 				for (; begin < end && sorted.cell[begin] == cell; ++begin) {
-					const int v = some.vertices[size_t(sorted.id[begin])];
+					const int v = own[size_t(sorted.id[begin])];
 					if ((stage.fixed[v] && !stage.held[v])
 						|| detail::hasOppositeWall(
 							detail::OppositeWall(stage, surface, v, normal[v]), near, recent))
