@@ -90,10 +90,9 @@ class Judge:
             points, numbers = np.unique(own, return_inverse=True)
             own_diagonal = float(np.linalg.norm(np.ptp(self.vertices[points], axis=0)))
             self.diagonals += own_diagonal
-            with np.errstate(all="ignore"):
-                areas = np.linalg.norm(np.cross(corner[1] - corner[0], corner[2] - corner[0]), axis=1) / 2
-                relative = float(areas.sum()) / own_diagonal**2
-            self.relative_area += relative if np.isfinite(relative) else 0.0
+            if own_diagonal > 0:
+                edges = [(corner[k] - corner[0]) / own_diagonal for k in (1, 2)]
+                self.relative_area += float(np.linalg.norm(np.cross(*edges), axis=1).sum()) / 2
             self.solids.append((number, self.vertices[points], numbers.reshape(-1, 3)))
         # Whose vertices the attribute mcfskel_node of the input can be asked for.
         self.corresponds = mesh.solid is None

@@ -23,6 +23,7 @@ import threading
 import time
 from collections import Counter, defaultdict
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -285,11 +286,10 @@ def save_cases(plugin: Path, bad: list[dict[str, Any]], options: argparse.Namesp
 
 
 def in_threads(work: Callable[[], None], count: int) -> None:
-    threads = [threading.Thread(target=work) for _ in range(count)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
+    """Runs `work` in so many threads. @raise what one of them raises."""
+    with ThreadPoolExecutor(count) as pool:
+        for end in [pool.submit(work) for _ in range(count)]:
+            end.result()
 
 
 def parse_arguments(arguments: list[str] | None = None) -> argparse.Namespace:
