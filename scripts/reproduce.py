@@ -3,9 +3,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Makes Table 1 and the figures of the paper again, on shapes at hand, and puts them into docs/paper.md.
 
-The program runs as `paper` and as `default`, beside Au et al. 2008; distances are to the exact medial
-axis, for the paper's own reference, Dey and Sun 2006, is not had here. Results are kept in
-build/reproduce: a run that was interrupted goes on where it stopped.
+The program runs as `paper` and as `default`, beside Au et al. 2008; distances are to the skeletons of Dey
+and Sun 2006, and to the exact medial axis. Results are kept in build/reproduce: a run that was interrupted
+goes on where it stopped.
 """
 
 from __future__ import annotations
@@ -105,9 +105,10 @@ class Work:
 
         return self.kept(what, (digest(mesh), options), self.program, make)
 
-    def atc08(self, what: str, mesh: Path) -> dict:
-        program = ROOT / "scripts/bench/atc08.py"
-        return self.kept(what, ("atc08", digest(mesh)), program, lambda path: report_of(
+    def peer(self, name: str, what: str, mesh: Path) -> dict:
+        """The report of atc08 or ds06; its skeleton is PATH.obj."""
+        program = ROOT / f"scripts/bench/{name}.py"
+        return self.kept(what, (name, digest(mesh)), program, lambda path: report_of(
             [sys.executable, str(program), str(mesh), "--skeleton", f"{path}.obj"]))
 
 
@@ -157,11 +158,15 @@ def letters(folder: Path) -> Path:
 
 
 class Reference:
-    """The exact medial axis of a mesh."""
+    """The exact medial axis of a mesh, and where it is given another curve to compare with."""
 
-    def __init__(self, mesh: Path, samples: int) -> None:
+    def __init__(self, mesh: Path, samples: int, other: Path | None = None) -> None:
         self.shape = Shape.read(mesh)
         self.axis = self.shape.medial_axis(samples)
+        self.other = None
+        if other:
+            curve = read_curve(other).transformed(self.shape.origin, self.shape.diagonal)
+            self.other = np.vstack([curve.sampled(SPACING)[0], curve.points])
 
     def distances(self, curve: Curve) -> dict[str, float]:
         """To the reference and back, over the diagonal of the mesh and over that of the reference."""
@@ -169,50 +174,59 @@ class Reference:
         samples, lengths = unit.sampled(SPACING)
         there = distance_to_medial_axis(self.shape, self.axis, samples)
         back = cKDTree(np.vstack([samples, unit.points])).query(self.axis)[0]
-        return {"there": float((there * lengths).sum() / lengths.sum()), "back": float(back.mean()),
-                "unit": diagonal(self.axis), **measure(self.shape, self.axis, curve)}
+        found = {"there": float((there * lengths).sum() / lengths.sum()), "back": float(back.mean())}
+        if self.other is not None:
+            near = cKDTree(self.other).query(samples)[0]
+            found |= {"to": float((near * lengths).sum() / lengths.sum()), "unit": diagonal(self.other),
+                      "from": float(cKDTree(np.vstack([samples, unit.points])).query(self.other)[0].mean())}
+        return found | measure(self.shape, self.axis, curve)
 
 
 def table_1(work: Work, shapes: dict[str, Path], options: argparse.Namespace) -> tuple[str, dict]:
     """The table, and for each shape the mesh and the curves of Fig. 8."""
-    head = ["shape", "vertices", "method", "seconds", "to the axis", "of its box", "back", "inside", "tips", "turning",
-            "paper"]
+    head = ["shape", "vertices", "method", "seconds", "to DS06", "of its box", "paper", "back", "to the axis", "back",
+            "inside", "tips", "turning"]
     body, found = [], {}
-    ratios: dict[str, list[float]] = {"paper": [], "default": []}
+    ratios = {(of, method): [] for of in ("to", "there") for method in ("paper", "default")}
     for name, source in shapes.items():
         paper = PAPER.get(name)
         vertices = options.vertices or (QUICK_VERTICES if options.quick else paper[1] if paper else 36_000)
         even = work.run(f"{name}: resampling", source, "--resample-only", "--no-denoise", "--no-adaptive",
                         "--target-length", percent_for(source, vertices))
         mesh = Path(f"{even['path']}_surface.ply")
-        runs = {"ATC08": work.atc08(f"{name}: ATC08", mesh),
+        runs = {"DS06": work.peer("ds06", f"{name}: DS06", mesh),
+                "ATC08": work.peer("atc08", f"{name}: ATC08", mesh),
                 "paper": work.run(f"{name}: paper", mesh, "--preset", "paper", "--no-resample"),
                 "default": work.run(f"{name}: default", mesh)}
         reference: list[Reference] = []
 
         def judged(path: Path) -> dict:
             if not reference:
-                reference.append(Reference(mesh, QUICK_AXIS if options.quick else AXIS))
+                reference.append(Reference(mesh, QUICK_AXIS if options.quick else AXIS,
+                                           Path(f"{runs['DS06']['path']}.obj")))
             np.save(f"{path}.npy", reference[0].axis * reference[0].shape.diagonal + reference[0].shape.origin)
             return {n: reference[0].distances(read_curve(Path(f"{r['path']}.obj"))) for n, r in runs.items()}
 
         curves = [digest(Path(f"{run['path']}.obj")) for run in runs.values()]
-        result = work.kept(f"{name}: distances", ("judged", digest(mesh), *curves, options.quick), MEASURES, judged)
-        phases = {"ATC08": ("contraction", "conversion"), "paper": ("poles", "contraction", "conversion"),
+        result = work.kept(f"{name}: distances", ("judged", digest(mesh), *curves, options.quick), Path(__file__), judged)
+        phases = {"DS06": ("geodesic", "erosion"), "ATC08": ("contraction", "conversion"), "paper": ("poles", "contraction", "conversion"),
                   "default": ("resample", "poles", "contraction", "conversion", "refine")}
         theirs = {"ATC08": f"{paper[2]:.5f}", "paper": f"{paper[3]:.5f}"} if paper else {}
         for method, run in runs.items():
             r = result[method]
-            body.append([name, str(run["vertices"]), method, seconds(run, *phases[method]), f"{r['there']:.5f}",
-                         f"{r['there'] / r['unit']:.5f}", f"{r['back']:.5f}", f"{r['inside']:.3f}",
-                         str(r["tips"]), number(r["turning"], 2), theirs.get(method, "-")])
-        for method, ratio in ratios.items():
-            ratio.append(result["ATC08"]["there"] / result[method]["there"])
+            body.append([name, str(run["vertices"]), method, seconds(run, *phases[method]),
+                         *(["-"] * 4 if method == "DS06" else
+                           [f"{r['to']:.5f}", f"{r['to'] / r['unit']:.5f}", theirs.get(method, "-"), f"{r['from']:.5f}"]),
+                         f"{r['there']:.5f}", f"{r['back']:.5f}", f"{r['inside']:.3f}", str(r["tips"]),
+                         number(r["turning"], 2)])
+        for (of, method), ratio in ratios.items():
+            ratio.append(result["ATC08"][of] / result[method][of])
         found[name] = (mesh, {n: Path(f"{r['path']}.obj") for n, r in runs.items()},
                        np.load(f"{result['path']}.npy"))
-    times = {method: f"{number(min(ratio), 2)} to {number(max(ratio), 2)}" for method, ratio in ratios.items()}
-    return (markdown(head, body) + f"\n\nATC08's distance is {times['paper']} times that of `paper` (in the paper: 2.1 "
-            f"to 8.0), and {times['default']} times that of `default`.", found)
+    times = {key: f"{number(min(ratio), 2)} to {number(max(ratio), 2)}" for key, ratio in ratios.items()}
+    return (markdown(head, body) + f"\n\nATC08's distance to DS06 is {times['to', 'paper']} times that of `paper` (in "
+            f"the paper: 2.1 to 8.0), and {times['to', 'default']} times that of `default`; to the axis "
+            f"{times['there', 'paper']} and {times['there', 'default']} times.", found)
 
 
 def curve_of(path: Path) -> tuple[np.ndarray, np.ndarray]:
@@ -269,7 +283,7 @@ def figure_3(work: Work, found: dict, folder: Path, options: argparse.Namespace)
                     percent_for(source, options.vertices or (QUICK_VERTICES if options.quick else 20_000)))
     mesh = Path(f"{even['path']}_surface.ply")
     surface = read_mesh(mesh)
-    theirs = work.atc08("cup: ATC08", mesh)
+    theirs = work.peer("atc08", "cup: ATC08", mesh)
     ours = work.run("cup: curve", mesh)
     sheets = work.run("cup: sheets", mesh, "--keep-sheets")
     faces, curve = with_sheets(Path(f"{sheets['path']}.obj"))
@@ -377,6 +391,7 @@ def figure_8(work: Work, found: dict, folder: Path, options: argparse.Namespace)
         surface = read_mesh(mesh)
         for angles in [{}, {"turn": 0, "tilt": 88}] if name == "letters" else [{}]:
             panels = [Panel(f"{name}: ATC08", surface, curves=[curve_of(curves["ATC08"])]),
+                      Panel("DS06", surface, curves=[curve_of(curves["DS06"])]),
                       Panel("medial axis", surface, points=axis),
                       Panel("paper", surface, curves=[curve_of(curves["paper"])]),
                       Panel("default", surface, curves=[curve_of(curves["default"])])]
@@ -451,7 +466,7 @@ def main() -> int:
     work = Work(options.program, folder, 1)
     shapes["letters"] = letters(folder)
     shapes |= {p.stem: p for p in options.meshes if p.stem != "elephant"}
-    work.steps = 5 * len(shapes) + (90 if options.quick else 200)
+    work.steps = 6 * len(shapes) + (90 if options.quick else 200)
     docs = options.docs or (None if options.quick else ROOT / "docs")
     pictures = docs / "paper" if docs else folder / "pictures"
     blocks = {"run": "Made by `scripts/reproduce.sh" + (" --quick" if options.quick else "")
