@@ -207,6 +207,14 @@ class TestDroppedIn:
         assert "Remove Isolated" in failing(layers, FULL)
 
 
+@pytest.mark.skipif(shutil.which("clang++") is None, reason="clang is not installed")
+def test_clang_finds_nothing_that_only_gcc_knows():
+    """ISO C++17 without extensions, but for bits in place of branches, which are meant."""
+    run("clang++", "-std=c++17", "-fsyntax-only", "-Wall", "-Wextra", "-pedantic", "-Wgnu", "-Werror",
+        "-Wno-bitwise-instead-of-logical", "-I", ROOT / "vcg_ext", "-isystem", vcglib(),
+        "-isystem", "/usr/include/eigen3", ROOT / "examples" / "cpp" / "skeletonize_arrays.cpp")
+
+
 def test_readme_shows_the_sample_program():
     """What the README shows is in the sample program, line by line."""
     readme = (ROOT / "README.md").read_text()
