@@ -121,8 +121,10 @@ class Judge:
         extent = self.expected.extent / self.unit
         if not length <= MAX_LENGTH * extent:
             found.append(("explosion", f"length {length:.4g}, the features' is {extent:.4g}"))
-        # The features' lengths are known together only: each component's share is as its diagonal.
-        bound = MAX_NODES_PER_DIAGONAL * self.expected.components * (1 + extent / (self.diagonals or 1))
+        # The features' lengths are known together only: each component's share is as its diagonal. A plate's
+        # curve may be longer than the plate, see MAX_LENGTH.
+        longest = max(extent, min(length, MAX_LENGTH * extent))
+        bound = MAX_NODES_PER_DIAGONAL * self.expected.components * (1 + longest / (self.diagonals or 1))
         if len(nodes) > bound:
             found.append(("explosion", f"{len(nodes)} nodes"))
         all_edges = np.vstack([edges, edges_of(faces)]) if len(faces) else edges

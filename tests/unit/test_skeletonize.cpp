@@ -490,6 +490,26 @@ TEST(Skeletonize, APlateThinnerThanItsResampledEdgesIsContractedAsItIs)
 		}
 }
 
+TEST(Skeletonize, SheetsThatWouldLeaveAThicketAreGivenUp)
+{
+	constexpr double breadth = 1, depth = 1, thickness = 2.5e-4; // 0.018 % of the diagonal
+	shapes::Soup soup = shapes::box(breadth, depth, thickness);
+	for (int i = 0; i < 3; ++i)
+		soup = shapes::subdivided(soup);
+	for (bool resample : {true, false}) {
+		Parameters parameters;
+		parameters.keepSheets = true;
+		parameters.resample = resample;
+		const Skeletonization result = run(soup, parameters);
+		const MesoSkeleton skeleton =
+			(result.sheets ? *result.sheets : withoutSheets(result.curve)).skeleton;
+		EXPECT_LT(detail::lengthOfCurves(skeleton), 3 * std::hypot(breadth, depth)) << resample;
+		const BettiNumbers b = skeleton.betti();
+		EXPECT_EQ((std::vector<int> {b.b0, b.b1, b.b2}), (std::vector<int> {1, 0, 0})) << resample;
+		EXPECT_EQ(result.node.size(), soup.points.size());
+	}
+}
+
 TEST(Skeletonize, WhatIsContractedAsItIsMustNotLoseLimbs)
 {
 	const SurfaceMesh tube = shapes::capsule(10, 0.1, 12).mesh();

@@ -282,6 +282,126 @@ inline bool isBetter(const SurfaceMesh& surface, const Skeletonization& asItIs,
 	return asItIs.refined != resampled.refined ? asItIs.refined > resampled.refined : isMuchShorter;
 }
 
+/// Another way to the skeleton: its stages reach the observer only if it is taken.
+class Alternative
+{
+public:
+	explicit Alternative(const Observer& observer) : observer(observer) {}
+
+	/// Of the other run.
+	Observer listener()
+	{
+		Observer result;
+		result.every = observer.every;
+		if (observer.onStage)
+			result.onStage = [&](Stage stage) { stages.push_back(std::move(stage)); };
+		return result;
+	}
+
+	void take()
+	{
+		if (observer.onStartOver)
+			observer.onStartOver();
+		for (Stage& stage : stages)
+			observer.onStage(std::move(stage));
+	}
+
+private:
+	const Observer& observer;
+	std::vector<Stage> stages;
+};
+
+/// skeletonize(), on the surface as the parameters say or, where it is too thin for that, as it is.
+inline Skeletonization skeletonizeThin(const SurfaceInput& input, const Parameters& given,
+	const Progress& progress, const Observer& observer, const RefineParameters& refinement)
+{
+	constexpr int maxVerticesAsItIs = 100000;
+	constexpr double once = 0.97; // of the time: it is seldom that both are needed
+	Skeletonization result =
+		skeletonizeOnce(input, given, progress.part(0, once), observer, refinement);
+	const bool isStopped =
+		!result.stage->converged && given.maxIterations < Parameters().maxIterations;
+	const bool isDoubtful = given.resample && given.refine && !result.sheets && input.held.empty()
+		&& result.refined < 1 && !isStopped && input.mesh->vertexCount() <= maxVerticesAsItIs;
+	if (!isDoubtful)
+		return result;
+	Parameters asItIs = given;
+	asItIs.resample = asItIs.keepSheets = false;
+	Alternative alternative(observer);
+	try {
+		Skeletonization other = skeletonizeOnce(
+			input, asItIs, progress.part(once, 1), alternative.listener(), refinement);
+		const bool isTaken = isBetter(*input.mesh, other, result, progress.part(1, 1));
+		other.noise = result.noise;
+		result.seconds += other.seconds;
+		if (isTaken) {
+			other.seconds = result.seconds;
+			result = std::move(other);
+			if (observer.onNote)
+				observer.onNote(
+					"The shape is too thin for its resampled surface: the skeleton is that of the surface as it is.");
+			alternative.take();
+		}
+	}
+	catch (const SolverError&) {
+		// Then there is nothing to choose from.
+	}
+	return result;
+}
+
+/// The length of the curves of a skeleton with sheets.
+inline double lengthOfCurves(const MesoSkeleton& skeleton)
+{
+	double length = 0;
+	for (const auto& [a, b] : skeleton.edges)
+		length += Distance(skeleton.position[a], skeleton.position[b]);
+	return length;
+}
+
+/**
+ * A skeleton with sheets, or without where they leave a thicket: where none could be kept, which has been collapsed
+ * to curves only in the end, and where the curves are many times as long as those of the shape without sheets.
+ */
+inline Skeletonization skeletonizeWithSheets(const SurfaceInput& input, const Parameters& given,
+	const Progress& progress, const Observer& observer, const RefineParameters& refinement)
+{
+	constexpr double doubtful = 3,
+					 thicket = 2; // diagonals of the components; times the other's length
+	constexpr double once = 0.97; // of the time
+	Skeletonization result =
+		skeletonizeThin(input, given, progress.part(0, once), observer, refinement);
+	if (!result.sheets || !input.held.empty())
+		return result;
+	const SheetCollapse found = *result.sheets;
+	const double length = lengthOfCurves(found.skeleton);
+	double diagonals = 0;
+	for (double diagonal : result.stage->diagonal)
+		diagonals += diagonal;
+	const bool isNone = found.givenUp > 0 && found.skeleton.faces.empty();
+	if (!isNone && length <= doubtful * diagonals)
+		return result;
+	Parameters curvesOnly = given;
+	curvesOnly.keepSheets = false;
+	Alternative alternative(observer);
+	Skeletonization other = skeletonizeThin(
+		input, curvesOnly, progress.part(once, 1), alternative.listener(), refinement);
+	other.sheets = withoutSheets(other.curve);
+	const double ofOther = lengthOfCurves(other.sheets->skeleton);
+	result.seconds += other.seconds;
+	if (!isNone && length <= thicket * ofOther)
+		return result;
+	other.noise = result.noise;
+	other.seconds = result.seconds;
+	other.sheets->sheets = other.sheets->givenUp = found.sheets;
+	if (observer.onNote)
+		observer.onNote(isNone
+				? "No sheet could be kept: the shape is contracted without sheets."
+				: sentence(2, "With sheets the curves would be ", length / ofOther,
+					" times as long as without: the shape is contracted without sheets."));
+	alternative.take();
+	return other;
+}
+
 } // namespace detail
 
 /**
@@ -289,7 +409,8 @@ inline bool isBetter(const SurfaceMesh& surface, const Skeletonization& asItIs,
  *
  * A surface that is thinner than the edges of its resampling is cut off, or crosses itself, when it is resampled.
  * That shows in the end: its curve cannot be refined, since that would leave the surface. Then the surface is
- * contracted as it is as well, and the better curve is taken, see detail::isBetter(), which is said.
+ * contracted as it is as well, and the better curve is taken, see detail::isBetter(), which is said. Sheets that
+ * would leave a thicket are given up, see detail::skeletonizeWithSheets().
  *
  * @param parameters all of them are read; the default epsilon is larger for more than 50 components, see
  *                   sharedAmong(). What is too thin for a resampled surface to follow, see
@@ -302,8 +423,6 @@ inline Skeletonization skeletonize(const SurfaceInput& input, const Parameters& 
 	const Progress& progress = Progress(), const Observer& observer = Observer(),
 	const RefineParameters& refinement = RefineParameters())
 {
-	constexpr int maxVerticesAsItIs = 100000;
-	constexpr double once = 0.97; // of the time: it is seldom that both are needed
 	parameters.check();
 	refinement.check();
 	int components = 0;
@@ -316,61 +435,9 @@ inline Skeletonization skeletonize(const SurfaceInput& input, const Parameters& 
 	if (given.epsilon != parameters.epsilon)
 		note(detail::sentence(2, components, " components: epsilon is ", 100 * given.epsilon,
 			" % of the diagonal of each."));
-	Skeletonization result =
-		detail::skeletonizeOnce(input, given, progress.part(0, once), observer, refinement);
-	if (result.sheets && result.sheets->givenUp > 0 && result.sheets->skeleton.faces.empty()
-		&& input.held.empty()) {
-		// A sheet that is collapsed to a curve only in the end leaves a thicket.
-		note("No sheet could be kept: the shape is contracted without sheets.");
-		if (observer.onStartOver)
-			observer.onStartOver();
-		Parameters curvesOnly = given;
-		curvesOnly.keepSheets = curvesOnly.refine = false;
-		const SheetCollapse found = std::move(*result.sheets);
-		const PhaseSeconds seconds = result.seconds;
-		Observer ofOther = observer;
-		ofOther.onPhase = nullptr; // each has ended once
-		result =
-			detail::skeletonizeOnce(input, curvesOnly, progress.part(once, 1), ofOther, refinement);
-		result.seconds += seconds;
-		result.sheets = withoutSheets(result.curve);
-		result.sheets->sheets = result.sheets->givenUp = found.sheets;
-	}
-	const bool isStopped =
-		!result.stage->converged && given.maxIterations < Parameters().maxIterations;
-	const bool isDoubtful = given.resample && given.refine && !result.sheets && input.held.empty()
-		&& result.refined < 1 && !isStopped && input.mesh->vertexCount() <= maxVerticesAsItIs;
-	std::vector<Stage> stages;
-	bool isAsItIs = false;
-	if (isDoubtful) {
-		Parameters asItIs = given;
-		asItIs.resample = false;
-		Observer ofOther;
-		ofOther.every = observer.every;
-		if (observer.onStage)
-			ofOther.onStage = [&](Stage stage) { stages.push_back(std::move(stage)); };
-		try {
-			Skeletonization other =
-				detail::skeletonizeOnce(input, asItIs, progress.part(once, 1), ofOther, refinement);
-			isAsItIs = detail::isBetter(*input.mesh, other, result, progress.part(1, 1));
-			other.noise = result.noise;
-			result.seconds += other.seconds;
-			other.seconds = result.seconds;
-			if (isAsItIs)
-				result = std::move(other);
-		}
-		catch (const SolverError&) {
-			// Then there is nothing to choose from.
-		}
-	}
-	if (isAsItIs) {
-		note(
-			"The shape is too thin for its resampled surface: the skeleton is that of the surface as it is.");
-		if (observer.onStartOver)
-			observer.onStartOver();
-		for (Stage& stage : stages)
-			observer.onStage(std::move(stage));
-	}
+	Skeletonization result = given.keepSheets
+		? detail::skeletonizeWithSheets(input, given, progress, observer, refinement)
+		: detail::skeletonizeThin(input, given, progress, observer, refinement);
 	note(result.cut.text());
 	note(result.refinement.text());
 	if (given.join && result.sheets)

@@ -11,6 +11,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
+#include <condition_variable>
 #include <cstdint>
 #include <cstdlib>
 #include <exception>
@@ -149,6 +151,7 @@ template <class Body>
 void forEachPart(
 	const std::vector<int>& start, const Progress& progress, const char* what, const Body& body)
 {
+	constexpr std::chrono::milliseconds reportEvery(1);
 	[[maybe_unused]] constexpr double leastForTeam = 1 << 12; // in less, the others hardly wake up
 	const int count = int(start.size()) - 1;
 	const auto size = [&](int part) { return start[part + 1] - start[part]; };
@@ -161,6 +164,8 @@ void forEachPart(
 	const double total = before.back();
 	std::atomic<int> next = 0, done = 0;
 	std::atomic<bool> stop = false;
+	std::mutex waiting;
+	std::condition_variable oneMore; // is done
 	std::vector<std::exception_ptr> errors(count + 1);
 	const auto guarded = [&](std::exception_ptr& error, const auto& call) {
 		try {
@@ -173,16 +178,20 @@ void forEachPart(
 	};
 	const auto work = [&](bool reports) {
 		const Progress silent([&](int, const char*) { return !stop; });
-		for (int i; !stop && (i = next++) < count; ++done)
+		for (int i; !stop && (i = next++) < count;) {
 			guarded(errors[i], [&] {
 				const Progress window = progress.part(before[i] / total, before[i + 1] / total);
 				body(start[order[i]], start[order[i] + 1], reports ? window : silent);
 			});
-		constexpr int reportEvery = 1 << 10; // some hundred us
-		for (int i = 0; reports && !stop && done < count; ++i) {
-			if (i % reportEvery == 0)
-				guarded(errors[count], [&] { progress.report(1, what); });
-			std::this_thread::yield();
+			const std::lock_guard<std::mutex> lock(waiting);
+			++done;
+			oneMore.notify_one();
+		}
+		const auto isOver = [&] { return stop || done == count; };
+		while (reports && !isOver()) {
+			guarded(errors[count], [&] { progress.report(1, what); });
+			std::unique_lock<std::mutex> lock(waiting);
+			oneMore.wait_for(lock, reportEvery, isOver);
 		}
 	};
 	detail::onThreads(total >= leastForTeam ? detail::threadsForLoop() : 1, work);

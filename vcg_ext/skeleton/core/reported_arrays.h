@@ -15,23 +15,9 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdlib>
 #include <vector>
 
 namespace vcg::tri::mcf::detail {
-
-/**
- * Lets the allocator keep what is freed between two steps for the next one, which needs as much, rather than
- * give it back to the system and fault it in anew, page by page.
- *
- * glibc's malloc keeps twice the largest block that was freed so far, up to 64 MB; so a block of nearly half of
- * that is taken and freed, of which nothing is touched. Elsewhere it has no effect.
- */
-inline void keepFreedMemory()
-{
-	void* volatile block = std::malloc(31 << 20); // volatile: else compilers leave both calls out
-	std::free(block);
-}
 
 /// How many elements of a large array are made between two reports: 4 MB.
 template <class T>

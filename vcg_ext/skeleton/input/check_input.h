@@ -95,7 +95,6 @@ inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
 	const std::vector<Triangle>& triangles, const Progress& progress = Progress())
 {
 	const char* const what = "Checking the surface";
-	detail::keepFreedMemory(); // each job begins here
 	CheckedSurface result;
 	if (points.empty())
 		throw InvalidInput("The mesh is empty: a closed triangle mesh is needed.", Defect::Empty);
