@@ -33,6 +33,7 @@ Results run(FilterRun& run)
 		{"edges_parted", report.mended.edgesParted},
 		{"vertices_parted", report.mended.verticesParted},
 		{"pieces_dropped", report.mended.piecesDropped + report.piecesDropped},
+		{"handles", report.handles},
 		{"wrapped", report.outcome == mcf::SolidReport::Wrapped ? 1 : 0},
 	});
 	edit.commit();

@@ -129,6 +129,64 @@ def scanned(vertices: np.ndarray, faces: np.ndarray, random: np.random.Generator
     return compact(vertices, faces[seen])
 
 
+def below(vertices: np.ndarray, faces: np.ndarray, axis: int, height: float) -> Mesh:
+    """The closed part of a mesh below a plane across an axis: cut edges closed by fans around their middles."""
+    inside = vertices[:, axis] < height
+    kept, points, made = [], list(vertices), {}
+
+    def crossing(a: int, b: int) -> int:
+        a, b = min(a, b), max(a, b)
+        if (a, b) not in made:
+            t = (height - vertices[a, axis]) / (vertices[b, axis] - vertices[a, axis])
+            made[a, b] = len(points)
+            points.append(vertices[a] + t * (vertices[b] - vertices[a]))
+        return made[a, b]
+
+    following = {}
+    for face in faces:
+        within = inside[face]
+        if within.all():
+            kept.append(tuple(face))
+        if within.all() or not within.any():
+            continue
+        # The corner that is alone on its side comes first.
+        first = int(np.flatnonzero(within == (within.sum() == 1))[0])
+        a, b, c = np.roll(face, -first)
+        p, q = crossing(a, b), crossing(c, a)
+        if within.sum() == 1:
+            kept.append((a, p, q))
+            following[q] = p
+        else:
+            kept += [(p, b, c), (p, c, q)]
+            following[p] = q
+    while following:
+        start, at = next(iter(following.items()))
+        loop = [start]
+        del following[start]
+        while at != start:
+            loop.append(at)
+            at = following.pop(at)
+        middle = len(points)
+        points.append(np.mean([points[k] for k in loop], axis=0))
+        kept += [(loop[k - 1], loop[k], middle) for k in range(len(loop))]
+    return compact(np.array(points), np.array(kept))
+
+
+def in_two(overlap: float) -> Damage:
+    """Two closed bodies, cut across the longest axis, that share so much of the diagonal, or a wall."""
+    def damage(vertices: np.ndarray, faces: np.ndarray, random: np.random.Generator) -> Mesh:
+        extent = np.ptp(vertices, axis=0)
+        axis = int(np.argmax(extent))
+        height = vertices[:, axis].min() + extent[axis] * random.uniform(0.43, 0.57)
+        more = overlap * np.linalg.norm(extent) / 2
+        low, low_faces = below(vertices, faces, axis, height + more)
+        mirror = np.where(np.arange(3) == axis, -1, 1)
+        high, high_faces = below(vertices * mirror, faces[:, ::-1], axis, more - height)
+        return (np.vstack([low, high * mirror]),
+                np.vstack([low_faces, high_faces[:, ::-1] + len(low)]))
+    return damage
+
+
 DAMAGES: dict[str, Damage] = {
     "1 % of the faces missing": without_faces(0.01),
     "5 % of the faces missing": without_faces(0.05),
@@ -141,6 +199,8 @@ DAMAGES: dict[str, Damage] = {
     "T-junctions": junctions,
     "three digits": rounded,
     "seen from five directions": scanned,
+    "parts run into each other": in_two(0.04),
+    "two coincident walls": in_two(0),
 }
 
 

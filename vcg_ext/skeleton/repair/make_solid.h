@@ -8,6 +8,7 @@
 #define VCG_MCF_MAKE_SOLID_H
 
 #include "surface_layers.h"
+#include "cut_handles.h"
 #include "mend.h"
 #include "overlap.h"
 #include "solid_pieces.h"
@@ -47,6 +48,8 @@ struct SolidReport
 	MendReport mended;
 	/// Pieces of the wrap that were left out: specks, and cavities.
 	int piecesDropped = 0;
+	/// Those that were cut, see cutHandles().
+	int handles = 0;
 	/// Triangles that cross others, and the part of the volume that is enclosed more than once or turned inside
 	/// out; counted where there is such a part.
 	int selfIntersections = 0;
@@ -79,6 +82,7 @@ struct SolidReport
 		add(mended.facesTurned, "face turned", "faces turned");
 		add(mended.holesClosed, "hole closed", "holes closed");
 		add(mended.piecesDropped + piecesDropped, "piece dropped", "pieces dropped");
+		add(handles, "small handle cut", "small handles cut");
 		if (outcome == Wrapped)
 			add(selfIntersections, "triangle that crosses others resolved",
 				"triangles that cross others resolved");
@@ -383,8 +387,14 @@ public:
 		}
 		MendedSurface mended = mend(points, triangles, HoleLimits(), progress.part(0.3, 0.5));
 		solid.report.mended = mended.report;
-		if (mended.closed && takeMended(mended, repair, progress.part(0.5, 0.6)))
-			return std::move(solid);
+		if (mended.closed) {
+			// The wrap makes its own.
+			MendedSurface whole = mended;
+			solid.report.handles =
+				cutHandles(whole.points, whole.triangles, HandleLimits(), progress.part(0.5, 0.55));
+			if (takeMended(whole, repair, progress.part(0.55, 0.6)))
+				return std::move(solid);
+		}
 		if (repair == Repair::Mend || mended.triangles.empty())
 			throw InvalidInput(*error);
 		if (mended.report.facesTurned > 0)
@@ -589,8 +599,10 @@ private:
 		solid.report.outcome = SolidReport::Wrapped;
 		solid.report.spacing = spacing / box.Diag();
 		solid.report.piecesDropped = dropSmallPieces(made, spacing, progress.part(0.8, 0.85));
+		solid.report.handles =
+			cutHandles(made.points, made.triangles, HandleLimits(), progress.part(0.85, 0.87));
 		CheckedSurface checked = checkedSurface(
-			roundedCoordinates(made.points), made.triangles, progress.part(0.85, 0.9));
+			roundedCoordinates(made.points), made.triangles, progress.part(0.87, 0.9));
 		finish(std::move(checked.mesh), std::vector<int>(points.size(), -1), progress.part(0.9, 1));
 	}
 
