@@ -258,16 +258,14 @@ inline double partLeftOut(const SurfaceMesh& surface, const PoleSet& poles,
 
 /**
  * Whether a skeleton of the surface as it is replaces one of the resampled surface that could not be refined.
- * Not where it describes much less of the shape, as of limbs whose triangles are many times as long as thick, while
+ * Not where it describes less of the shape, as of limbs whose triangles are many times as long as thick, while
  * the other one describes nearly all of it and hardly leaves it.
  * @throws Cancelled
  */
 inline bool isBetter(const SurfaceMesh& surface, const Skeletonization& asItIs,
 	const Skeletonization& resampled, const Progress& progress)
 {
-	constexpr double muchShorter = 0.5, mostOutside = 0.01, mostLeftOut = 0.05, muchMore = 2;
-	if (asItIs.sheets)
-		return asItIs.refined > resampled.refined;
+	constexpr double muchShorter = 0.5, mostOutside = 0.01, mostLeftOut = 0.05, more = 0.01;
 	const bool isMuchShorter =
 		statistics(asItIs.curve).length < muchShorter * statistics(resampled.curve).length;
 	if (!isMuchShorter
@@ -275,8 +273,7 @@ inline bool isBetter(const SurfaceMesh& surface, const Skeletonization& asItIs,
 			<= mostOutside * double(resampled.curve.position.size())) {
 		const double leftOut = partLeftOut(surface, *asItIs.poles, resampled.curve, progress);
 		if (leftOut <= mostLeftOut
-			&& partLeftOut(surface, *asItIs.poles, asItIs.curve, progress)
-				> muchMore * leftOut + mostOutside)
+			&& partLeftOut(surface, *asItIs.poles, asItIs.curve, progress) > leftOut + more)
 			return false;
 	}
 	return asItIs.refined != resampled.refined ? asItIs.refined > resampled.refined : isMuchShorter;

@@ -338,6 +338,24 @@ TEST(Refine, EndsInTheCentreOfTheRoundEndsOfAHair)
 		EXPECT_LE(std::min(std::abs(tip[0] + 0.5), std::abs(tip[0] - end)), radius / 2);
 }
 
+TEST(Refine, ALimbOfLongTrianglesIsFollowedToItsEnd)
+{
+	// Six-sided, with triangles of 50 radii, so that no vertex tells how thin it is; the flow has left its ends.
+	const double radius = 0.002;
+	std::vector<std::pair<double, double>> profile = {{-0.5 - radius, 0}};
+	for (int i = 0; i <= 10; ++i)
+		profile.emplace_back(-0.5 + 0.1 * i, radius);
+	profile.emplace_back(0.5 + radius, 0);
+	const SurfaceMesh mesh = shapes::revolved(profile, 6).mesh();
+	const CurveSkeleton s = refine(
+		CurveMaker().line({-0.5 + 15 * radius, 0, 0}, {0.5 - 15 * radius, 0, 0}).in(mesh), mesh);
+	EXPECT_TRUE(isInside(s, mesh));
+	const std::vector<Point3d> ends = tips(s);
+	ASSERT_EQ(ends.size(), 2u);
+	for (const Point3d& tip : ends)
+		EXPECT_NEAR(std::abs(tip[0]), 0.5, radius);
+}
+
 TEST(Refine, TakesAnEndBackThatWentPastTheCentreOfARoundEnd)
 {
 	const SurfaceMesh mesh = shapes::capsule(3, 0.35, 48).mesh();

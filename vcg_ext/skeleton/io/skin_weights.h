@@ -53,8 +53,8 @@ struct SkinSystem
  * @param reach mesh units, above 0.
  * Complexity: O(F log F).
  */
-inline SkinSystem skinSystem(const SkinnedSurface& surface, const std::vector<int>& at,
-	const std::vector<double>& reach)
+inline SkinSystem skinSystem(
+	const SkinnedSurface& surface, const std::vector<int>& at, const std::vector<double>& reach)
 {
 	constexpr double leastWeight = 1e-3, largestCotangent = 100, leastPull = 1e-9;
 	const int n = int(surface.position.size());

@@ -368,6 +368,25 @@ inline void moveInside(CurveSkeleton& skeleton, const ClosestSurface& surface)
 	}
 }
 
+/**
+ * To how many sides of a branch the shape is wide at a point of it, 0 to 2: one and a half of the ball's
+ * radii aside the surface is still half a radius away. In a limb none, in a plate both, along its rim one.
+ * @param contact    the second contact of the ball, see medialBall().
+ * @param direction  of the branch.
+ */
+inline int wideSides(const ClosestSurface& surface, const Point3d& x,
+	const ClosestSurface::Hit& hit, const Point3d& contact, const Point3d& direction)
+{
+	constexpr double aside = 1.5, away = 0.5;
+	const Point3d side = (hit.point - contact) ^ direction;
+	const double norm = side.Norm();
+	if (!(norm > 0))
+		return 0;
+	const Point3d offset = side * (aside * hit.distance / norm);
+	return int(surface.clearance(x + offset) > away * hit.distance)
+		+ int(surface.clearance(x - offset) > away * hit.distance);
+}
+
 } // namespace vcg::tri::mcf::refining
 
 #endif

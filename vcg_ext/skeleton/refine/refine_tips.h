@@ -27,7 +27,8 @@ struct TipRule
 	double spacing;
 	/// Each step must add at least this part of its length to the reach of the balls, ...
 	double leastGain;
-	/// ... and end in a ball no smaller than this, in diagonals.
+	/// ... and end in a ball no smaller than this, in diagonals, or, where balls hardly shrink, than half the tip's
+	/// own: of a limb between long triangles the thickness is not known.
 	double leastRadius;
 	/// Of both lengths; of the radius as the thickness says.
 	const LocalScale& scale = sameEverywhere;
@@ -56,14 +57,16 @@ inline Point3d tipDirection(
  * Extends each tip along its direction, in steps of at most a quarter of its ball, each recentred
  * sideways, as long as the balls reach further by it: (step + r' - r) / step >= leastGain.
  * In a round end the ball shrinks as fast as the tip advances, and it stays; in a tapered or
- * pointed one it goes on to the least radius. It never goes farther than three radii, nor where balls
- * are already, nor turns back: a sheet would lead it round its rim.
+ * pointed one it goes on to the least radius. It never goes where balls are already. In a limb it goes on, however
+ * long the triangles are between which the flow left it, and bends no more than 30 degrees in three radii. Where the
+ * shape is wide it goes no farther than three radii, nor turns back: a sheet would lead it round its rim.
  * A tip outside stays where it is.
  * @pre radius holds the distances from the surface. @post the same.
  */
 inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, const TipRule& rule)
 {
 	constexpr double farthest = 3, farthestTurn = 30 * M_PI / 180;
+	constexpr double gainOfLimb = 0.5; // a cone of 30 degrees; a corner of a box has 0.42
 	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
 	const int count = int(neighbours.size());
 	for (int v = 0; v < count; ++v) {
@@ -72,8 +75,8 @@ inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, c
 		Point3d direction = tipDirection(skeleton, neighbours, v);
 		if (direction.SquaredNorm() == 0)
 			continue;
-		const Point3d start = direction;
-		double left = farthest * skeleton.radius[v];
+		Point3d before = direction;
+		double left = farthest * skeleton.radius[v], sinceThen = 0;
 		int tip = v;
 		double scale = rule.scale.at(skeleton.position[v], surface);
 		while (left > 0) {
@@ -85,17 +88,22 @@ inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, c
 			if (hit.distance <= 0 || !surface.isInside(y, hit))
 				break;
 			const ClosestSurface::Ball ball = medialBall(surface, y, hit);
+			const bool isWide =
+				!isMedial(ball) || wideSides(surface, y, hit, ball.contact, direction) > 0;
 			if (isMedial(ball))
 				y = movedAside(y, ball, direction, step / 2);
 			const double s = Distance(x, y);
 			const double reached = std::max(surface.clearance(y), 0.0);
 			const Point3d front = y + (y - x) * (reached / s);
 			scale = rule.scale.atFace(hit.face);
-			if (reached < rule.leastRadius * rule.scale.ofThicknessAtFace(hit.face)
-				|| s + reached - r < rule.leastGain * s || holdingNode(skeleton, front) >= 0
+			const double least = rule.leastRadius * rule.scale.ofThicknessAtFace(hit.face);
+			const double gain = (s + reached - r) / s;
+			const bool isTooThin =
+				reached < least && (gain < gainOfLimb || reached < skeleton.radius[v] / 2);
+			if (isTooThin || gain < rule.leastGain || holdingNode(skeleton, front) >= 0
 				|| !isSegmentInside(surface, x, r, y, reached))
 				break;
-			left -= s;
+			left -= isWide ? s : 0;
 			const int next = int(skeleton.position.size());
 			skeleton.position.push_back(y);
 			skeleton.radius.push_back(reached);
@@ -103,8 +111,13 @@ inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, c
 			// The branch may bend, but turns slowly: a quarter of the way in each step.
 			direction = direction * 0.75 + (y - x) * (0.25 / s);
 			direction /= direction.Norm();
-			if (direction * start < std::cos(farthestTurn))
+			if (direction * before < std::cos(farthestTurn))
 				break;
+			sinceThen += s;
+			if (!isWide && sinceThen > farthest * reached) {
+				before = direction;
+				sinceThen = 0;
+			}
 			tip = next;
 		}
 	}
