@@ -136,7 +136,7 @@ inline VertexShares fourOfFive(std::array<double, 5> weight, const std::array<in
  * the bone heat of Baran and Popovic ("Automatic Rigging and Animation of 3D Characters", ACM Trans. Graph. 26(3),
  * 2007), which has the nearest visible bone where the correspondence is here. Vertices at the same place get
  * the same weights. Weights are at least 0 and add up to 1; the four largest stay.
- * @param node for each vertex its node of the skeleton; -1: the nearest one.
+ * @param skeleton its `node` is for each vertex of the surface its node; -1: the nearest one.
  * @pre the skeleton has nodes, and `armature` is its own.
  * Complexity: O(F log F) and, for each bone, about the square root of its region's vertices times their number.
  */
