@@ -30,7 +30,7 @@ Results run(FilterRun& run)
 	}
 	mcf::Parameters parameters;
 	parameters.epsilon = readEpsilon(run.parameters);
-	const double epsilon = mcf::sharedAmong(parameters, int(found.stage->diagonal.size())).epsilon;
+	const double epsilon = mcf::sharedAmong(parameters, found.stage->diagonal).epsilon;
 	logIfNotConverged(
 		run, *found.stage, "Run 'Contraction Step' on the stage until it has converged.");
 #if MCFSKEL_SHEETS

@@ -396,10 +396,7 @@ private:
 		return result;
 	}
 
-	double Epsilon() const
-	{
-		return mcf::sharedAmong(parameters, int(stage->diagonal.size())).epsilon;
-	}
+	double Epsilon() const { return mcf::sharedAmong(parameters, stage->diagonal).epsilon; }
 
 	/// @throws mcf::InvalidInput if the order of the stages is not kept.
 	static void Require(bool holds, const char* text)

@@ -424,7 +424,9 @@ inline Skeletonization skeletonize(const SurfaceInput& input, const Parameters& 
 	refinement.check();
 	int components = 0;
 	connectedComponents(*input.mesh, &components, progress.part(0, 0));
-	const Parameters given = sharedAmong(parameters, components);
+	const Parameters given = components > 1
+		? sharedAmong(parameters, MeasuredSurface(*input.mesh, progress.part(0, 0)).diagonals())
+		: parameters;
 	const auto note = [&](const std::string& text) {
 		if (observer.onNote && !text.empty())
 			observer.onNote(text);

@@ -189,6 +189,19 @@ TEST(ComponentsAtRest, AHundredSpecksKeepTheirTopologyAndCostNoMoreThanTheirSize
 	EXPECT_EQ(nodes, ofBall.position);
 }
 
+TEST(ComponentsAtRest, SpecksTakeNoShareOfTheWork)
+{
+	const Parameters usual;
+	std::vector<double> diagonal(200, 0.009);
+	diagonal[7] = 1;
+	EXPECT_EQ(sharedAmong(usual, diagonal).epsilon, usual.epsilon);
+	diagonal.assign(200, 0.02);
+	diagonal[7] = 1;
+	const Parameters shared = sharedAmong(usual, diagonal);
+	EXPECT_NEAR(shared.epsilon, 2 * usual.epsilon, 1e-15);
+	EXPECT_EQ(sharedAmong(shared, diagonal).epsilon, shared.epsilon) << "twice";
+}
+
 TEST(ComponentsAtRest, HostileBodiesHaveCurvesInsideOfTheRightTopology)
 {
 	for (const std::string& family : shapes::hostileFamilies())

@@ -10,7 +10,6 @@
 #include "errors.h"
 #include "has_qhull.h"
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -145,22 +144,6 @@ private:
 			throw InvalidParameter(std::string("Parameter ") + name + " must be " + range + ".");
 	}
 };
-
-/**
- * Of many components none is looked at as closely as one alone: beyond 50 of them the default epsilon grows with
- * the root of their number, so that the work grows no faster than it. A choice of the user's stays, and so does
- * the paper's. The stages of the pipeline apply it themselves, and twice is as once.
- */
-inline Parameters sharedAmong(Parameters parameters, int components)
-{
-	constexpr double fewComponents = 50, rounding = 1e-6;
-	const double usual = Parameters().epsilon;
-	const bool isUsual = std::abs(parameters.epsilon - usual) <= rounding * usual;
-	if (isUsual && parameters.tidyCurve && components > fewComponents)
-		parameters.epsilon = std::min(
-			parameters.epsilon * std::sqrt(components / fewComponents), Parameters::maxEpsilon);
-	return parameters;
-}
 
 } // namespace vcg::tri::mcf
 

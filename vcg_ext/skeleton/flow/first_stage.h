@@ -254,9 +254,9 @@ inline Stage firstStage(const SurfaceMesh& surface, const Parameters& given,
 	const PoleSet* poles = nullptr, const Progress& progress = Progress())
 {
 	given.check();
-	int components = 0;
-	connectedComponents(surface, &components, progress.part(0, 0));
-	const Parameters parameters = sharedAmong(given, components);
+	const Progress begin = progress.part(0, 0);
+	const MeasuredSurface measured(surface, begin);
+	const Parameters parameters = sharedAmong(given, measured.diagonals());
 	const double polesFrom = poles ? 1 : 0.3;
 	PoleSet found;
 	const auto polesOfSurface = [&](const Progress& part) -> const PoleSet& {
@@ -267,13 +267,10 @@ inline Stage firstStage(const SurfaceMesh& surface, const Parameters& given,
 		return *poles;
 	};
 	std::vector<double> limits;
-	if (parameters.adaptive) {
-		const Progress begin = progress.part(0, 0);
-		const MeasuredSurface measured(surface, begin);
+	if (parameters.adaptive)
 		limits = poles ? epsilonLimits(measured, *poles, parameters, begin)
 					   : epsilonLimits(measured, medialPoles(surface, parameters.poleMethod, begin),
 						   parameters, begin);
-	}
 	FlowSurface start = surfaceForFlow(
 		surface, parameters.epsilon, polesOfSurface, progress.part(0, polesFrom), limits);
 	Stage stage;

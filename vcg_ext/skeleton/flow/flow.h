@@ -18,6 +18,7 @@
 #include <skeleton/core/progress.h>
 #include <skeleton/core/ticker.h>
 #include <skeleton/mesh/breadth_first_numbering.h>
+#include <skeleton/mesh/components_at_rest.h>
 
 #include <algorithm>
 #include <cmath>
@@ -37,9 +38,8 @@ constexpr int renumberEvery = 4;
 
 /// step() of a stage that has entered its frames.
 inline void stepInFrames(
-	Stage& stage, const StageFrames& frames, const Parameters& given, const Progress& progress)
+	Stage& stage, const StageFrames& frames, const Parameters& parameters, const Progress& progress)
 {
-	const Parameters parameters = sharedAmong(given, int(stage.diagonal.size()));
 	SurfaceMesh& mesh = stage.mesh;
 	const int before = mesh.vertexSlots();
 	contract(stage, parameters, progress.part(0, 0.8));
@@ -115,9 +115,10 @@ inline void stepInFrames(
  * @return the next stage; the given one is not changed.
  * @throws SolverError, InvalidParameter, Cancelled.
  */
-inline Stage step(Stage stage, const Parameters& parameters, const Progress& progress = Progress())
+inline Stage step(Stage stage, const Parameters& given, const Progress& progress = Progress())
 {
-	parameters.check();
+	given.check();
+	const Parameters parameters = sharedAmong(given, stage.diagonal);
 	if (stage.converged)
 		return stage;
 	StageFrames frames(stage, progress.part(0, 0));
@@ -143,10 +144,11 @@ struct StageObserver
  * Repeats step() until the flow has converged or parameters.maxIterations are made.
  * @throws as step().
  */
-inline Stage contractToSkeleton(Stage stage, const Parameters& parameters,
+inline Stage contractToSkeleton(Stage stage, const Parameters& given,
 	const Progress& progress = Progress(), const StageObserver& observer = StageObserver())
 {
-	parameters.check();
+	given.check();
+	const Parameters parameters = sharedAmong(given, stage.diagonal);
 	const Progress begin = progress.part(0, 0), end = progress.part(1, 1);
 	StageFrames frames(stage, begin); // found by the surface's own correspondence
 	// The map from surface to stage is composed lazily: the vertices of a checkpoint stage are tracked, a

@@ -10,9 +10,11 @@
 #include "measured_surface.h"
 #include "volume_and_area.h"
 
+#include <skeleton/core/parameters.h>
 #include <skeleton/core/progress.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace vcg::tri::mcf {
@@ -48,6 +50,27 @@ inline std::vector<char> componentsAtRest(
 		rests.push_back(surface.diagonal(c) < speckSize * largest
 			|| measured[c].volume < thinnest * surface.frame(c).unitLength() * measured[c].area);
 	return rests;
+}
+
+/**
+ * Of many components none is looked at as closely as one alone: beyond 50 of them, specks not counted, the default
+ * epsilon grows with the root of their number, so that the work grows no faster than it. A choice of the user's stays,
+ * and so does the paper's. The stages of the pipeline apply it themselves, and twice is as once.
+ * @param diagonal of each component.
+ */
+inline Parameters sharedAmong(Parameters parameters, const std::vector<double>& diagonal)
+{
+	constexpr double fewComponents = 50, rounding = 1e-6;
+	const double usual = Parameters().epsilon;
+	if (std::abs(parameters.epsilon - usual) > rounding * usual || !parameters.tidyCurve
+		|| diagonal.size() <= fewComponents)
+		return parameters;
+	const double speck = speckSize * *std::max_element(diagonal.begin(), diagonal.end());
+	const auto components =
+		std::count_if(diagonal.begin(), diagonal.end(), [&](double own) { return own >= speck; });
+	parameters.epsilon *= std::max(1.0, std::sqrt(double(components) / fewComponents));
+	parameters.epsilon = std::min(parameters.epsilon, Parameters::maxEpsilon);
+	return parameters;
 }
 
 } // namespace vcg::tri::mcf

@@ -66,7 +66,8 @@ inline Point3d tipDirection(
 inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, const TipRule& rule)
 {
 	constexpr double farthest = 3, farthestTurn = 30 * M_PI / 180;
-	constexpr double gainOfLimb = 0.5; // a cone of 30 degrees; a corner of a box has 0.42
+	constexpr double gainOfLimb = 0.5;    // a cone of 30 degrees; a corner of a box has 0.42
+	constexpr double thinnestLimb = 1e-4; // diagonals; a cusp goes on to nothing
 	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
 	const int count = int(neighbours.size());
 	for (int v = 0; v < count; ++v) {
@@ -98,8 +99,8 @@ inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, c
 			scale = rule.scale.atFace(hit.face);
 			const double least = rule.leastRadius * rule.scale.ofThicknessAtFace(hit.face);
 			const double gain = (s + reached - r) / s;
-			const bool isTooThin =
-				reached < least && (gain < gainOfLimb || reached < skeleton.radius[v] / 2);
+			const bool isTooThin = reached < least
+				&& (gain < gainOfLimb || reached < std::max(skeleton.radius[v] / 2, thinnestLimb));
 			if (isTooThin || gain < rule.leastGain || holdingNode(skeleton, front) >= 0
 				|| !isSegmentInside(surface, x, r, y, reached))
 				break;

@@ -16,6 +16,7 @@
 #include <skeleton/input/denoise.h>
 #include <skeleton/mesh/measured_surface.h>
 #include <skeleton/mesh/surface_mesh.h>
+#include <skeleton/mesh/components_at_rest.h>
 #include <skeleton/poles/poles.h>
 #include <skeleton/poles/sizing_field.h>
 #include <skeleton/spatial/transferred_nodes.h>
@@ -157,7 +158,7 @@ inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Paramete
 {
 	given.check();
 	const MeasuredSurface surface(mesh, progress.part(0, 0.05));
-	const Parameters parameters = sharedAmong(given, surface.components());
+	const Parameters parameters = sharedAmong(given, surface.diagonals());
 	ResampledSurface result;
 	result.noise = measureNoise(surface, progress.part(0.05, 0.1));
 	std::vector<char> still; // what the noise is not to be measured and smoothed on
