@@ -173,12 +173,13 @@ class Reference:
         unit = curve.transformed(self.shape.origin, self.shape.diagonal)
         samples, lengths = unit.sampled(SPACING)
         there = distance_to_medial_axis(self.shape, self.axis, samples)
-        back = cKDTree(np.vstack([samples, unit.points])).query(self.axis)[0]
+        ours = cKDTree(np.vstack([samples, unit.points]))
+        back = ours.query(self.axis)[0]
         found = {"there": float((there * lengths).sum() / lengths.sum()), "back": float(back.mean())}
         if self.other is not None:
             near = cKDTree(self.other).query(samples)[0]
             found |= {"to": float((near * lengths).sum() / lengths.sum()), "unit": diagonal(self.other),
-                      "from": float(cKDTree(np.vstack([samples, unit.points])).query(self.other)[0].mean())}
+                      "from": float(ours.query(self.other)[0].mean())}
         return found | measure(self.shape, self.axis, curve)
 
 
@@ -208,8 +209,10 @@ def table_1(work: Work, shapes: dict[str, Path], options: argparse.Namespace) ->
             return {n: reference[0].distances(read_curve(Path(f"{r['path']}.obj"))) for n, r in runs.items()}
 
         curves = [digest(Path(f"{run['path']}.obj")) for run in runs.values()]
-        result = work.kept(f"{name}: distances", ("judged", digest(mesh), *curves, options.quick), Path(__file__), judged)
-        phases = {"DS06": ("geodesic", "erosion"), "ATC08": ("contraction", "conversion"), "paper": ("poles", "contraction", "conversion"),
+        result = work.kept(f"{name}: distances", ("judged", digest(mesh), *curves, options.quick), Path(__file__),
+                           judged)
+        phases = {"DS06": ("geodesic", "erosion"), "ATC08": ("contraction", "conversion"),
+                  "paper": ("poles", "contraction", "conversion"),
                   "default": ("resample", "poles", "contraction", "conversion", "refine")}
         theirs = {"ATC08": f"{paper[2]:.5f}", "paper": f"{paper[3]:.5f}"} if paper else {}
         for method, run in runs.items():

@@ -12,19 +12,16 @@ Laplacian that has none.
 
 from __future__ import annotations
 
-import argparse
 import heapq
-import json
-import resource
 import time
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
-import trimesh
 from scipy.sparse import coo_matrix, diags
 from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import splu
+
+from peer_command import Result, peer_command
 
 FIRST_WEIGHT = 1.0  # of the contraction: the first iterations move the vertices visibly
 GROWTH = 2.0
@@ -345,29 +342,11 @@ def atc08(points: np.ndarray, triangles: np.ndarray) -> tuple[Skeleton, dict[str
     return skeleton, dict(zip(names, np.diff(clock).tolist())), contraction.volumes
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("mesh", type=Path)
-    parser.add_argument("--skeleton", type=Path, help="write the skeleton, as OBJ")
-    arguments = parser.parse_args()
-    mesh = trimesh.load(arguments.mesh, process=False, force="mesh")
-    mesh.merge_vertices(merge_tex=True, merge_norm=True)
-    skeleton, seconds, volumes = atc08(np.asarray(mesh.vertices, float), np.asarray(mesh.faces, int))
-    if arguments.skeleton:
-        lines = [f"v {x:.17g} {y:.17g} {z:.17g}" for x, y, z in skeleton.points]
-        lines += [f"l {a + 1} {b + 1}" for a, b in skeleton.edges]
-        arguments.skeleton.write_text("\n".join(lines) + "\n")
-    print(json.dumps({
-        "program": "atc08",
-        "mesh": str(arguments.mesh),
-        "vertices": len(mesh.vertices),
-        "iterations": len(volumes),
-        "volume_fraction": volumes[-1] if volumes else None,
-        "seconds": {name: {"cpu": value, "wall": value} for name, value in seconds.items()},
-        "peak_mb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,
-    }))
+def run(points: np.ndarray, triangles: np.ndarray) -> Result:
+    skeleton, seconds, volumes = atc08(points, triangles)
+    return skeleton.points, skeleton.edges, seconds, {
+        "iterations": len(volumes), "volume_fraction": volumes[-1] if volumes else None}
 
 
 if __name__ == "__main__":
-    main()
+    peer_command("atc08", __doc__, run)

@@ -17,14 +17,10 @@ and across pairs of triangles that are unfolded.
 
 from __future__ import annotations
 
-import argparse
 import heapq
-import json
-import resource
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 
 import igl
 import numpy as np
@@ -32,6 +28,8 @@ import trimesh
 from scipy.sparse import coo_matrix, csr_matrix
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import Delaunay, cKDTree
+
+from peer_command import Result, peer_command
 
 ANGLE, RATIO = np.pi / 8, 8.0  # of Dey and Zhao: a facet is medial if it passes either test
 TINY = 1e-300
@@ -107,7 +105,7 @@ def medial_facets(points: np.ndarray, triangles: np.ndarray, sides: np.ndarray) 
     """Whether each facet is one of the medial axis: steep on the surface, or long beside its triangles."""
     mesh = trimesh.Trimesh(points, triangles, process=False)
     across = points[sides[:, 1]] - points[sides[:, 0]]
-    length = np.maximum(np.linalg.norm(across, axis=1), 1e-300)
+    length = np.maximum(np.linalg.norm(across, axis=1), TINY)
     size = np.zeros(len(points))
     np.maximum.at(size, mesh.edges.ravel(), np.repeat(np.linalg.norm(
         points[mesh.edges[:, 1]] - points[mesh.edges[:, 0]], axis=1), 2))
@@ -127,14 +125,14 @@ def surface_graph(points: np.ndarray, triangles: np.ndarray) -> csr_matrix:
     apexes = mesh.face_adjacency_unshared
     a, b = points[shared[:, 0]], points[shared[:, 1]]
     axis = b - a
-    span = np.maximum(np.linalg.norm(axis, axis=1), 1e-300)
+    span = np.maximum(np.linalg.norm(axis, axis=1), TINY)
     axis = axis / span[:, None]
     along, away = [], []
     for k in range(2):
         arm = points[apexes[:, k]] - a
         along.append((arm * axis).sum(axis=1))
         away.append(np.linalg.norm(arm - along[-1][:, None] * axis, axis=1))
-    crossing = (along[0] * away[1] + along[1] * away[0]) / np.maximum(away[0] + away[1], 1e-300)
+    crossing = (along[0] * away[1] + along[1] * away[0]) / np.maximum(away[0] + away[1], TINY)
     within = (crossing > 0) & (crossing < span) & (apexes[:, 0] != apexes[:, 1])
     ways = np.vstack([edges, apexes[within]])
     lengths = np.concatenate([lengths, np.hypot(along[0] - along[1], away[0] + away[1])[within]])
@@ -322,28 +320,10 @@ def ds06(points: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.ndar
             dict(zip(names, np.diff(clock).tolist())))
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("mesh", type=Path)
-    parser.add_argument("--skeleton", type=Path, help="write the skeleton, as OBJ")
-    arguments = parser.parse_args()
-    mesh = trimesh.load(arguments.mesh, process=False, force="mesh")
-    mesh.merge_vertices(merge_tex=True, merge_norm=True)
-    nodes, edges, seconds = ds06(np.asarray(mesh.vertices, float), np.asarray(mesh.faces, int))
-    if arguments.skeleton:
-        lines = [f"v {x:.17g} {y:.17g} {z:.17g}" for x, y, z in nodes]
-        lines += [f"l {a + 1} {b + 1}" for a, b in edges]
-        arguments.skeleton.write_text("\n".join(lines) + "\n")
-    print(json.dumps({
-        "program": "ds06",
-        "mesh": str(arguments.mesh),
-        "vertices": len(mesh.vertices),
-        "nodes": len(nodes),
-        "seconds": {name: {"cpu": value, "wall": value} for name, value in seconds.items()},
-        "peak_mb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,
-    }))
+def run(points: np.ndarray, triangles: np.ndarray) -> Result:
+    nodes, edges, seconds = ds06(points, triangles)
+    return nodes, edges, seconds, {"nodes": len(nodes)}
 
 
 if __name__ == "__main__":
-    main()
+    peer_command("ds06", __doc__, run)
