@@ -503,7 +503,7 @@ TEST(Skeletonize, SheetsThatWouldLeaveAThicketAreGivenUp)
 		const Skeletonization result = run(soup, parameters);
 		const MesoSkeleton skeleton =
 			(result.sheets ? *result.sheets : withoutSheets(result.curve)).skeleton;
-		EXPECT_LT(detail::lengthOfCurves(skeleton), 3 * std::hypot(breadth, depth)) << resample;
+		EXPECT_LT(skeleton.curveLength(), 3 * std::hypot(breadth, depth)) << resample;
 		const BettiNumbers b = skeleton.betti();
 		EXPECT_EQ((std::vector<int> {b.b0, b.b1, b.b2}), (std::vector<int> {1, 0, 0})) << resample;
 		EXPECT_EQ(result.node.size(), soup.points.size());

@@ -279,6 +279,9 @@ inline bool isBetter(const SurfaceMesh& surface, const Skeletonization& asItIs,
 	return asItIs.refined != resampled.refined ? asItIs.refined > resampled.refined : isMuchShorter;
 }
 
+/// Of the time, for the first way to the skeleton: it is seldom that another one is needed.
+constexpr double once = 0.97;
+
 /// Another way to the skeleton: its stages reach the observer only if it is taken.
 class Alternative
 {
@@ -313,7 +316,6 @@ inline Skeletonization skeletonizeThin(const SurfaceInput& input, const Paramete
 	const Progress& progress, const Observer& observer, const RefineParameters& refinement)
 {
 	constexpr int maxVerticesAsItIs = 100000;
-	constexpr double once = 0.97; // of the time: it is seldom that both are needed
 	Skeletonization result =
 		skeletonizeOnce(input, given, progress.part(0, once), observer, refinement);
 	const bool isStopped =
@@ -346,15 +348,6 @@ inline Skeletonization skeletonizeThin(const SurfaceInput& input, const Paramete
 	return result;
 }
 
-/// The length of the curves of a skeleton with sheets.
-inline double lengthOfCurves(const MesoSkeleton& skeleton)
-{
-	double length = 0;
-	for (const auto& [a, b] : skeleton.edges)
-		length += Distance(skeleton.position[a], skeleton.position[b]);
-	return length;
-}
-
 /**
  * A skeleton with sheets, or without where they leave a thicket: where none could be kept, which has been collapsed
  * to curves only in the end, and where the curves are many times as long as those of the shape without sheets.
@@ -362,15 +355,14 @@ inline double lengthOfCurves(const MesoSkeleton& skeleton)
 inline Skeletonization skeletonizeWithSheets(const SurfaceInput& input, const Parameters& given,
 	const Progress& progress, const Observer& observer, const RefineParameters& refinement)
 {
-	constexpr double doubtful = 3,
-					 thicket = 2; // diagonals of the components; times the other's length
-	constexpr double once = 0.97; // of the time
+	constexpr double doubtful = 3; // diagonals of the components
+	constexpr double thicket = 2;  // times the length without sheets
 	Skeletonization result =
 		skeletonizeThin(input, given, progress.part(0, once), observer, refinement);
 	if (!result.sheets || !input.held.empty())
 		return result;
-	const SheetCollapse found = *result.sheets;
-	const double length = lengthOfCurves(found.skeleton);
+	const SheetCollapse& found = *result.sheets;
+	const double length = found.skeleton.curveLength();
 	double diagonals = 0;
 	for (double diagonal : result.stage->diagonal)
 		diagonals += diagonal;
@@ -383,11 +375,10 @@ inline Skeletonization skeletonizeWithSheets(const SurfaceInput& input, const Pa
 	Skeletonization other = skeletonizeThin(
 		input, curvesOnly, progress.part(once, 1), alternative.listener(), refinement);
 	other.sheets = withoutSheets(other.curve);
-	const double ofOther = lengthOfCurves(other.sheets->skeleton);
+	const double ofOther = other.sheets->skeleton.curveLength();
 	result.seconds += other.seconds;
 	if (!isNone && length <= thicket * ofOther)
 		return result;
-	other.noise = result.noise;
 	other.seconds = result.seconds;
 	other.sheets->sheets = other.sheets->givenUp = found.sheets;
 	if (observer.onNote)
@@ -423,9 +414,11 @@ inline Skeletonization skeletonize(const SurfaceInput& input, const Parameters& 
 	parameters.check();
 	refinement.check();
 	int components = 0;
-	connectedComponents(*input.mesh, &components, progress.part(0, 0));
+	const Progress begin = progress.part(0, 0);
+	const std::vector<int> component = connectedComponents(*input.mesh, &components, begin);
 	const Parameters given = components > 1
-		? sharedAmong(parameters, MeasuredSurface(*input.mesh, progress.part(0, 0)).diagonals())
+		? sharedAmong(
+			parameters, MeasuredSurface(*input.mesh, component, components, begin).diagonals())
 		: parameters;
 	const auto note = [&](const std::string& text) {
 		if (observer.onNote && !text.empty())

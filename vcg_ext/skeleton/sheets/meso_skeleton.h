@@ -42,6 +42,15 @@ struct MesoSkeleton
 
 	BettiNumbers betti() const { return bettiNumbers(int(position.size()), edges, faces); }
 
+	/// Sum of the lengths of the curve edges, mesh units.
+	double curveLength() const
+	{
+		double sum = 0;
+		for (const auto& [a, b] : edges)
+			sum += Distance(position[a], position[b]);
+		return sum;
+	}
+
 	/// Sum of the areas of the faces, mesh units squared.
 	double sheetArea() const
 	{

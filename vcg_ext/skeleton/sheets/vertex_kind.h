@@ -452,8 +452,8 @@ inline std::vector<VertexKind> vertexKinds(
 		done += count;
 		const double epsilon = stage.epsilon * stage.diagonal[size_t(c)];
 		Box3d box;
-		for (int v : own)
-			box.Add(mesh.position[v]);
+		detail::reportedLoop(count, part.part(0, 0), detail::tellingKinds,
+			[&](int i) { box.Add(mesh.position[own[size_t(i)]]); });
 		const detail::CellGrid grid(box, detail::kindCell * epsilon);
 		const detail::PointsByCell sorted(
 			count, [&](int i) { return mesh.position[own[size_t(i)]]; }, grid, part.part(0, 0.1),
