@@ -349,8 +349,9 @@ inline Skeletonization skeletonizeThin(const SurfaceInput& input, const Paramete
 }
 
 /**
- * A skeleton with sheets, or without where they leave a thicket: where none could be kept, which has been collapsed
- * to curves only in the end, and where the curves are many times as long as those of the shape without sheets.
+ * A skeleton with sheets, or without them where they would leave a thicket of curves: where no sheet could be kept, and
+ * where the curves are more than twice as long as those of the shape contracted without sheets.
+ * Complexity: as skeletonize(), twice where that is in doubt.
  */
 inline Skeletonization skeletonizeWithSheets(const SurfaceInput& input, const Parameters& given,
 	const Progress& progress, const Observer& observer, const RefineParameters& refinement)

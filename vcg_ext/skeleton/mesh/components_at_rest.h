@@ -53,10 +53,10 @@ inline std::vector<char> componentsAtRest(
 }
 
 /**
- * Of many components none is looked at as closely as one alone: beyond 50 of them, specks not counted, the default
- * epsilon grows with the root of their number, so that the work grows no faster than it. A choice of the user's stays,
- * and so does the paper's. The stages of the pipeline apply it themselves, and twice is as once.
- * @param diagonal of each component.
+ * Many components share the work: beyond 50 of them, specks not counted, the default epsilon grows with the square root
+ * of their number, so that the total work grows no faster than that. An epsilon that the user chose stays, and so
+ * does the paper's. Each stage of the pipeline applies it; it is idempotent.
+ * @param diagonal of each component. Complexity: O(components).
  */
 inline Parameters sharedAmong(Parameters parameters, const std::vector<double>& diagonal)
 {

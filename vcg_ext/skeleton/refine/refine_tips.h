@@ -27,8 +27,8 @@ struct TipRule
 	double spacing;
 	/// Each step must add at least this part of its length to the reach of the balls, ...
 	double leastGain;
-	/// ... and end in a ball no smaller than this, in diagonals, or, where balls hardly shrink, than half the tip's
-	/// own: of a limb between long triangles the thickness is not known.
+	/// ... and end in a ball no smaller than this, in diagonals. Where the balls hardly shrink, half the radius of
+	/// the tip will do: the local thickness of a limb is not known between long triangles.
 	double leastRadius;
 	/// Of both lengths; of the radius as the thickness says.
 	const LocalScale& scale = sameEverywhere;
@@ -57,9 +57,9 @@ inline Point3d tipDirection(
  * Extends each tip along its direction, in steps of at most a quarter of its ball, each recentred
  * sideways, as long as the balls reach further by it: (step + r' - r) / step >= leastGain.
  * In a round end the ball shrinks as fast as the tip advances, and it stays; in a tapered or
- * pointed one it goes on to the least radius. It never goes where balls are already. In a limb it goes on, however
- * long the triangles are between which the flow left it, and bends no more than 30 degrees in three radii. Where the
- * shape is wide it goes no farther than three radii, nor turns back: a sheet would lead it round its rim.
+ * pointed one it goes on to the least radius. It never enters balls that are already there. In a limb it may go any
+ * distance, since the flow stops early between long triangles, but bends no more than 30 degrees in three radii. Where
+ * the shape is wide it goes no farther than three radii: a sheet would lead it around its rim.
  * A tip outside stays where it is.
  * @pre radius holds the distances from the surface. @post the same.
  */
