@@ -30,6 +30,19 @@ TEST(MergeForest, TheTargetStandsForBoth)
 	EXPECT_EQ(forest.find(3), 3);
 }
 
+TEST(MergeForest, TheLowerOfTwoJoinedStandsForAll)
+{
+	MergeForest forest(5);
+	EXPECT_TRUE(forest.join(4, 2));
+	EXPECT_TRUE(forest.join(3, 4));
+	EXPECT_FALSE(forest.join(2, 3));
+	EXPECT_TRUE(forest.join(1, 3));
+	for (int v : {1, 2, 3, 4})
+		EXPECT_EQ(forest.find(v), 1);
+	EXPECT_EQ(forest.find(0), 0);
+	EXPECT_EQ(forest.size(), 5);
+}
+
 TEST(MergeForest, AgreesWithRelabelling)
 {
 	// The same by brute force: every merge rewrites a list of labels.

@@ -7,6 +7,9 @@
 #ifndef VCG_MCF_DISJOINT_SETS_H
 #define VCG_MCF_DISJOINT_SETS_H
 
+#include "reported_arrays.h"
+
+#include <algorithm>
 #include <vector>
 
 namespace vcg::tri::mcf {
@@ -15,10 +18,10 @@ namespace vcg::tri::mcf {
 class MergeForest
 {
 public:
-	explicit MergeForest(int size) : parent(size)
+	/// Each vertex stands for itself. @throws Cancelled
+	explicit MergeForest(int size, const Progress& progress = Progress(), const char* what = "") :
+			parent(detail::numberedArray(size_t(size), progress, what))
 	{
-		for (int v = 0; v < size; ++v)
-			parent[v] = v;
 	}
 
 	/// Adds a vertex that stands for itself.
@@ -30,6 +33,18 @@ public:
 
 	/// From now on `to` stands for all that `from` stood for. @pre both stand for themselves.
 	void merge(int from, int to) { parent[from] = to; }
+
+	/// Unites the sets of a and b; the lower of the two that stood for them stands for all.
+	/// @return whether they were two sets.
+	bool join(int a, int b)
+	{
+		a = find(a);
+		b = find(b);
+		parent[std::max(a, b)] = std::min(a, b);
+		return a != b;
+	}
+
+	int size() const { return int(parent.size()); }
 
 	/// The vertex that stands for v.
 	int find(int v)

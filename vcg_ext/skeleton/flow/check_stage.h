@@ -117,11 +117,7 @@ private:
 	{
 		require(vertices() > 0 && components() > 0 && stage.surface && !stage.surface->empty(),
 			"it is empty.");
-		require(stage.mesh.position.size() == vertices() && stage.pole.size() == vertices()
-				&& stage.poleRadius.size() == vertices() && stage.fixed.size() == vertices()
-				&& stage.held.size() == vertices() && stage.sheet.size() == vertices()
-				&& stage.component.size() == vertices()
-				&& (stage.epsilonLimit.empty() || stage.epsilonLimit.size() == vertices()),
+		require(stage.mesh.position.size() == vertices() && stage.areOf(vertices()),
 			"what it knows is not of as many vertices as it has.");
 		require(stage.initialArea.size() == components() && stage.area.size() == components(),
 			"it has not as many areas as components.");

@@ -134,26 +134,24 @@ inline std::vector<double> epsilonLimits(const MeasuredSurface& surface, const P
  * @throws Cancelled. Complexity: O(V + F), and O(s log s) for s halved edges.
  */
 template <class PolesOfSurface>
-FlowSurface surfaceForFlow(const SurfaceMesh& given, double epsilon,
+FlowSurface surfaceForFlow(const MeasuredSurface& given, double epsilon,
 	PolesOfSurface&& polesOfSurface, const Progress& progress = Progress(),
 	const std::vector<double>& epsilonLimit = {})
 {
 	FlowSurface result;
 	// All orders are those of the surface in its frames, where mirror images are alike.
-	std::vector<PrincipalFrame> frames;
+	const std::vector<PrincipalFrame>& frames = given.allFrames();
 	std::optional<SurfaceMesh> turnedOver;
 	{
 		const Progress begin = progress.part(0, 0);
-		const MeasuredSurface measured(given, begin);
-		frames = measured.allFrames();
-		result.rests = componentsAtRest(measured, begin);
+		result.rests = componentsAtRest(given, begin);
 		for (const PrincipalFrame& frame : frames)
 			if (frame.isMirrored() && !turnedOver) {
-				turnedOver = given.copied(begin);
-				turnOverMirrored(*turnedOver, measured.component(), frames, begin);
+				turnedOver = given.mesh().copied(begin);
+				turnOverMirrored(*turnedOver, given.component(), frames, begin);
 			}
 	}
-	const SurfaceMesh& surface = turnedOver ? *turnedOver : given;
+	const SurfaceMesh& surface = turnedOver ? *turnedOver : given.mesh();
 	Numbering number = breadthFirstOrder(surface, {}, progress.part(0, 0.1));
 	SurfaceMesh& mesh = result.mesh;
 	mesh = surface.renumbered(number.vertex, number.face, {}, progress.part(0.1, 0.2));
@@ -272,7 +270,7 @@ inline Stage firstStage(const SurfaceMesh& surface, const Parameters& given,
 					   : epsilonLimits(measured, medialPoles(surface, parameters.poleMethod, begin),
 						   parameters, begin);
 	FlowSurface start = surfaceForFlow(
-		surface, parameters.epsilon, polesOfSurface, progress.part(0, polesFrom), limits);
+		measured, parameters.epsilon, polesOfSurface, progress.part(0, polesFrom), limits);
 	Stage stage;
 	stage.component = std::move(start.component);
 	stage.epsilonLimit = std::move(start.epsilonLimit);

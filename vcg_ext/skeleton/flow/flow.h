@@ -73,17 +73,7 @@ inline void stepInFrames(
 		: mesh.compact();
 	for (int& node : stage.node)
 		node = newVertex[mergedInto[node]];
-	const auto renumber = [&](auto& ofVertex) {
-		ofVertex = renumbered(ofVertex, newVertex, mesh.vertexSlots());
-	};
-	renumber(stage.pole);
-	renumber(stage.poleRadius);
-	renumber(stage.fixed);
-	renumber(stage.held);
-	renumber(stage.sheet);
-	renumber(stage.component);
-	if (!stage.epsilonLimit.empty())
-		renumber(stage.epsilonLimit);
+	stage.renumber(newVertex, mesh.vertexSlots());
 
 	const Extent extent = frames.extent(stage);
 	constexpr double settled = 1e-4;

@@ -28,31 +28,6 @@ namespace vcg::tri::mcf {
 
 namespace detail {
 
-/// Merges what two vertices know; the survivor is already where it will stay.
-inline void mergeVertexState(Stage& stage, int removed, int survivor)
-{
-	// Of the two poles the one closest to the resulting vertex stays (Sec. 4.5).
-	const Point3d& p = stage.mesh.position[survivor];
-	const bool removedHas = stage.poleRadius[removed] >= 0,
-			   survivorHas = stage.poleRadius[survivor] >= 0;
-	// A vertex of a sheet keeps its pole, or its rim would wear away.
-	const bool takesPole = stage.sheet[removed] != stage.sheet[survivor] ? stage.sheet[removed]
-																		 : removedHas
-			&& (!survivorHas
-				|| SquaredDistance(p, stage.pole[removed])
-					< SquaredDistance(p, stage.pole[survivor]));
-	if (takesPole) {
-		stage.pole[survivor] = stage.pole[removed];
-		stage.poleRadius[survivor] = stage.poleRadius[removed];
-	}
-	if (!stage.epsilonLimit.empty())
-		stage.epsilonLimit[survivor] =
-			std::min(stage.epsilonLimit[survivor], stage.epsilonLimit[removed]);
-	stage.fixed[survivor] |= stage.fixed[removed];
-	stage.held[survivor] |= stage.held[removed];
-	stage.sheet[survivor] |= stage.sheet[removed];
-}
-
 /// Sorts edges, each as its squared length and a half-edge: into as many parts of equal widths as there
 /// are edges first, so that hardly any comparison is left. Complexity: O(n) for lengths spread evenly.
 inline void sortByLength(std::vector<std::pair<double, int>>& edges)
@@ -222,7 +197,7 @@ inline std::vector<int> collapseShortEdges(
 			}
 			mesh.position[b] = merged;
 			forest.merge(a, b);
-			detail::mergeVertexState(stage, a, b);
+			stage.merge(a, b, mesh.position[b]);
 			changed[b] = 1;
 		}
 		sorted.clear();
@@ -332,22 +307,7 @@ inline void splitWideAngles(Stage& stage, const Parameters& parameters, MergeFor
 			&& (stage.held[mesh.apex(h)] || stage.held[mesh.apex(mesh.twin(h))]);
 		const int m = mesh.split(h, mesh.position[a] + along * t);
 		forest.add();
-		// Within a sheet poles vary smoothly: the new vertex has one between those of its neighbours.
-		const bool sheet = stage.sheet[a] && stage.sheet[b];
-		stage.pole.push_back(
-			sheet ? stage.pole[a] * (1 - t) + stage.pole[b] * t : mesh.position[m]);
-		stage.poleRadius.push_back(
-			sheet ? stage.poleRadius[a] * (1 - t) + stage.poleRadius[b] * t : -1);
-		stage.sheet.push_back(sheet);
-		if (!stage.epsilonLimit.empty()) {
-			// Rounding must not lead out of the range.
-			const double ofA = stage.epsilonLimit[a], ofB = stage.epsilonLimit[b];
-			stage.epsilonLimit.push_back(
-				std::clamp(ofA * (1 - t) + ofB * t, std::min(ofA, ofB), std::max(ofA, ofB)));
-		}
-		stage.fixed.push_back(held);
-		stage.held.push_back(held);
-		stage.component.push_back(stage.component[a]);
+		stage.addBetween(a, b, t, mesh.position[m], held);
 		mesh.forEachOutgoing(m, [&](int e) {
 			queue.push_back(e);
 			queue.push_back(SurfaceMesh::next(e));

@@ -7,6 +7,8 @@
 #ifndef VCG_MCF_STAGE_H
 #define VCG_MCF_STAGE_H
 
+#include "vertex_states.h"
+
 #include <skeleton/core/reported_arrays.h>
 #include <skeleton/mesh/measured_surface.h>
 #include <skeleton/core/parameters.h>
@@ -29,25 +31,11 @@ namespace vcg::tri::mcf {
  * It holds everything that the flow needs to carry on: N single steps are the full run, bit for
  * bit. The mesh is compact between steps.
  */
-struct Stage
+struct Stage : VertexStates
 {
 	/// The contracted mesh, mesh units.
 	SurfaceMesh mesh;
-	/// Medial pole of each vertex, and its distance from the surface; -1: none (made by a split).
-	std::vector<Point3d> pole;
-	std::vector<double> poleRadius;
-	/// 1 where the vertex no longer moves: its neighbourhood has collapsed (Sec. 4.4), or it is held.
-	std::vector<char> fixed;
-	/// 1 where the user holds the vertex, see holdVertices(); such a vertex is fixed, too.
-	std::vector<char> held;
-	/// 1 where the flow keeps a sheet of the medial axis, see markSheets().
-	std::vector<char> sheet;
-	/// Connected component of each vertex.
-	std::vector<int> component;
-	/// Upper bound of epsilon at each vertex, fraction of its component's diagonal, where the shape is thin:
-	/// see epsilonLimits(). Empty: none anywhere.
-	std::vector<double> epsilonLimit;
-	/// No limit is smaller: what the grid of the frames resolves.
+	/// No `epsilonLimit` is smaller: what the grid of the frames resolves.
 	static constexpr double minEpsilonLimit = 1e-6;
 
 	/// Diagonal of each component of the surface, see MeasuredSurface: its unit of length.

@@ -9,6 +9,7 @@
 
 #include "curve_skeleton.h"
 
+#include <skeleton/core/segment.h>
 #include <skeleton/spatial/point_tree.h>
 
 #include <algorithm>
@@ -129,10 +130,7 @@ private:
 	{
 		const Point3d& a = skeleton.position[skeleton.edges[edge][0]];
 		const Point3d& b = skeleton.position[skeleton.edges[edge][1]];
-		const Point3d along = b - a;
-		const double squared = along.SquaredNorm();
-		const double part = squared > 0 ? std::clamp((query - a) * along / squared, 0.0, 1.0) : 0;
-		const Point3d point = a + along * part;
+		const auto [point, part] = closestOnSegment(a, b, query);
 		return {point, Distance(point, query), edge, part};
 	}
 };

@@ -9,6 +9,8 @@
 
 #include "curve_skeleton.h"
 
+#include <skeleton/core/disjoint_sets.h>
+
 #include <algorithm>
 #include <array>
 #include <numeric>
@@ -49,22 +51,14 @@ inline SpanningForest spanningForest(const CurveSkeleton& skeleton)
 	});
 
 	SpanningForest forest;
-	std::vector<int> leader(n);
-	std::iota(leader.begin(), leader.end(), 0);
-	const auto find = [&](int v) {
-		while (leader[v] != v)
-			v = leader[v] = leader[leader[v]];
-		return v;
-	};
+	MergeForest joined(n);
 	std::vector<std::vector<int>> tree(n);
 	for (int e : edgesByThickness) {
 		const auto& [a, b] = skeleton.edges[e];
-		const int la = find(a), lb = find(b);
-		if (la == lb) {
+		if (!joined.join(a, b)) {
 			forest.cuts.push_back(skeleton.edges[e]);
 			continue;
 		}
-		leader[std::max(la, lb)] = std::min(la, lb);
 		tree[a].push_back(b);
 		tree[b].push_back(a);
 	}
@@ -72,13 +66,13 @@ inline SpanningForest spanningForest(const CurveSkeleton& skeleton)
 
 	std::vector<int> root(n, -1);
 	for (int v = 0; v < n; ++v) {
-		int& r = root[find(v)];
+		int& r = root[joined.find(v)];
 		if (r < 0 || thickness(v) > thickness(r))
 			r = v;
 	}
 	forest.parent.assign(n, -1);
 	for (int v = 0; v < n; ++v) {
-		if (find(v) != v)
+		if (joined.find(v) != v)
 			continue;
 		std::vector<int> stack(1, root[v]);
 		while (!stack.empty()) {

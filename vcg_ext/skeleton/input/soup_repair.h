@@ -9,6 +9,7 @@
 
 #include "coincident_points.h"
 
+#include <skeleton/core/disjoint_sets.h>
 #include <skeleton/core/errors.h>
 #include <skeleton/core/grouped_sort.h>
 #include <skeleton/core/progress.h>
@@ -245,24 +246,20 @@ inline std::vector<int> nonManifoldVertices(size_t vertices, const std::vector<T
 	const SoupEdges& edges, const Progress& progress)
 {
 	// Corners around a vertex are joined over shared edges: one class for each fan.
-	std::vector<int> parent = numberedArray(3 * triangles.size(), progress.part(0, 0.1), repairing);
-	const auto find = [&](int c) {
-		while (parent[c] != c)
-			c = parent[c] = parent[parent[c]];
-		return c;
-	};
+	MergeForest joined(3 * int(triangles.size()), progress.part(0, 0.1), repairing);
 	const auto corner = [&](unsigned f, int v) {
 		return 3 * int(f) + (triangles[f][0] == v ? 0 : triangles[f][1] == v ? 1 : 2);
 	};
 	forEachSoupEdge(
 		edges, progress.part(0.1, 0.7), [&](int low, const SoupEdge* begin, const SoupEdge*) {
 			for (int v : {low, begin->high})
-				parent[find(corner(begin[0].face, v))] = find(corner(begin[1].face, v));
+				joined.merge(
+					joined.find(corner(begin[0].face, v)), joined.find(corner(begin[1].face, v)));
 		});
 	std::vector<char> fans = filledArray(vertices, char(0), progress.part(0.7, 0.7), repairing);
-	reportedLoop(int(parent.size()), progress.part(0.7, 0.9), repairing, [&](int c) {
+	reportedLoop(joined.size(), progress.part(0.7, 0.9), repairing, [&](int c) {
 		char& here = fans[triangles[c / 3][c % 3]];
-		if (parent[c] == c && here < 2)
+		if (joined.find(c) == c && here < 2)
 			++here;
 	});
 	std::vector<int> found;

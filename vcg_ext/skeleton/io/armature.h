@@ -7,6 +7,7 @@
 #ifndef VCG_MCF_ARMATURE_H
 #define VCG_MCF_ARMATURE_H
 
+#include <skeleton/core/segment.h>
 #include <skeleton/graph/spanning_forest.h>
 
 #include <algorithm>
@@ -50,15 +51,13 @@ inline void markBends(const std::vector<Point3d>& position, const std::vector<in
 	while (!open.empty()) {
 		const auto [first, last] = open.back();
 		open.pop_back();
-		const Point3d a = position[size_t(chain[first])];
-		const Point3d ab = position[size_t(chain[last])] - a;
+		const Point3d& a = position[size_t(chain[first])];
+		const Point3d& b = position[size_t(chain[last])];
 		double farthest = tolerance;
 		size_t bend = 0;
 		for (size_t i = first + 1; i < last; ++i) {
-			const Point3d ap = position[size_t(chain[i])] - a;
-			const double square = ab.SquaredNorm();
-			const double t = square > 0 ? std::clamp((ap * ab) / square, 0.0, 1.0) : 0;
-			const double distance = (ap - ab * t).Norm();
+			const Point3d& p = position[size_t(chain[i])];
+			const double distance = Distance(p, closestOnSegment(a, b, p).point);
 			if (distance > farthest) {
 				farthest = distance;
 				bend = i;

@@ -13,6 +13,7 @@
 #include <skeleton/core/parallel.h>
 #include <skeleton/core/progress.h>
 #include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/segment.h>
 #include <skeleton/core/ticker.h>
 #include <skeleton/graph/closest_curve.h>
 #include <skeleton/graph/curve_skeleton.h>
@@ -102,14 +103,6 @@ inline std::vector<std::vector<std::array<int, 2>>> edgesAround(
 	return edges;
 }
 
-inline double squaredDistanceToSegment(const Point3d& q, const Point3d& a, const Point3d& b)
-{
-	const Point3d along = b - a;
-	const double squared = along.SquaredNorm();
-	const double t = squared > 0 ? std::clamp((q - a) * along / squared, 0.0, 1.0) : 0;
-	return SquaredDistance(q, a + along * t);
-}
-
 } // namespace detail
 
 /**
@@ -172,8 +165,9 @@ inline SurfaceParts surfaceParts(const SurfaceMesh& surface, const CurveSkeleton
 			if (b >= 0)
 				for (const auto& [from, to] : edges[b])
 					best = std::min(best,
-						detail::squaredDistanceToSegment(
-							p, skeleton.position[from], skeleton.position[to]));
+						SquaredDistance(p,
+							closestOnSegment(skeleton.position[from], skeleton.position[to], p)
+								.point));
 			parts.distance[v] = b >= 0 ? std::sqrt(best) : curve.closest(p).distance;
 		}
 	};

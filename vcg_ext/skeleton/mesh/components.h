@@ -9,11 +9,11 @@
 
 #include "surface_mesh.h"
 
+#include <skeleton/core/disjoint_sets.h>
 #include <skeleton/core/progress.h>
 #include <skeleton/core/reported_arrays.h>
 #include <skeleton/core/ticker.h>
 
-#include <algorithm>
 #include <vector>
 
 namespace vcg::tri::mcf {
@@ -26,24 +26,13 @@ inline std::vector<int> connectedComponents(
 	// Sets of vertices that grow face by face, each known by its lowest vertex: unlike a walk over
 	// the surface that reads the mesh in the order in which it lies in memory.
 	const char* const what = "Measuring the surface";
-	std::vector<int> lowest =
-		detail::numberedArray(size_t(mesh.vertexSlots()), progress.part(0, 0), what);
-	const auto find = [&](int v) {
-		while (lowest[v] != v)
-			v = lowest[v] = lowest[lowest[v]];
-		return v;
-	};
-	const auto unite = [&](int v, int w) {
-		v = find(v);
-		w = find(w);
-		lowest[std::max(v, w)] = std::min(v, w);
-	};
+	MergeForest lowest(mesh.vertexSlots(), progress.part(0, 0), what);
 	detail::reportedLoop(mesh.faceSlots(), progress.part(0, 0.8), what, [&](int f) {
 		if (!mesh.isFace(f))
 			return;
 		const Triangle t = mesh.triangle(f);
-		unite(t[0], t[1]);
-		unite(t[1], t[2]);
+		lowest.join(t[0], t[1]);
+		lowest.join(t[1], t[2]);
 	});
 	const Progress counting = progress.part(0.8, 1);
 	std::vector<int> component =
@@ -52,7 +41,7 @@ inline std::vector<int> connectedComponents(
 	detail::reportedLoop(mesh.vertexSlots(), counting, what, [&](int v) {
 		if (!mesh.isVertex(v))
 			return;
-		const int first = find(v);
+		const int first = lowest.find(v);
 		component[v] = first == v ? count++ : component[first];
 	});
 	if (componentCount)

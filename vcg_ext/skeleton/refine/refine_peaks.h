@@ -251,14 +251,10 @@ inline std::vector<Peak> peaks(const CurveSkeleton& skeleton, const SurfaceCompo
 		[&](int v) { highLeft += height[v] > 0 && isHigh(v); });
 	// The parts above a level that falls, as a forest; they are numbered from the highest peak down.
 	const Progress begin = progress.part(0.5, 0.5);
-	std::vector<int> parent = detail::filledArray(size_t(surface.size()), -1, begin, what);
-	std::vector<int> partOfRoot = detail::filledArray(parent.size(), -1, begin, what);
+	MergeForest forest(surface.size(), begin, what);
+	std::vector<char> isAbove = detail::filledArray(size_t(surface.size()), char(0), begin, what);
+	std::vector<int> partOfRoot = detail::filledArray(isAbove.size(), -1, begin, what);
 	std::vector<Peak> parts;
-	const auto root = [&](int v) {
-		while (parent[v] != v)
-			v = parent[v] = parent[parent[v]];
-		return v;
-	};
 	// Peaks that are high enough and may still turn out to be spikier.
 	int open = 0;
 	const auto isOpen = [&](const Peak& peak) {
@@ -275,7 +271,7 @@ inline std::vector<Peak> peaks(const CurveSkeleton& skeleton, const SurfaceCompo
 			lower.extent
 				+ Distance(surface.position(higher.vertex), surface.position(lower.vertex)));
 		open += isOpen(higher);
-		parent[b] = a;
+		forest.merge(b, a);
 	};
 	detail::Ticker ticker(progress.part(0.5, 1), what, falling.size());
 	while (highLeft > 0 || open > 0) {
@@ -286,21 +282,21 @@ inline std::vector<Peak> peaks(const CurveSkeleton& skeleton, const SurfaceCompo
 		highLeft -= isHigh(v);
 		int part = -1;
 		surface.forEachNeighbour(v, [&](int w) {
-			if (parent[w] < 0)
+			if (!isAbove[w])
 				return;
-			const int other = root(w);
+			const int other = forest.find(w);
 			if (part >= 0 && part != other)
 				join(part, other);
-			part = root(other);
+			part = forest.find(other);
 		});
+		isAbove[v] = 1;
 		if (part < 0) {
-			parent[v] = v;
 			partOfRoot[v] = int(parts.size());
 			parts.push_back({v});
 			open += isOpen(parts.back());
 			continue;
 		}
-		parent[v] = part;
+		forest.merge(v, part);
 		Peak& grown = parts[partOfRoot[part]];
 		open -= isOpen(grown);
 		grown.extent =

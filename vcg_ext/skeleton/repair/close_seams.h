@@ -7,6 +7,7 @@
 #ifndef VCG_MCF_CLOSE_SEAMS_H
 #define VCG_MCF_CLOSE_SEAMS_H
 
+#include <skeleton/core/disjoint_sets.h>
 #include <skeleton/core/progress.h>
 #include <skeleton/input/soup_repair.h>
 #include <skeleton/mesh/surface_mesh.h>
@@ -16,7 +17,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -69,13 +69,7 @@ inline ClosedSeams closeSeams(const std::vector<Point3d>& points, std::vector<Tr
 	constexpr double nearness = 0.01; // of an edge
 	constexpr int mostRounds = 3;     // each cuts one edge of a face
 	ClosedSeams done;
-	done.vertexOf.resize(points.size());
-	std::iota(done.vertexOf.begin(), done.vertexOf.end(), 0);
-	const auto find = [&](int v) {
-		while (done.vertexOf[size_t(v)] != v)
-			v = done.vertexOf[size_t(v)] = done.vertexOf[size_t(done.vertexOf[size_t(v)])];
-		return v;
-	};
+	MergeForest vertices(int(points.size()));
 	for (int round = 0; round < mostRounds; ++round) {
 		const Progress part = progress.part(double(round) / mostRounds, (round + 1.0) / mostRounds);
 		const std::vector<detail::BorderEdge> border =
@@ -131,11 +125,8 @@ inline ClosedSeams closeSeams(const std::vector<Point3d>& points, std::vector<Tr
 						at = t;
 					}
 				});
-				if (lowest != v) {
-					const int first = find(lowest), other = find(v);
-					merged += first != other;
-					done.vertexOf[size_t(std::max(first, other))] = std::min(first, other);
-				}
+				if (lowest != v)
+					merged += vertices.join(lowest, v);
 				else if (edge >= 0)
 					onEdge[size_t(edge)].emplace_back(at, v);
 			});
@@ -170,14 +161,14 @@ inline ClosedSeams closeSeams(const std::vector<Point3d>& points, std::vector<Tr
 		if (merged)
 			for (Triangle& t : triangles)
 				for (int& v : t)
-					v = find(v);
+					v = vertices.find(v);
 		if (merged || junctions)
 			detail::removeDegenerateFaces(points.size(), triangles, part.part(1, 1));
 		if (!junctions)
 			break;
 	}
-	for (size_t v = 0; v < points.size(); ++v)
-		done.vertexOf[v] = find(int(v));
+	for (int v = 0; v < vertices.size(); ++v)
+		done.vertexOf.push_back(vertices.find(v));
 	return done;
 }
 

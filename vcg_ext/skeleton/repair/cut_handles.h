@@ -103,12 +103,6 @@ private:
 	std::vector<int> placeOf, faceAt; ///< in the patch at work, else -1
 
 	static int next(int h) { return Fans::next(h); }
-	static void join(MergeForest& sets, int a, int b)
-	{
-		const int first = sets.find(a), second = sets.find(b);
-		if (first != second)
-			sets.merge(std::max(first, second), std::min(first, second));
-	}
 	int origin(int h) const { return triangles[size_t(h) / 3][size_t(h) % 3]; }
 	int pieceOf(int v) const { return pieceOfPoint[size_t(v)]; }
 	double reach(int v) const { return limits.distance * diagonal[size_t(pieceOf(v))]; }
@@ -198,9 +192,9 @@ private:
 			edges += j < i; // also of a border
 			if (j < 0)
 				continue;
-			join(pieces, i / 3, j / 3);
-			join(fans, i, next(j));
-			join(fans, next(i), j);
+			pieces.join(i / 3, j / 3);
+			fans.join(i, next(j));
+			fans.join(next(i), j);
 		}
 		int components = 0, vertices = 0;
 		for (int i = 0; i < n; ++i)
@@ -273,8 +267,8 @@ private:
 			MergeForest fans(3 * faces);
 			for (int i = 0; i < 3 * faces; ++i)
 				if (const int j = marked.partnerOf(i); j >= 0) {
-					join(fans, i, next(j));
-					join(fans, next(i), j);
+					fans.join(i, next(j));
+					fans.join(next(i), j);
 				}
 			borders = marked.borders(fans, &loopOf);
 			for (int i = 0; i < 3 * faces; ++i) {
@@ -378,12 +372,8 @@ private:
 			std::vector<int> left;
 			for (const auto& [minus, i] : loops) {
 				const int j = marked.partnerOf(i);
-				const int here = dual.find(i / 3),
-						  there = dual.find(j >= 0 ? j / 3 : faces + loopOf[size_t(i)]);
-				if (here == there)
+				if (!dual.join(i / 3, j >= 0 ? j / 3 : faces + loopOf[size_t(i)]))
 					left.push_back(i);
-				else
-					join(dual, here, there);
 			}
 			return left;
 		}

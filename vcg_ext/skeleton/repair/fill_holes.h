@@ -9,6 +9,7 @@
 
 #include "part_surface.h"
 
+#include <skeleton/core/disjoint_sets.h>
 #include <skeleton/core/progress.h>
 #include <skeleton/mesh/surface_mesh.h>
 #include <skeleton/spatial/triangle_tree.h>
@@ -20,7 +21,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <set>
 #include <utility>
 #include <vector>
@@ -238,21 +238,14 @@ inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& point
 /// For each face the lowest one of its piece of surface.
 inline std::vector<int> pieceOfFaces(const std::vector<int>& partner)
 {
-	std::vector<int> parent(partner.size() / 3);
-	std::iota(parent.begin(), parent.end(), 0);
-	const auto find = [&](int f) {
-		while (parent[size_t(f)] != f)
-			f = parent[size_t(f)] = parent[size_t(parent[size_t(f)])];
-		return f;
-	};
+	MergeForest pieces(int(partner.size() / 3));
 	for (int h = 0; h < int(partner.size()); ++h)
-		if (partner[size_t(h)] > h) {
-			const int a = find(h / 3), b = find(partner[size_t(h)] / 3);
-			parent[size_t(std::max(a, b))] = std::min(a, b);
-		}
-	for (int f = 0; f < int(parent.size()); ++f)
-		parent[size_t(f)] = find(f);
-	return parent;
+		if (partner[size_t(h)] > h)
+			pieces.join(h / 3, partner[size_t(h)] / 3);
+	std::vector<int> lowest;
+	for (int f = 0; f < pieces.size(); ++f)
+		lowest.push_back(pieces.find(f));
+	return lowest;
 }
 
 /// Whether a triangle runs into others with which it shares no vertex.

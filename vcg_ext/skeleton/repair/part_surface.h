@@ -7,6 +7,7 @@
 #ifndef VCG_MCF_PART_SURFACE_H
 #define VCG_MCF_PART_SURFACE_H
 
+#include <skeleton/core/disjoint_sets.h>
 #include <skeleton/core/progress.h>
 #include <skeleton/input/soup_repair.h>
 #include <skeleton/mesh/surface_mesh.h>
@@ -15,7 +16,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -38,31 +38,25 @@ class Fans
 {
 public:
 	Fans(const std::vector<Triangle>& triangles, const std::vector<int>& partner) :
-			triangles(triangles), parent(3 * triangles.size())
+			triangles(triangles), fans(3 * int(triangles.size()))
 	{
-		std::iota(parent.begin(), parent.end(), 0);
 		for (int h = 0; h < int(partner.size()); ++h) {
 			const int g = partner[size_t(h)];
 			if (g < h)
 				continue;
 			for (int v : {vertex(h), vertex(next(h))})
-				parent[size_t(find(vertex(h) == v ? h : next(h)))] =
-					find(vertex(g) == v ? g : next(g));
+				fans.merge(fans.find(vertex(h) == v ? h : next(h)),
+					fans.find(vertex(g) == v ? g : next(g)));
 		}
 	}
 
-	int find(int corner) const
-	{
-		while (parent[size_t(corner)] != corner)
-			corner = parent[size_t(corner)] = parent[size_t(parent[size_t(corner)])];
-		return corner;
-	}
+	int find(int corner) const { return fans.find(corner); }
 
 	static int next(int h) { return h % 3 == 2 ? h - 2 : h + 1; }
 
 private:
 	const std::vector<Triangle>& triangles;
-	mutable std::vector<int> parent;
+	mutable MergeForest fans; ///< of corners
 
 	int vertex(int h) const { return triangles[size_t(h) / 3][size_t(h) % 3]; }
 };

@@ -9,6 +9,7 @@
 
 #include <skeleton/core/reported_arrays.h>
 #include <skeleton/core/progress.h>
+#include <skeleton/core/segment.h>
 #include <skeleton/mesh/surface_mesh.h>
 #include <skeleton/core/ticker.h>
 
@@ -261,27 +262,22 @@ private:
 inline Point3d trackCrease(const SurfaceMesh& surface, const CreaseEdges& creases,
 	const std::vector<CreaseRole>& role, const Point3d& query, int& h)
 {
-	const auto closest = [&](int e, double& t) {
-		const Point3d& a = surface.position[surface.origin(e)];
-		const Point3d along = surface.position[surface.target(e)] - a;
-		const double whole = along.SquaredNorm();
-		t = whole > 0 ? std::clamp((query - a) * along / whole, 0.0, 1.0) : 0;
-		return Point3d(a + along * t);
+	const auto closest = [&](int e) {
+		return closestOnSegment(
+			surface.position[surface.origin(e)], surface.position[surface.target(e)], query);
 	};
-	double t;
-	Point3d point = closest(h, t);
+	auto [point, t] = closest(h);
 	while (t == 0 || t == 1) {
 		const int out = t == 0 ? h : surface.twin(h); // starts at the end that was met
 		if (role[surface.origin(out)] != CreaseRole::Crease)
 			break;
 		const int onward = creases.continuation(surface, out);
-		double tOnward;
-		const Point3d candidate = closest(onward, tOnward);
-		if (!(SquaredDistance(candidate, query) < SquaredDistance(point, query)))
+		const SegmentPoint candidate = closest(onward);
+		if (!(SquaredDistance(candidate.point, query) < SquaredDistance(point, query)))
 			break;
 		h = onward;
-		t = tOnward;
-		point = candidate;
+		t = candidate.t;
+		point = candidate.point;
 	}
 	return point;
 }

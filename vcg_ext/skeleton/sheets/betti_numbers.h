@@ -153,13 +153,8 @@ inline BettiNumbers bettiNumbers(
 	MergeForest forest(vertices);
 	BettiNumbers b;
 	b.b0 = vertices;
-	for (const auto& [v, w] : all) {
-		const int a = forest.find(v), c = forest.find(w);
-		if (a != c) {
-			forest.merge(a, c);
-			--b.b0;
-		}
-	}
+	for (const auto& [v, w] : all)
+		b.b0 -= forest.join(v, w);
 	std::vector<FaceOfComplex> core;
 	for (int f : detail::facesWithoutFreeEdges(faces))
 		core.push_back(faces[size_t(f)]);

@@ -21,7 +21,6 @@
 #include <map>
 #include <memory>
 #include <set>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -230,27 +229,18 @@ inline Stage stageOfComponent(const Stage& stage, int c, const SurfaceMesh& own,
 	const std::vector<int>& ids, const std::vector<int>& surfaceIds,
 	const std::vector<int>& newNumber)
 {
-	const auto picked = [](const auto& values, const std::vector<int>& which) {
-		std::decay_t<decltype(values)> result;
-		result.reserve(which.size());
-		for (int i : which)
-			result.push_back(values[size_t(i)]);
-		return result;
-	};
+	std::vector<Point3d> surface;
+	surface.reserve(surfaceIds.size());
+	for (int s : surfaceIds)
+		surface.push_back((*stage.surface)[size_t(s)]);
 	Stage part;
 	part.mesh = own;
-	part.pole = picked(stage.pole, ids);
-	part.poleRadius = picked(stage.poleRadius, ids);
-	part.fixed = picked(stage.fixed, ids);
-	part.held = picked(stage.held, ids);
-	part.sheet = picked(stage.sheet, ids);
-	if (!stage.epsilonLimit.empty())
-		part.epsilonLimit = picked(stage.epsilonLimit, ids);
+	static_cast<VertexStates&>(part) = stage.picked(ids);
 	part.component.assign(ids.size(), 0);
 	part.diagonal = {stage.diagonal[size_t(c)]};
 	part.initialArea = {stage.initialArea[size_t(c)]};
 	part.area = {stage.area[size_t(c)]};
-	part.surface = std::make_shared<const std::vector<Point3d>>(picked(*stage.surface, surfaceIds));
+	part.surface = std::make_shared<const std::vector<Point3d>>(std::move(surface));
 	if (stage.frames)
 		part.frames =
 			std::make_shared<const std::vector<PrincipalFrame>>(1, (*stage.frames)[size_t(c)]);
