@@ -110,10 +110,6 @@ std::map<std::string, QVariant> FilterMcfskelPlugin::applyFilter(const QAction* 
 #else
 	const auto progress = callback;
 #endif
-#if !MCFSKEL_IN_MESHLAB
-	// The host's exporters may have been loaded after this plugin.
-	jsonExport_.claim();
-#endif
 	const FilterSpec& filter = host::filterOf(ID(action));
 	const ParameterValues values = host::readParameters(parameters, filter, document);
 	const Outcome outcome = runFilter(
@@ -148,29 +144,11 @@ std::list<FileFormat> FilterMcfskelPlugin::exportFormats() const
 	return fileFormats(&SkeletonFormat::isWritten);
 }
 
-#if MCFSKEL_IN_MESHLAB
 void FilterMcfskelPlugin::exportMaskCapability(
 	const QString&, int& capability, int& defaultBits) const
 {
 	capability = defaultBits = writtenElements;
 }
-#else
-void FilterMcfskelPlugin::exportMaskCapability(
-	const QString& format, int& capability, int& defaultBits) const
-{
-	if (const IOPlugin* other = jsonExport_.exporterOf(format))
-		other->exportMaskCapability(format, capability, defaultBits);
-	else
-		capability = defaultBits = writtenElements;
-}
-
-RichParameterList FilterMcfskelPlugin::initSaveParameter(
-	const QString& format, const MeshModel& layer) const
-{
-	const IOPlugin* other = jsonExport_.exporterOf(format, layer);
-	return other ? other->initSaveParameter(format, layer) : RichParameterList();
-}
-#endif
 
 void FilterMcfskelPlugin::fail(const QString& error)
 {
@@ -190,19 +168,9 @@ void FilterMcfskelPlugin::open(const QString&, const QString& file, MeshModel& l
 		fail(outcome.error);
 }
 
-#if MCFSKEL_IN_MESHLAB
 void FilterMcfskelPlugin::save(const QString&, const QString& file, MeshModel& layer, const int,
 	const RichParameterList&, vcg::CallBackPos*)
 {
-#else
-void FilterMcfskelPlugin::save(const QString& format, const QString& file, MeshModel& layer,
-	const int mask, const RichParameterList& parameters, vcg::CallBackPos* callback)
-{
-	if (IOPlugin* other = jsonExport_.exporterOf(format, layer)) {
-		other->save(format, file, layer, mask, parameters, callback);
-		return;
-	}
-#endif
 	const FileOutcome outcome = saveSkeleton(file, layer);
 	for (const QString& warning : outcome.warnings)
 		log(GLLogStream::WARNING, warning.toStdString());

@@ -14,7 +14,6 @@
 
 #include "../filters.h"
 #if !MCFSKEL_IN_MESHLAB
-#include "json_export.h"
 #endif
 
 class FilterMcfskelPlugin : public QObject,
@@ -55,10 +54,6 @@ public:
 	std::list<FileFormat> exportFormats() const override;
 	void exportMaskCapability(
 		const QString& format, int& capability, int& defaultBits) const override;
-#if !MCFSKEL_IN_MESHLAB
-	RichParameterList initSaveParameter(
-		const QString& format, const MeshModel& layer) const override;
-#endif
 	using IOPlugin::open;
 	void open(const QString& format, const QString& file, MeshModel& layer, int& mask,
 		const RichParameterList& parameters, vcg::CallBackPos* callback) override;
@@ -68,10 +63,6 @@ public:
 private:
 	/// Ends a reading or writing that has failed.
 	[[noreturn]] void fail(const QString& error);
-
-#if !MCFSKEL_IN_MESHLAB
-	mcfskel::host::JsonExport jsonExport_ {this};
-#endif
 #endif
 };
 

@@ -20,8 +20,8 @@ namespace {
 double sharedDiagonal(FilterRun& run, const CurveLayer& mine, const CurveLayer& other)
 {
 	if (const std::optional<SkeletonSurface> surface =
-			findSurface(run, mine, run.progress.part(0, 0)))
-		return surface->surface.mesh->bounds(run.progress.part(0, 0)).Diag();
+			findSurface(run, mine, run.progress.cancelOnly()))
+		return surface->surface.mesh->bounds(run.progress.cancelOnly()).Diag();
 	run.log(
 		"The surface is not known: distances are divided by the diagonal of the box around both "
 		"skeletons.");

@@ -108,7 +108,7 @@ Results run(FilterRun& run)
 	SurfaceLayer contracted = start.surface.surface;
 	if (start.isRepaired()) {
 		surface = &edit.addSurface(
-			source, baseName(source) + "_solid", *contracted.mesh, run.progress.part(0.95, 0.95));
+			source, baseName(source) + "_solid", *contracted.mesh, run.progress.cancelOnly());
 		edit.writeNodes(source, *contracted.vertexOfSlot, last->node);
 		contracted = compactSurface(contracted.mesh);
 		link = linkTo(*surface, contracted);

@@ -290,7 +290,7 @@ PoledSurface surfaceWithPoles(
 	result.solid = std::move(read.report);
 	logNotes(run, result.surface);
 	if (isLayer)
-		result.poles = readPoles(run.layer(), result.surface, progress.part(0.2, 0.2));
+		result.poles = readPoles(run.layer(), result.surface, progress.cancelOnly());
 	if (!result.poles) {
 		run.log("The surface has no medial poles yet: computing them.");
 		result.poles = std::make_shared<const mcf::PoleSet>(

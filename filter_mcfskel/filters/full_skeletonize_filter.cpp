@@ -73,7 +73,7 @@ Results run(FilterRun& run)
 	logNotes(run, read);
 	mcf::SurfaceInput surfaceInput {read.mesh, selectionToHold(run, read)};
 	if (!parameters.resample && !solid.isRepaired())
-		surfaceInput.poles = readPoles(run.layer(), read, run.progress.part(0.02, 0.02));
+		surfaceInput.poles = readPoles(run.layer(), read, run.progress.cancelOnly());
 	if (surfaceInput.poles)
 		run.log("Taking the medial poles that the layer carries.");
 
@@ -110,7 +110,7 @@ Results run(FilterRun& run)
 	const bool isInput = !isResampled && !solid.isRepaired();
 	if (!isInput) {
 		surface = &edit.addSurface(input, name + (isResampled ? "_resampled" : "_solid"),
-			*result.surface, run.progress.part(0.99, 0.99));
+			*result.surface, run.progress.cancelOnly());
 		contracted = compactSurface(result.surface);
 	}
 	const SurfaceLink link = linkTo(*surface, contracted);

@@ -15,7 +15,7 @@ namespace mcf = vcg::tri::mcf;
 namespace {
 
 /// The volume that triangles enclose.
-double volumeOf(const mcf::TriangleSoup& soup)
+double volumeOf(const mcf::BallUnion& soup)
 {
 	double sum = 0;
 	const vcg::Point3d& origin = soup.points.front();
@@ -37,7 +37,7 @@ Results run(FilterRun& run)
 		? mcf::resampledSkeleton(curve.skeleton, voxel / 2, 0, run.progress.part(0, 0.2))
 		: curve.skeleton;
 	const std::optional<SkeletonSurface> surface =
-		findSurface(run, curve, run.progress.part(0.2, 0.2));
+		findSurface(run, curve, run.progress.cancelOnly());
 	if (surface)
 		balls.radius =
 			clearances(balls.position, *surface->surface.mesh, run.progress.part(0.2, 0.3));
@@ -45,11 +45,11 @@ Results run(FilterRun& run)
 		run.log(
 			"The surface of the skeleton is not known: the balls have the skeleton's own radius, "
 			"which may reach outside.");
-	const mcf::TriangleSoup soup =
+	const mcf::BallUnion soup =
 		mcf::unionOfBalls(balls.position, balls.radius, voxel, run.progress.part(0.3, 1));
 
 	const double volume = volumeOf(soup);
-	const mcf::Progress end = run.progress.part(1, 1);
+	const mcf::Progress end = run.progress.cancelOnly();
 	const double whole = surface ? surface->surface.mesh->volume(end) : 0;
 
 	MeshModel& source = run.layer();

@@ -37,7 +37,7 @@ Results run(FilterRun& run)
 		run.log(QString::fromStdString(text));
 
 	if (isJoined)
-		mcf::joinPieces(refinement.skeleton, *surface.surface.mesh, run.progress.part(0.95, 0.95));
+		mcf::joinPieces(refinement.skeleton, *surface.surface.mesh, run.progress.cancelOnly());
 	Results results = curveResults(refinement.skeleton);
 	results["refined"] = refinement.report.fraction();
 	addDerivedSkeleton(

@@ -33,7 +33,7 @@ Results run(FilterRun& run)
 
 	DocumentEdit edit(run.document);
 	MeshModel& layer = edit.addSurface(
-		run.layer(), baseName(run.layer()) + "_resampled", mesh, run.progress.part(1, 1));
+		run.layer(), baseName(run.layer()) + "_resampled", mesh, run.progress.cancelOnly());
 	edit.attachSurface(layer, resampled);
 	Results results = {{"vertices", mesh.vertexCount()}, {"faces", mesh.faceCount()},
 		{"edge_length_mean", mcf::meanEdgeLength(mesh)}};

@@ -61,7 +61,7 @@ Results run(FilterRun& run)
 		const SkeletonSurface surface = requireSurface(run, curve, run.progress.part(0, 0.4));
 		curve = skeletonOf(run, std::move(curve), surface, run.progress.part(0.4, 0.9));
 		context.surface.position = surface.surface.mesh->position;
-		context.surface.faces = surface.surface.mesh->triangles(run.progress.part(0.9, 0.9));
+		context.surface.faces = surface.surface.mesh->triangles(run.progress.cancelOnly());
 	}
 	else
 		context.surfaceFingerprint = takeSources(run, curve);

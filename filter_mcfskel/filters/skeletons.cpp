@@ -137,16 +137,15 @@ std::vector<double> clearances(const std::vector<vcg::Point3d>& nodes,
 {
 	constexpr double spacing = 0.01;
 	const char* const what = "Measuring the thickness";
-	const mcf::Progress begin = progress.part(0, 0);
-	const vcg::Box3d box = surface.bounds(begin);
+	const vcg::Box3d box = surface.bounds(progress);
 	const vcg::Point3d middle = box.Center();
 	const double diagonal = box.Diag();
-	mcf::SurfaceMesh unit = surface.copied(begin);
-	mcf::detail::reportedLoop(unit.vertexSlots(), begin, what, [&](int v) {
+	mcf::SurfaceMesh unit = surface.copied(progress);
+	mcf::detail::cancellableLoop(unit.vertexSlots(), progress, [&](int v) {
 		vcg::Point3d& p = unit.position[size_t(v)];
 		p = (p - middle) / diagonal;
 	});
-	const std::vector<int> all = mcf::detail::numberedArray(unit.position.size(), begin, what);
+	const std::vector<int> all = mcf::detail::numberedArray(unit.position.size(), progress);
 	const mcf::ClosestSurface closest(unit, all, spacing, progress.part(0, 0.8));
 	std::vector<double> result(nodes.size());
 	const auto measure = [&](int first, int end) {

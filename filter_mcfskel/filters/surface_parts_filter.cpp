@@ -46,7 +46,7 @@ Results run(FilterRun& run)
 	const auto branches = mcf::branchTable(skeleton, mcf::skeletonBranches(skeleton));
 	std::vector<double> area(branches.size(), 0);
 	mcf::detail::reportedLoop(
-		mesh.faceSlots(), run.progress.part(0.9, 0.9), "Measuring the parts", [&](int f) {
+		mesh.faceSlots(), run.progress.cancelOnly(), "Measuring the parts", [&](int f) {
 			if (const int part = parts.ofFace[size_t(f)]; part >= 0)
 				area[size_t(part)] += mesh.areaVector(f).Norm() / 2;
 		});

@@ -46,7 +46,7 @@ struct SkeletonFormat
 	QString extension;
 	QString description;
 	/// Whether the host's import and export list it. Not so where every host has a format of that
-	/// extension already, which it prefers; for JSON see json_export.h.
+	/// extension already, which it prefers.
 	bool offered;
 	/// Null if it is not written; returns warnings.
 	QStringList (*write)(

@@ -124,7 +124,7 @@ LayerTriangles readTriangles(const MeshModel& layer, const mcf::Progress& progre
 		box.Add(read.points.back());
 	});
 	const mcf::SurfaceRounding rounded(box);
-	mcf::detail::reportedLoop(int(read.points.size()), progress.part(0.5, 0.5), what,
+	mcf::detail::reportedLoop(int(read.points.size()), progress.cancelOnly(), what,
 		[&](int i) { read.points[size_t(i)] = rounded(read.points[size_t(i)]); });
 	read.triangles.reserve(size_t(mesh.fn));
 	mcf::detail::reportedLoop(int(mesh.face.size()), progress.part(0.5, 1), what, [&](int i) {
@@ -161,7 +161,7 @@ SurfaceLayer readSurface(const MeshModel& layer, const mcf::Progress& progress)
 		return *known;
 	const LayerTriangles read = readTriangles(layer, progress.part(0, 0.2));
 	return surfaceLayer(mcf::checkedSurface(read.points, read.triangles, progress.part(0.2, 1)),
-		read.pointOfSlot, progress.part(1, 1));
+		read.pointOfSlot, progress.cancelOnly());
 }
 
 SolidLayer readSolid(
@@ -182,7 +182,7 @@ SolidLayer readSolid(
 	const LayerTriangles read = readTriangles(layer, progress.part(0, 0.2));
 	mcf::SolidSurface solid =
 		mcf::solidSurface(read.points, read.triangles, choices, progress.part(0.2, 1));
-	return {surfaceLayer(std::move(solid.surface), read.pointOfSlot, progress.part(1, 1)),
+	return {surfaceLayer(std::move(solid.surface), read.pointOfSlot, progress.cancelOnly()),
 		solid.report};
 }
 
@@ -308,8 +308,8 @@ std::shared_ptr<const mcf::PoleSet> readPoles(
 
 	auto shown = std::make_shared<mcf::PoleSet>();
 	const size_t count = size_t(surface.mesh->vertexSlots());
-	shown->centre = mcf::detail::filledArray(count, vcg::Point3d(0, 0, 0), progress, what);
-	shown->radius = mcf::detail::filledArray(count, -1.0, progress, what);
+	shown->centre = mcf::detail::filledArray(count, vcg::Point3d(0, 0, 0), progress);
+	shown->radius = mcf::detail::filledArray(count, -1.0, progress);
 	const std::vector<int>& vertexOfSlot = *surface.vertexOfSlot;
 	mcf::detail::reportedLoop(int(vertexOfSlot.size()), progress, what, [&](int slot) {
 		const int v = vertexOfSlot[size_t(slot)];

@@ -39,7 +39,6 @@ WRITERS = {
     "export swc": ("curve", "save_current_mesh", "swc"),
     "export cg": ("curve", "save_current_mesh", "cg"),
     "export graphml": ("curve", "save_current_mesh", "graphml"),
-    "export json": ("curve", "save_current_mesh", "json"),
     "save skeleton swc": ("curve", "save_skeleton_mcf", "swc"),
     "save skeleton cg": ("curve", "save_skeleton_mcf", "cg"),
     "save skeleton graphml": ("curve", "save_skeleton_mcf", "graphml"),

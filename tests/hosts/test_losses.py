@@ -89,7 +89,7 @@ def graphml_in_networkx(plate: Plate, folder: Path) -> Found:
 
 
 def json_in_networkx(plate: Plate, folder: Path) -> Found:
-    graph = networkx.node_link_graph(json.loads(plate.export(folder / "s.json").read_text()), edges="edges")
+    graph = networkx.node_link_graph(json.loads(plate.save(folder / "s.json").read_text()), edges="edges")
     return by_networkx(plate, graph, lambda n: n["position"], lambda n: len(n["surface_vertices"]))
 
 

@@ -162,8 +162,7 @@ inline Skeletonization skeletonizeOnce(const SurfaceInput& input, const Paramete
 		result.noise = std::move(resampled.noise);
 		parameters.adaptive = parameters.adaptive && !resampled.isTooThin;
 		if (!held.empty())
-			held =
-				selectionOnResampled(*input.mesh, held, *result.surface, progress.part(0.13, 0.13));
+			held = selectionOnResampled(*input.mesh, held, *result.surface, progress.cancelOnly());
 	}
 	const SurfaceMesh& surface = *result.surface;
 	result.seconds.resample = clock.end(Phase::Resample);
@@ -216,7 +215,7 @@ inline Skeletonization skeletonizeOnce(const SurfaceInput& input, const Paramete
 	result.seconds.refine = clock.end(Phase::Refine);
 
 	result.node = parameters.resample
-		? transferredNodes(surface, result.nodeOfSurface(), *input.mesh, progress.part(0.99, 0.99))
+		? transferredNodes(surface, result.nodeOfSurface(), *input.mesh, progress.cancelOnly())
 		: result.nodeOfSurface();
 	if (parameters.resample && parameters.refine && !result.sheets && held.empty())
 		bringInsideInput(result.curve, surface, *input.mesh, result.node, progress.part(0.99, 1));
@@ -330,7 +329,7 @@ inline Skeletonization skeletonizeThin(const SurfaceInput& input, const Paramete
 	try {
 		Skeletonization other = skeletonizeOnce(
 			input, asItIs, progress.part(once, 1), alternative.listener(), refinement);
-		const bool isTaken = isBetter(*input.mesh, other, result, progress.part(1, 1));
+		const bool isTaken = isBetter(*input.mesh, other, result, progress.cancelOnly());
 		other.noise = result.noise;
 		result.seconds += other.seconds;
 		if (isTaken) {
@@ -415,7 +414,7 @@ inline Skeletonization skeletonize(const SurfaceInput& input, const Parameters& 
 	parameters.check();
 	refinement.check();
 	int components = 0;
-	const Progress begin = progress.part(0, 0);
+	const Progress begin = progress.cancelOnly();
 	const std::vector<int> component = connectedComponents(*input.mesh, &components, begin);
 	const Parameters given = components > 1
 		? sharedAmong(
@@ -436,7 +435,7 @@ inline Skeletonization skeletonize(const SurfaceInput& input, const Parameters& 
 	if (given.join && result.sheets)
 		note("The pieces are not joined: that is for curves without sheets.");
 	else if (given.join) {
-		result.bridges = joinPieces(result.curve, *result.surface, progress.part(1, 1));
+		result.bridges = joinPieces(result.curve, *result.surface, progress.cancelOnly());
 		if (result.bridges.count)
 			note(detail::sentence(3, result.bridges.count,
 				result.bridges.count == 1 ? " bridge joins" : " bridges join",

@@ -12,7 +12,7 @@
 #include <skeleton/core/parallel.h>
 #include <skeleton/core/parameters.h>
 #include <skeleton/core/progress.h>
-#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/core/ticker.h>
 
 #endif

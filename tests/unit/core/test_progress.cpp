@@ -78,14 +78,28 @@ TEST(Progress, CancelsWhenTheCallbackSaysSo)
 TEST(Progress, IsSilentByDefault)
 {
 	EXPECT_NO_THROW(Progress().part(0, 0.5).report(1, "work"));
+	EXPECT_NO_THROW(Cancellation().check());
 }
 
-TEST(Errors, AreAllErrors)
+TEST(Progress, ATokenAsksAndLeavesTheBarWhereItIs)
 {
-	// One handler at the boundary catches them all, and can still tell them apart.
-	EXPECT_THROW(throw InvalidInput("x"), Error);
-	EXPECT_THROW(throw InvalidParameter("x"), Error);
-	EXPECT_THROW(throw SolverError("x"), Error);
-	EXPECT_THROW(throw Cancelled(), Error);
-	EXPECT_STREQ(InvalidInput("what is wrong").what(), "what is wrong");
+	std::vector<int> percents;
+	std::string said;
+	bool goesOn = true;
+	const Progress progress([&](int percent, const char* what) {
+		percents.push_back(percent);
+		said = what;
+		return goesOn;
+	});
+	const Cancellation token = progress.part(0.8, 1);
+	const Progress hidden = progress.part(0.9, 1).cancelOnly();
+	progress.part(0, 0.5).report(0.5, "Contracting");
+	token.check();
+	hidden.report(1, "Copying");
+	hidden.part(0, 0.5).report(1, "Copying");
+	EXPECT_EQ(percents, std::vector<int>({25, 25, 25, 25}));
+	EXPECT_EQ(said, "Contracting");
+	goesOn = false;
+	EXPECT_THROW(token.check(), Cancelled);
+	EXPECT_THROW(hidden.report(0, "Copying"), Cancelled);
 }

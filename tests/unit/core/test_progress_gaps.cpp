@@ -9,7 +9,7 @@
 #include <skeleton/input/check_input.h>
 #include <skeleton/core/errors.h>
 #include <skeleton/flow/first_stage.h>
-#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/mesh/measured_surface.h>
 #include <skeleton/input/denoise.h>
 #include <skeleton/spatial/point_tree.h>
@@ -140,14 +140,14 @@ TEST(ProgressGaps, LargeArraysAreMadeInPieces)
 	constexpr size_t count = 10'000'000;
 	constexpr int wanted = int(count * sizeof(int) >> 22);
 	std::vector<int> filled, copied;
-	EXPECT_GE(reportsOf([&](const Progress& p) { filled = detail::filledArray(count, 7, p, ""); }),
-		wanted);
+	EXPECT_GE(
+		reportsOf([&](const Progress& p) { filled = detail::filledArray(count, 7, p); }), wanted);
 	EXPECT_EQ(filled, std::vector<int>(count, 7));
 	filled[count / 2] = 8;
 	EXPECT_GE(
-		reportsOf([&](const Progress& p) { copied = detail::copiedArray(filled, p, ""); }), wanted);
+		reportsOf([&](const Progress& p) { copied = detail::copiedArray(filled, p); }), wanted);
 	EXPECT_EQ(copied, filled);
-	detail::fillReported(copied, 3, 9, Progress(), "");
+	detail::fillArray(copied, 3, 9, Progress());
 	EXPECT_EQ(copied, std::vector<int>(3, 9));
 }
 

@@ -17,7 +17,7 @@ using vcg::Point3d;
 namespace {
 
 /// The result as a checked solid: throws if it is not closed.
-SurfaceMesh solid(const TriangleSoup& soup)
+SurfaceMesh solid(const BallUnion& soup)
 {
 	const CheckedSurface checked = checkedSurface(soup.points, soup.triangles);
 	EXPECT_TRUE(checked.notes.empty()) << checked.notes.front();
@@ -64,15 +64,15 @@ TEST(MedialBalls, BallsApartStayApart)
 
 TEST(MedialBalls, ABallWithinAnotherAddsNothing)
 {
-	const TriangleSoup one = unionOfBalls({{0, 0, 0}}, {1}, 0.1);
-	const TriangleSoup two = unionOfBalls({{0, 0, 0}, {0.2, 0, 0}}, {1, 0.5}, 0.1);
+	const BallUnion one = unionOfBalls({{0, 0, 0}}, {1}, 0.1);
+	const BallUnion two = unionOfBalls({{0, 0, 0}, {0.2, 0, 0}}, {1, 0.5}, 0.1);
 	EXPECT_EQ(one.points, two.points);
 }
 
 TEST(MedialBalls, BallsWithoutRadiusDoNotCount)
 {
-	const TriangleSoup one = unionOfBalls({{0, 0, 0}}, {1}, 0.1);
-	const TriangleSoup more = unionOfBalls({{0, 0, 0}, {9, 9, 9}, {7, 7, 7}}, {1, 0, -1}, 0.1);
+	const BallUnion one = unionOfBalls({{0, 0, 0}}, {1}, 0.1);
+	const BallUnion more = unionOfBalls({{0, 0, 0}, {9, 9, 9}, {7, 7, 7}}, {1, 0, -1}, 0.1);
 	EXPECT_EQ(one.points, more.points);
 }
 

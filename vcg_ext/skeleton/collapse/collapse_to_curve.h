@@ -191,7 +191,7 @@ inline void straightenZigzag(GluedComplex& complex, const Stage& stage, double s
 inline CurveSkeleton collapseToCurve(Stage stage, double shortestEdge = 1e-4,
 	const Progress& progress = Progress(), bool tidy = true)
 {
-	StageFrames frames(stage, progress.part(0, 0));
+	StageFrames frames(stage, progress.cancelOnly());
 	frames.enter(stage);
 	GluedComplex complex(stage.mesh, stage.held);
 	detail::contractAllFaces(complex, progress.part(0, 0.9));
@@ -228,7 +228,7 @@ inline CurveSkeleton collapseToCurve(Stage stage, double shortestEdge = 1e-4,
 
 	// A node of split vertices only has no surface vertex: it takes the mean of its neighbours' radii.
 	skeleton.radius =
-		meanSurfaceDistance(skeleton.position, *stage.surface, skeleton.node, progress.part(1, 1));
+		meanSurfaceDistance(skeleton.position, *stage.surface, skeleton.node, progress);
 	fillUnknownRadii(skeleton.radius, skeleton.neighbours());
 	progress.report(1, what);
 	return skeleton;

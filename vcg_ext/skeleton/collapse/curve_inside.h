@@ -521,7 +521,7 @@ inline CurveSkeleton broughtInside(CurveSkeleton skeleton, const std::vector<Poi
 	std::vector<int>& ofNode, const Progress& progress = Progress(),
 	TooFarOutside tooFar = TooFarOutside::CutOff, CutCurves* cut = nullptr)
 {
-	const Progress begin = progress.part(0, 0);
+	const Progress begin = progress.cancelOnly();
 	const ComponentVertices vertices(component, components, begin);
 	std::vector<std::vector<Triangle>> faces(components);
 	for (const Triangle& t : triangles)
@@ -611,7 +611,7 @@ inline CurveSkeleton broughtInside(CurveSkeleton skeleton, const std::vector<Poi
 inline void bringInsideInput(CurveSkeleton& curve, const SurfaceMesh& surface,
 	const SurfaceMesh& input, const std::vector<int>& node, const Progress& progress = Progress())
 {
-	const Progress begin = progress.part(0, 0);
+	const Progress begin = progress.cancelOnly();
 	int components = 0, ofSurface = 0;
 	const std::vector<int> component = connectedComponents(input, &components, begin);
 	const std::vector<int> ofCurve =
@@ -659,8 +659,7 @@ inline void bringInsideInput(CurveSkeleton& curve, const SurfaceMesh& surface,
 				std::min(endOfWay(int(v), neighbours[v][0]), endOfWay(int(v), neighbours[v][1])));
 		curve.significance.insert(curve.significance.end(), added.begin(), added.end());
 	}
-	curve.radius =
-		meanSurfaceDistance(curve.position, surface.position, curve.node, progress.part(1, 1));
+	curve.radius = meanSurfaceDistance(curve.position, surface.position, curve.node, progress);
 	fillUnknownRadii(curve.radius, neighbours);
 }
 
@@ -679,7 +678,7 @@ inline CurveSkeleton collapseInside(Stage stage, double shortestEdge = 1e-4,
 	const auto triangles = stage.surfaceTriangles;
 	const auto surface = stage.surface;
 	const int components = int(stage.diagonal.size());
-	const std::vector<int> component = componentOfSurfaceVertices(stage, progress.part(0, 0));
+	const std::vector<int> component = componentOfSurfaceVertices(stage, progress);
 	CurveSkeleton curve = collapseToCurve(std::move(stage), shortestEdge, progress.part(0, 0.95));
 	std::vector<int> ofNode(curve.position.size(), -1);
 	for (size_t s = 0; s < component.size(); ++s)
@@ -700,8 +699,7 @@ inline CurveSkeleton collapseInside(Stage stage, double shortestEdge = 1e-4,
 	curve = broughtInside(std::move(curve), *surface, *triangles, component, components, ofNode,
 		progress.part(0.95, 1), TooFarOutside::CutOff, cut);
 	if (curve.position != before) {
-		curve.radius =
-			meanSurfaceDistance(curve.position, *surface, curve.node, progress.part(1, 1));
+		curve.radius = meanSurfaceDistance(curve.position, *surface, curve.node, progress);
 		fillUnknownRadii(curve.radius, curve.neighbours());
 	}
 	return curve;

@@ -40,8 +40,7 @@ inline CurveSkeleton withoutSpurs(CurveSkeleton skeleton, const Stage& stage,
 		neighbours.begin(), neighbours.end(), [](const auto& n) { return n.size() > 2; });
 	if (!branched)
 		return skeleton;
-	const std::vector<int> componentOfPoint =
-		componentOfSurfaceVertices(stage, progress.part(0, 0));
+	const std::vector<int> componentOfPoint = componentOfSurfaceVertices(stage, progress);
 	for (size_t v = 0; v < neighbours.size(); ++v) {
 		if (held[v]) {
 			skeleton.radius[v] = infinity;

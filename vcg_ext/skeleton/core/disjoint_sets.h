@@ -7,7 +7,7 @@
 #ifndef VCG_MCF_DISJOINT_SETS_H
 #define VCG_MCF_DISJOINT_SETS_H
 
-#include "reported_arrays.h"
+#include "large_arrays.h"
 
 #include <algorithm>
 #include <vector>
@@ -19,8 +19,8 @@ class MergeForest
 {
 public:
 	/// Each vertex stands for itself. @throws Cancelled
-	explicit MergeForest(int size, const Progress& progress = Progress(), const char* what = "") :
-			parent(detail::numberedArray(size_t(size), progress, what))
+	explicit MergeForest(int size, const Cancellation& cancel = Cancellation()) :
+			parent(detail::numberedArray(size_t(size), cancel))
 	{
 	}
 

@@ -7,7 +7,7 @@
 #ifndef VCG_MCF_GROUPED_SORT_H
 #define VCG_MCF_GROUPED_SORT_H
 
-#include "reported_arrays.h"
+#include "large_arrays.h"
 #include "progress.h"
 #include "ticker.h"
 
@@ -17,50 +17,23 @@
 
 namespace vcg::tri::mcf::detail {
 
-/// How many entries are sorted, or merged, between two reports: some milliseconds.
+/// How many entries are visited, or comparisons made, between two questions whether to cancel: some milliseconds.
 constexpr size_t sortedAtOnce = size_t(1) << 15;
 
 /**
- * Sorts array[from, to) by operator<, small pieces first, which are then merged.
- * @throws Cancelled
+ * Sorts array[from, to) by operator<.
+ * @throws Cancelled; the entries are in no order then.
  */
 template <class T>
-void sortReported(
-	std::vector<T>& array, size_t from, size_t to, const Progress& progress, const char* what)
+void sortCancellable(std::vector<T>& array, size_t from, size_t to, const Cancellation& cancel)
 {
-	const size_t count = to - from;
-	int passes = 1, pass = 0;
-	for (size_t width = sortedAtOnce; width < count; width *= 2)
-		++passes;
-	const auto report = [&](size_t done) {
-		progress.report((pass + double(done) / double(count)) / passes, what);
-	};
+	size_t comparisons = 0;
 	const auto at = [&](size_t i) { return array.begin() + std::ptrdiff_t(i); };
-	for (size_t begin = from; begin < to; begin += sortedAtOnce) {
-		report(begin - from);
-		std::sort(at(begin), at(std::min(to, begin + sortedAtOnce)));
-	}
-	std::vector<T> merged;
-	merged.reserve(passes > 1 ? count : 0);
-	for (size_t width = sortedAtOnce; width < count; width *= 2) {
-		++pass;
-		merged.clear();
-		for (size_t begin = from; begin < to; begin += 2 * width) {
-			const size_t middle = std::min(to, begin + width), end = std::min(to, middle + width);
-			for (size_t i = begin, j = middle; i < middle || j < end;) {
-				if (merged.size() % sortedAtOnce == 0)
-					report(merged.size());
-				const bool left = j == end || (i < middle && !(array[j] < array[i]));
-				merged.push_back(array[left ? i++ : j++]);
-			}
-		}
-		for (size_t begin = 0; begin < count; begin += sortedAtOnce) {
-			report(count);
-			const size_t end = std::min(count, begin + sortedAtOnce);
-			std::copy(merged.begin() + std::ptrdiff_t(begin), merged.begin() + std::ptrdiff_t(end),
-				at(from + begin));
-		}
-	}
+	std::sort(at(from), at(to), [&](const T& a, const T& b) {
+		if (++comparisons % sortedAtOnce == 0)
+			cancel.check();
+		return a < b;
+	});
 }
 
 /// Entries in groups that are numbered from 0, each group sorted.
@@ -81,18 +54,18 @@ public:
 		const Progress& progress, const char* what)
 	{
 		// A group's place counts up to its end as it is filled, which is where the next one begins.
-		start = filledArray(groups + 2, 0, progress, what);
+		start = filledArray(groups + 2, 0, progress);
 		reportedLoop(
 			count, progress.part(0.1, 0.25), what, [&](int i) { ++start[size_t(groupOf(i)) + 2]; });
 		reportedLoop(int(groups), progress.part(0.25, 0.35), what,
 			[&](int g) { start[size_t(g) + 2] += start[size_t(g) + 1]; });
-		entries = filledArray(size_t(count), Entry(), progress.part(0.35, 1), what);
+		entries = filledArray(size_t(count), Entry(), progress);
 		reportedLoop(count, progress.part(0.45, 0.75), what,
 			[&](int i) { entries[size_t(start[size_t(groupOf(i)) + 1]++)] = entryOf(i); });
 		const Progress sorting = progress.part(0.75, 1);
 		forEachRange(sorting, what, [&](int, size_t from, size_t to) {
 			if (to - from > sortedAtOnce)
-				sortReported(entries, from, to, sorting.part(shareOf(from), shareOf(to)), what);
+				sortCancellable(entries, from, to, sorting);
 			else
 				std::sort(
 					entries.begin() + std::ptrdiff_t(from), entries.begin() + std::ptrdiff_t(to));

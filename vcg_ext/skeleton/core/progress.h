@@ -11,26 +11,61 @@
 
 #include <algorithm>
 #include <functional>
+#include <memory>
 #include <utility>
 
 namespace vcg::tri::mcf {
 
 /**
- * A window into a progress bar.
+ * The cancellation token of a job: what long loops, copies, and sorts ask now and then.
  *
- * A stage reports fractions in [0, 1] of its own work; whoever calls the stage decides by part()
- * which piece of the whole bar that is. The bar never moves backwards.
+ * Copies are one token. Only the thread that runs the job asks it, see forEachBlock() and forEachPart().
  */
-class Progress
+class Cancellation
 {
 public:
 	/// Takes (percent in [0, 100], what is being done); returns false to cancel.
 	using Callback = std::function<bool(int, const char*)>;
 
+	/// A token that is never cancelled.
+	Cancellation() = default;
+
+	/// Calls back with what was reported last, so that the progress bar stays where it is.
+	/// @throws Cancelled if the callback answers false.
+	void check() const
+	{
+		if (job && !job->callback(job->percent, job->what))
+			throw Cancelled();
+	}
+
+protected:
+	struct Job
+	{
+		Callback callback;
+		int percent = 0;
+		const char* what = "";
+	};
+	/// Null where nobody listens.
+	std::shared_ptr<Job> job;
+};
+
+/**
+ * A window into a progress bar; the job's cancellation token as well.
+ *
+ * A stage reports fractions in [0, 1] of its own work; whoever calls the stage decides by part()
+ * which piece of the whole bar that is. The bar never moves backwards.
+ */
+class Progress : public Cancellation
+{
+public:
 	/// A silent progress that never cancels.
 	Progress() = default;
 
-	explicit Progress(Callback callback) : callback(std::move(callback)) {}
+	explicit Progress(Callback callback)
+	{
+		if (callback)
+			job = std::make_shared<Job>(Job {std::move(callback)});
+	}
 
 	/// The piece [from, to] (fractions of this window) as a window of its own.
 	Progress part(double from, double to) const
@@ -41,23 +76,34 @@ public:
 		return piece;
 	}
 
+	/// A progress that only asks for cancellation: for steps that are too short to be shown.
+	Progress cancelOnly() const
+	{
+		Progress hidden = *this;
+		hidden.isShown = false;
+		return hidden;
+	}
+
 	/**
 	 * Reports that `fraction` of this window's work is done.
 	 * @throws Cancelled if the callback answers false.
 	 */
 	void report(double fraction, const char* what) const
 	{
-		if (!callback)
+		if (!job)
 			return;
-		const double clamped = std::clamp(fraction, 0.0, 1.0);
-		if (!callback(int(100 * (low + clamped * (high - low))), what))
-			throw Cancelled();
+		if (isShown) {
+			const double clamped = std::clamp(fraction, 0.0, 1.0);
+			job->percent = int(100 * (low + clamped * (high - low)));
+			job->what = what;
+		}
+		check();
 	}
 
 private:
-	Callback callback;
 	double low = 0;
 	double high = 1;
+	bool isShown = true;
 };
 
 } // namespace vcg::tri::mcf

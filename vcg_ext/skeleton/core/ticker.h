@@ -38,10 +38,22 @@ private:
 	std::uint64_t count = 0;
 };
 
-/**
- * Calls visit(i) for all i in [0, count), in this order, and lets the user cancel now and then.
- * @throws Cancelled
- */
+/// Calls visit(i) for all i in [0, count), in this order, and lets the user cancel now and then.
+/// @throws Cancelled
+template <class Visit>
+void cancellableLoop(int count, const Cancellation& cancel, Visit&& visit)
+{
+	constexpr int askEvery = 1 << 15;
+	for (int begin = 0; begin < count;) {
+		cancel.check();
+		const int end = count - begin > askEvery ? begin + askEvery : count;
+		for (; begin < end; ++begin)
+			visit(begin);
+	}
+}
+
+/// The same, and reports how far it is.
+/// @throws Cancelled
 template <class Visit>
 void reportedLoop(int count, const Progress& progress, const char* what, Visit&& visit)
 {

@@ -136,18 +136,18 @@ private:
 
 	void checkComponents() const
 	{
-		requireEach(Part::Component, components(), progress.part(0, 0),
+		requireEach(Part::Component, components(), progress.cancelOnly(),
 			"'diagonal' is not of a size that can be worked with.",
 			[&](size_t c) { return isUsableSize(stage.diagonal[c]); });
 		// Fractions of them stay finite, whatever the stage becomes.
 		constexpr double minFraction = 1e-100;
-		requireEach(Part::Component, components(), progress.part(0, 0),
+		requireEach(Part::Component, components(), progress.cancelOnly(),
 			"'initial_area' is not finite, or not above 0.", [&](size_t c) {
 				const double square = stage.diagonal[c] * stage.diagonal[c];
 				return stage.initialArea[c] > minFraction * square
 					&& std::isfinite(stage.initialArea[c]);
 			});
-		requireEach(Part::Component, components(), progress.part(0, 0),
+		requireEach(Part::Component, components(), progress.cancelOnly(),
 			"'area' is not finite, or below 0.",
 			[&](size_t c) { return stage.area[c] >= 0 && std::isfinite(stage.area[c]); });
 		const double diagonal = *std::max_element(stage.diagonal.begin(), stage.diagonal.end());
@@ -199,12 +199,12 @@ private:
 				return stage.component[t[0]] == stage.component[t[1]]
 					&& stage.component[t[1]] == stage.component[t[2]];
 			});
-		std::vector<int> corners = filledArray(vertices(), 0, part.part(0.3, 0.3), checking);
+		std::vector<int> corners = filledArray(vertices(), 0, part);
 		reportedLoop(mesh.halfEdgeSlots(), part.part(0.3, 0.5), checking,
 			[&](int h) { ++corners[mesh.origin(h)]; });
 		requireEach(Part::Vertex, vertices(), part.part(0.5, 0.7), "the surface is pinched here.",
 			[&](size_t v) { return mesh.valence(int(v)) == corners[v]; });
-		std::vector<int> seenFrom = filledArray(vertices(), -1, part.part(0.7, 0.7), checking);
+		std::vector<int> seenFrom = filledArray(vertices(), -1, part);
 		requireEach(Part::Vertex, vertices(), part.part(0.7, 1), "a double edge starts here.",
 			[&](size_t v) {
 				bool simple = true;
@@ -223,7 +223,7 @@ private:
 		int count = 0;
 		const std::vector<int> connected = connectedComponents(stage.mesh, &count, part);
 		std::vector<int> partOf(components(), -1);
-		requireEach(Part::Vertex, vertices(), part.part(1, 1),
+		requireEach(Part::Vertex, vertices(), part.cancelOnly(),
 			"'mcfskel_component' is also that of vertices that are not connected with this one.",
 			[&](size_t v) {
 				int& own = partOf[stage.component[v]];
@@ -231,7 +231,7 @@ private:
 					own = connected[v];
 				return own == connected[v];
 			});
-		requireEach(Part::Component, components(), part.part(1, 1), "no vertex is of it.",
+		requireEach(Part::Component, components(), part.cancelOnly(), "no vertex is of it.",
 			[&](size_t c) { return partOf[c] >= 0; });
 	}
 
@@ -246,7 +246,7 @@ private:
 		if (!stage.surfaceTriangles)
 			return;
 		const std::vector<Triangle>& triangles = *stage.surfaceTriangles;
-		requireEach(Part::SurfaceFace, triangles.size(), part.part(1, 1),
+		requireEach(Part::SurfaceFace, triangles.size(), part.cancelOnly(),
 			"its corners do not exist, or are in different components.", [&](size_t f) {
 				const auto exists = [&](int s) { return s >= 0 && size_t(s) < stage.node.size(); };
 				const auto componentOf = [&](int s) { return stage.component[stage.node[s]]; };
@@ -268,7 +268,7 @@ private:
 		std::vector<Box3d> box(components());
 		reportedLoop(int(stage.node.size()), part.part(0, 0.5), checking,
 			[&](int s) { box[stage.component[stage.node[s]]].Add((*stage.surface)[s]); });
-		requireEach(Part::Component, components(), part.part(0.5, 0.5),
+		requireEach(Part::Component, components(), part.cancelOnly(),
 			"'diagonal' is not that of its vertices of the surface.", [&](size_t c) {
 				const double diagonal = box[c].IsNull() ? 0 : box[c].Diag();
 				return stage.diagonal[c] <= maxRatio * diagonal

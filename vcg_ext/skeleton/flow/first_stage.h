@@ -12,7 +12,7 @@
 
 #include <skeleton/core/parameters.h>
 #include <skeleton/core/progress.h>
-#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/core/ticker.h>
 #include <skeleton/mesh/breadth_first_numbering.h>
 #include <skeleton/mesh/components.h>
@@ -143,7 +143,7 @@ FlowSurface surfaceForFlow(const MeasuredSurface& given, double epsilon,
 	const std::vector<PrincipalFrame>& frames = given.allFrames();
 	std::optional<SurfaceMesh> turnedOver;
 	{
-		const Progress begin = progress.part(0, 0);
+		const Progress begin = progress.cancelOnly();
 		result.rests = componentsAtRest(given, begin);
 		for (const PrincipalFrame& frame : frames)
 			if (frame.isMirrored() && !turnedOver) {
@@ -169,11 +169,10 @@ FlowSurface surfaceForFlow(const MeasuredSurface& given, double epsilon,
 			mesh, number.component, number.components, progress.part(0.2, 0.3));
 		result.diagonal = measured.diagonals();
 		result.area = measured.areas();
-		mayBeCoarse =
-			isAny(moving(coarseComponents(measured, epsilon, {}, progress.part(0.3, 0.3))));
+		mayBeCoarse = isAny(moving(coarseComponents(measured, epsilon, {}, progress.cancelOnly())));
 	}
 	if (mayBeCoarse) {
-		const Progress part = progress.part(0.3, 0.3);
+		const Progress part = progress.cancelOnly();
 		const MeasuredSurface measured(surface, part);
 		const std::vector<char> coarse =
 			moving(coarseComponents(measured, epsilon, polesOfSurface(part).radius, part));
@@ -196,7 +195,7 @@ FlowSurface surfaceForFlow(const MeasuredSurface& given, double epsilon,
 	std::vector<double>& limit = result.epsilonLimit;
 	if (!epsilonLimit.empty()) {
 		// The vertices in the middle of halved edges follow those of the surface.
-		limit = detail::copiedArray(epsilonLimit, progress.part(0.3, 0.3), "Ordering the surface");
+		limit = detail::copiedArray(epsilonLimit, progress);
 		limit.resize(number.vertex.size(), Parameters::maxEpsilon);
 		limit = renumbered(limit, number.vertex, mesh.vertexSlots());
 	}
@@ -209,16 +208,16 @@ FlowSurface surfaceForFlow(const MeasuredSurface& given, double epsilon,
 	std::vector<int> mergedInto = coarsen(mesh, lengthAt, progress.part(0.3, 0.9));
 	const std::vector<int> place = mesh.compact(progress.part(0.9, 0.93));
 	if (result.finer)
-		turnOverMirrored(*result.finer, number.component, frames, progress.part(0.93, 0.93));
+		turnOverMirrored(*result.finer, number.component, frames, progress);
 	result.component = renumbered(number.component, place, mesh.vertexSlots());
-	turnOverMirrored(mesh, result.component, frames, progress.part(0.93, 0.93));
+	turnOverMirrored(mesh, result.component, frames, progress);
 	if (!limit.empty())
 		limit = renumbered(limit, place, mesh.vertexSlots());
 	result.survivor.assign(mesh.vertexSlots(), -1);
 	result.inFiner.resize(result.finer ? mesh.vertexSlots() : 0);
 	const char* const what = "Ordering the surface";
 	const Progress end = progress.part(0.93, 1);
-	detail::fillReported(result.node, size_t(surface.vertexSlots()), -1, end, what);
+	detail::fillArray(result.node, size_t(surface.vertexSlots()), -1, end);
 	detail::reportedLoop(surface.vertexSlots(), end, what, [&](int v) {
 		const int ordered = number.vertex[v];
 		result.node[v] = place[mergedInto[ordered]];
@@ -252,7 +251,7 @@ inline Stage firstStage(const SurfaceMesh& surface, const Parameters& given,
 	const PoleSet* poles = nullptr, const Progress& progress = Progress())
 {
 	given.check();
-	const Progress begin = progress.part(0, 0);
+	const Progress begin = progress.cancelOnly();
 	const MeasuredSurface measured(surface, begin);
 	const Parameters parameters = sharedAmong(given, measured.diagonals());
 	const double polesFrom = poles ? 1 : 0.3;
@@ -317,10 +316,10 @@ inline Stage firstStage(const SurfaceMesh& surface, const Parameters& given,
 	stage.held.assign(count, 0);
 	stage.sheet.assign(count, 0);
 	stage.initialArea = std::move(start.area);
-	const Progress end = progress.part(1, 1);
+	const Progress end = progress.cancelOnly();
 	stage.initialVolume = surface.volume(end);
-	stage.surface = std::make_shared<const std::vector<Point3d>>(
-		detail::copiedArray(surface.position, end, "Copying the surface"));
+	stage.surface =
+		std::make_shared<const std::vector<Point3d>>(detail::copiedArray(surface.position, end));
 	stage.surfaceTriangles = std::make_shared<const std::vector<Triangle>>(surface.triangles(end));
 	stage.mesh = std::move(start.mesh);
 	const Extent extent =

@@ -69,7 +69,7 @@ inline void stepInFrames(
 		stage.pole[v] = PrincipalFrame::rounded(stage.pole[v]);
 	}
 	const std::vector<int> newVertex = (stage.iteration + 1) % renumberEvery == 0
-		? renumberBreadthFirst(mesh, progress.part(1, 1))
+		? renumberBreadthFirst(mesh, progress.cancelOnly())
 		: mesh.compact();
 	for (int& node : stage.node)
 		node = newVertex[mergedInto[node]];
@@ -111,7 +111,7 @@ inline Stage step(Stage stage, const Parameters& given, const Progress& progress
 	const Parameters parameters = sharedAmong(given, stage.diagonal);
 	if (stage.converged)
 		return stage;
-	StageFrames frames(stage, progress.part(0, 0));
+	StageFrames frames(stage, progress.cancelOnly());
 	frames.enter(stage);
 	detail::stepInFrames(stage, frames, parameters, progress);
 	frames.leave(stage);
@@ -139,7 +139,7 @@ inline Stage contractToSkeleton(Stage stage, const Parameters& given,
 {
 	given.check();
 	const Parameters parameters = sharedAmong(given, stage.diagonal);
-	const Progress begin = progress.part(0, 0), end = progress.part(1, 1);
+	const Progress begin = progress.cancelOnly(), end = progress.cancelOnly();
 	StageFrames frames(stage, begin); // found by the surface's own correspondence
 	// The map from surface to stage is composed lazily: the vertices of a checkpoint stage are tracked, a
 	// new checkpoint is taken when half of them have merged, and the maps are composed on request.
@@ -177,7 +177,7 @@ inline Stage contractToSkeleton(Stage stage, const Parameters& given,
 		if (observer.onFigures)
 			observer.onFigures(figuresOf(stage));
 		if (observer.onStage && stage.iteration % observer.every == 0)
-			observer.onStage(outside(stage, part.part(1, 1)));
+			observer.onStage(outside(stage, part.cancelOnly()));
 		if (2 * size_t(stage.mesh.vertexSlots()) < stage.node.size()) {
 			for (int& node : ofFirst)
 				node = stage.node[node];

@@ -7,7 +7,7 @@
 #ifndef VCG_MCF_HALVED_EDGES_H
 #define VCG_MCF_HALVED_EDGES_H
 
-#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/mesh/measured_surface.h>
 #include <skeleton/core/parameters.h>
 #include <skeleton/core/progress.h>
@@ -132,11 +132,11 @@ inline SurfaceMesh withHalvedEdges(const MeasuredSurface& surface,
 {
 	constexpr int reportEvery = 1 << 14;
 	const char* const what = "Halving long edges";
-	const Progress begin = progress.part(0, 0);
+	const Progress begin = progress.cancelOnly();
 	SurfaceMesh mesh = surface.mesh().copied(begin);
 	std::vector<int> component = surface.component();
 	std::vector<Point3d> inside =
-		detail::filledArray(mesh.position.size(), Point3d(0, 0, 0), begin, what);
+		detail::filledArray(mesh.position.size(), Point3d(0, 0, 0), begin);
 	detail::reportedLoop(mesh.vertexSlots(), begin, what,
 		[&](int v) { inside[v] = surface.frame(component[v]).onGrid(mesh.position[v]); });
 	std::vector<double> limit;
@@ -173,7 +173,7 @@ inline SurfaceMesh withHalvedEdges(const MeasuredSurface& surface,
 			push(SurfaceMesh::next(e));
 		});
 	}
-	mesh.compact(progress.part(1, 1));
+	mesh.compact(progress.cancelOnly());
 	progress.report(1, what);
 	return mesh;
 }

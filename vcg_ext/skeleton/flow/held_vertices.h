@@ -74,7 +74,7 @@ inline std::vector<char> selectionOnResampled(const SurfaceMesh& surface,
 	std::vector<int> all(size_t(surface.vertexSlots()));
 	std::iota(all.begin(), all.end(), 0);
 	constexpr double sampleSpacing = 0.01; // of the diagonal
-	const double diagonal = surface.bounds(progress.part(0.5, 0.5)).Diag();
+	const double diagonal = surface.bounds(progress).Diag();
 	const ClosestSurface closest(surface, all, sampleSpacing * diagonal, progress.part(0.5, 0.9));
 	constexpr int reportEvery = 1 << 12;
 	for (int v = 0; v < resampled.vertexSlots(); ++v) {

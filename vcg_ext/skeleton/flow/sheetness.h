@@ -8,7 +8,7 @@
 #define VCG_MCF_SHEETNESS_H
 
 #include <skeleton/poles/by_component.h>
-#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/mesh/marked_regions.h>
 #include <skeleton/core/parallel.h>
 #include <skeleton/spatial/point_tree.h>
@@ -58,7 +58,7 @@ inline std::vector<double> sheetnessOfComponent(
 	constexpr double large = 0.03; // of the diagonal
 	constexpr int stride = 8;
 	const char* const what = "Looking for sheets";
-	const Progress begin = progress.part(0, 0);
+	const Progress begin = progress.cancelOnly();
 	const std::vector<double> area = vertexAreas(mesh, begin);
 	const PointTree tree(mesh.position, progress.part(0, 0.2));
 	std::vector<Point3d> fewPoints;
@@ -68,10 +68,10 @@ inline std::vector<double> sheetnessOfComponent(
 		fewAreas.push_back(area[tree.order()[i]]);
 	}
 	const Progress searching = progress.part(0.2, 0.9);
-	const PointTree fewTree(fewPoints, searching.part(0, 0));
-	const double limit = large * mesh.bounds(searching.part(0, 0)).Diag();
+	const PointTree fewTree(fewPoints, searching.cancelOnly());
+	const double limit = large * mesh.bounds(searching).Diag();
 
-	std::vector<double> s = detail::filledArray(area.size(), -1.0, searching.part(0, 0), what);
+	std::vector<double> s = detail::filledArray(area.size(), -1.0, searching);
 	forEachBlock(mesh.vertexSlots(), searching, what, [&](int begin, int end) {
 		Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
 		for (int v = begin; v < end; ++v) {
@@ -90,7 +90,7 @@ inline std::vector<double> sheetnessOfComponent(
 	});
 	for (int i = 0; i < rounds; ++i) {
 		const Progress part = progress.part(0.9 + 0.1 * i / rounds, 0.9 + 0.1 * (i + 1) / rounds);
-		const std::vector<double> before = detail::copiedArray(s, part.part(0, 0), what);
+		const std::vector<double> before = detail::copiedArray(s, part);
 		detail::reportedLoop(mesh.vertexSlots(), part, what, [&](int v) {
 			double sum = before[v] < 0 ? 0 : before[v];
 			int count = before[v] >= 0;
@@ -130,8 +130,7 @@ inline std::vector<double> sheetnessOfComponent(
 inline std::vector<double> sheetness(
 	const SurfaceMesh& mesh, const PoleSet& poles, const Progress& progress = Progress())
 {
-	return detail::foundByComponent(
-		mesh, poles, progress, "Looking for sheets", detail::sheetnessOfComponent);
+	return detail::foundByComponent(mesh, poles, progress, detail::sheetnessOfComponent);
 }
 
 } // namespace vcg::tri::mcf

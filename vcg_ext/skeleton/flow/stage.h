@@ -9,7 +9,7 @@
 
 #include "vertex_states.h"
 
-#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/mesh/measured_surface.h>
 #include <skeleton/core/parameters.h>
 #include <skeleton/poles/pole_set.h>
@@ -156,11 +156,11 @@ inline Extent measuredExtent(
 
 /// The component of each vertex of the surface that a stage came from. @throws Cancelled
 inline std::vector<int> componentOfSurfaceVertices(
-	const Stage& stage, const Progress& progress = Progress())
+	const Stage& stage, const Cancellation& cancel = Cancellation())
 {
 	std::vector<int> component;
 	component.reserve(stage.node.size());
-	detail::reportedLoop(int(stage.node.size()), progress, "Measuring the surface",
+	detail::cancellableLoop(int(stage.node.size()), cancel,
 		[&](int s) { component.push_back(stage.component[stage.node[s]]); });
 	return component;
 }
@@ -171,9 +171,7 @@ inline Stage initialStage(
 	const MeasuredSurface& measured, const PoleSet& poles, const Progress& progress = Progress())
 {
 	const SurfaceMesh& surface = measured.mesh();
-	const auto copied = [&](const auto& array) {
-		return detail::copiedArray(array, progress, "Copying the surface");
-	};
+	const auto copied = [&](const auto& array) { return detail::copiedArray(array, progress); };
 	Stage stage;
 	stage.mesh = surface.copied(progress);
 	stage.pole = copied(poles.centre);
@@ -184,12 +182,11 @@ inline Stage initialStage(
 	stage.component = copied(measured.component());
 	stage.diagonal = measured.diagonals();
 	stage.initialArea = stage.area = measured.areas();
-	stage.initialVolume = stage.volume = surface.volume(progress.part(0, 0));
+	stage.initialVolume = stage.volume = surface.volume(progress);
 	stage.surface = std::make_shared<const std::vector<Point3d>>(copied(surface.position));
 	stage.surfaceTriangles =
-		std::make_shared<const std::vector<Triangle>>(surface.triangles(progress.part(0, 0)));
-	stage.node =
-		detail::numberedArray(stage.pole.size(), progress.part(0, 0), "Copying the surface");
+		std::make_shared<const std::vector<Triangle>>(surface.triangles(progress));
+	stage.node = detail::numberedArray(stage.pole.size(), progress);
 	return stage;
 }
 
@@ -201,12 +198,11 @@ inline Stage initialStage(
  */
 inline std::vector<double> meanSurfaceDistance(const std::vector<Point3d>& position,
 	const std::vector<Point3d>& surface, const std::vector<int>& node,
-	const Progress& progress = Progress())
+	const Cancellation& cancel = Cancellation())
 {
-	const char* const what = "Measuring the thickness";
-	std::vector<double> sum = detail::filledArray(position.size(), 0.0, progress, what);
-	std::vector<int> count = detail::filledArray(position.size(), 0, progress, what);
-	detail::reportedLoop(int(node.size()), progress, what, [&](int s) {
+	std::vector<double> sum = detail::filledArray(position.size(), 0.0, cancel);
+	std::vector<int> count = detail::filledArray(position.size(), 0, cancel);
+	detail::cancellableLoop(int(node.size()), cancel, [&](int s) {
 		if (node[s] < 0)
 			return;
 		sum[node[s]] += Distance(surface[s], position[node[s]]);

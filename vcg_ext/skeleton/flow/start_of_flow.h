@@ -43,7 +43,7 @@ inline Stage startOfFlow(const SurfaceMesh& surface, const PoleSet& poles,
 {
 	if (held.empty() && !parameters.keepSheets && parameters.coarsen)
 		return firstStage(surface, parameters, &poles, progress);
-	const Progress begin = progress.part(0, 0);
+	const Progress begin = progress.cancelOnly();
 	const MeasuredSurface measured(surface, begin);
 	Stage stage = initialStage(measured, poles, begin);
 	stage.epsilonLimit = epsilonLimits(measured, poles, parameters, begin);

@@ -114,9 +114,8 @@ struct VertexStates
 		// Of the two poles the one closest to the resulting vertex stays (Sec. 4.5).
 		const bool removedHas = poleRadius[removed] >= 0, survivorHas = poleRadius[survivor] >= 0;
 		// A vertex of a sheet keeps its pole, or its rim would wear away.
-		const bool takesPole = sheet[removed] != sheet[survivor]
-			? sheet[removed]
-			: removedHas
+		const bool takesPole = sheet[removed] != sheet[survivor] ? sheet[removed]
+																 : removedHas
 				&& (!survivorHas
 					|| SquaredDistance(place, pole[removed])
 						< SquaredDistance(place, pole[survivor]));

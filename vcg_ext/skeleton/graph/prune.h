@@ -202,7 +202,7 @@ inline CurveSkeleton prune(const CurveSkeleton& skeleton, const PruneParameters&
 											 : s;
 	};
 	CurveSkeleton pruned = withoutSpurs(skeleton, 0, 0.2);
-	const NestedBranches nested = nestedBranches(pruned, progress.part(0.2, 0.2));
+	const NestedBranches nested = nestedBranches(pruned, progress.cancelOnly());
 	pruned = significantPart(std::move(pruned), nested, 1 - parameters.detail);
 	pruned = withoutTerminalBranches(
 		std::move(pruned), parameters.shortestBranch, branchLength, progress.part(0.2, 0.4));
@@ -218,7 +218,7 @@ inline CurveSkeleton prune(const CurveSkeleton& skeleton, const PruneParameters&
 			progress.part(0.6, 0.8));
 		pruned = withoutSpurs(std::move(pruned), 0.8, 1);
 	}
-	pruned.significance = nestedBranches(pruned, progress.part(1, 1)).significance;
+	pruned.significance = nestedBranches(pruned, progress.cancelOnly()).significance;
 	progress.report(1, "Pruning the skeleton");
 	return pruned;
 }

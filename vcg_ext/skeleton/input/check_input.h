@@ -10,7 +10,7 @@
 #include "soup_repair.h"
 
 #include <skeleton/core/progress.h>
-#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/core/ticker.h>
 #include <skeleton/mesh/components.h>
 #include <skeleton/mesh/surface_mesh.h>
@@ -127,14 +127,13 @@ inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
 			Defect::NotFinite);
 	}
 
-	std::optional<SurfaceMesh> ready =
-		SurfaceMesh::ifClosedManifold(detail::copiedArray(points, progress.part(0.04, 0.04), what),
-			triangles, progress.part(0.06, 0.3));
+	std::optional<SurfaceMesh> ready = SurfaceMesh::ifClosedManifold(
+		detail::copiedArray(points, progress), triangles, progress.part(0.06, 0.3));
 	RepairedSoup soup;
 	std::vector<int>& vertexOfInput = soup.vertexOfInput;
 	const bool asGiven = ready && ready->vertexCount() == ready->vertexSlots();
 	if (ready) {
-		vertexOfInput = detail::numberedArray(points.size(), progress.part(0.3, 0.3), what);
+		vertexOfInput = detail::numberedArray(points.size(), progress);
 		if (!asGiven)
 			soup.faces = triangles;
 	}
@@ -146,7 +145,7 @@ inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
 	if (!asGiven) {
 		// Number the referenced vertices in their own order.
 		const Progress numbering = progress.part(0.65, 0.72);
-		std::vector<int> number = detail::filledArray(points.size(), -1, numbering, what);
+		std::vector<int> number = detail::filledArray(points.size(), -1, numbering);
 		detail::reportedLoop(int(soup.faces.size()), numbering.part(0, 0.2), what, [&](int f) {
 			for (int v : soup.faces[f])
 				number[v] = 0;
@@ -209,7 +208,7 @@ inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
 		anySlender |= isSlender(c);
 	if (anySlender) {
 		const std::vector<detail::VolumeAndArea> measured =
-			detail::measuredAlongLength(mesh, component, components, progress.part(0.9, 0.9));
+			detail::measuredAlongLength(mesh, component, components, progress.cancelOnly());
 		const std::vector<double> bound = detail::volumeErrorBound(mesh, component, components);
 		for (int c = 0; c < components; ++c)
 			if (isSlender(c)) {
@@ -243,7 +242,7 @@ inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
 				+ ". Scale or remove the flat part.",
 			Defect::NoVolume);
 	if (insideOut) {
-		const Progress turning = progress.part(0.9, 0.9);
+		const Progress turning = progress.cancelOnly();
 		std::vector<Triangle> faces = mesh.triangles(turning);
 		detail::reportedLoop(int(faces.size()), turning, what, [&](int f) {
 			if (volume[component[faces[f][0]]] < 0)

@@ -7,7 +7,7 @@
 #ifndef VCG_MCF_COINCIDENT_POINTS_H
 #define VCG_MCF_COINCIDENT_POINTS_H
 
-#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/core/progress.h>
 #include <skeleton/core/ticker.h>
 
@@ -46,7 +46,7 @@ inline std::vector<int> firstCoincident(
 	while (size_t(1) << bits < points.size() + points.size() / 2)
 		++bits;
 	const size_t last = (size_t(1) << bits) - 1;
-	std::vector<int> table = filledArray(last + 1, -1, progress, what);
+	std::vector<int> table = filledArray(last + 1, -1, progress);
 	std::vector<int> first;
 	first.reserve(points.size());
 	reportedLoop(int(points.size()), progress, what, [&](int i) {

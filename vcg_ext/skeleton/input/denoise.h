@@ -7,7 +7,7 @@
 #ifndef VCG_MCF_DENOISE_H
 #define VCG_MCF_DENOISE_H
 
-#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/mesh/measured_surface.h>
 #include <skeleton/core/progress.h>
 #include <skeleton/mesh/surface_mesh.h>
@@ -29,8 +29,7 @@ class RingMeans
 public:
 	/// @pre mesh is compact. @param what it is done for. @throws Cancelled
 	RingMeans(const SurfaceMesh& mesh, const Progress& progress, const char* what) :
-			mesh(mesh), what(what),
-			valences(filledArray(size_t(mesh.vertexSlots()), 0, progress, what))
+			mesh(mesh), what(what), valences(filledArray(size_t(mesh.vertexSlots()), 0, progress))
 	{
 		reportedLoop(
 			mesh.halfEdgeSlots(), progress, what, [&](int h) { ++valences[mesh.origin(h)]; });
@@ -43,7 +42,7 @@ public:
 	std::vector<Point3d> of(const std::vector<Point3d>& values, const Progress& progress) const
 	{
 		// In the order of the faces, which lie side by side, unlike those of a ring.
-		std::vector<Point3d> mean = filledArray(values.size(), Point3d(0, 0, 0), progress, what);
+		std::vector<Point3d> mean = filledArray(values.size(), Point3d(0, 0, 0), progress);
 		reportedLoop(mesh.faceSlots(), progress.part(0, 0.8), what, [&](int f) {
 			const auto [a, b, c] = mesh.triangle(f);
 			mean[a] += values[b];
@@ -67,8 +66,7 @@ class BilaplacianRows
 public:
 	/// @throws Cancelled
 	BilaplacianRows(const SurfaceMesh& mesh, const RingMeans& rings, const Progress& progress) :
-			mesh(mesh), rings(rings),
-			entry(filledArray(size_t(mesh.vertexSlots()), 0.0, progress, measuringNoise))
+			mesh(mesh), rings(rings), entry(filledArray(size_t(mesh.vertexSlots()), 0.0, progress))
 	{
 	}
 
@@ -193,7 +191,7 @@ inline std::vector<NoiseLevel> noiseLevel(const MeasuredSurface& surface,
 		const double length = normal[v].Norm();
 		return length > 0 ? offset[v] * normal[v] / length : 0;
 	};
-	detail::BilaplacianRows rows(mesh, rings, progress.part(0.8, 0.8));
+	detail::BilaplacianRows rows(mesh, rings, progress.cancelOnly());
 	const int components = surface.components();
 	std::vector<int> size(components, 0), seen(components, 0);
 	for (int c : surface.component())
@@ -250,9 +248,9 @@ inline SurfaceMesh smoothed(const MeasuredSurface& surface, const std::vector<in
 	constexpr double lambda = 0.5, passBand = 0.1;
 	constexpr double mu = 1 / (passBand - 1 / lambda);
 	const char* const what = "Smoothing noise";
-	SurfaceMesh mesh = surface.mesh().copied(progress.part(0, 0));
+	SurfaceMesh mesh = surface.mesh().copied(progress);
 	const int most = rounds.empty() ? 0 : *std::max_element(rounds.begin(), rounds.end());
-	const detail::RingMeans rings(mesh, progress.part(0, 0), what);
+	const detail::RingMeans rings(mesh, progress.cancelOnly(), what);
 	for (int half = 0; half < 2 * most; ++half) {
 		const Progress ofHalf = progress.part(half / (2.0 * most), (half + 1) / (2.0 * most));
 		const std::vector<Point3d> mean = rings.of(mesh.position, ofHalf.part(0, 0.8));

@@ -13,7 +13,7 @@
 #include <skeleton/core/errors.h>
 #include <skeleton/core/grouped_sort.h>
 #include <skeleton/core/progress.h>
-#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/core/ticker.h>
 #include <skeleton/mesh/surface_mesh.h>
 
@@ -168,8 +168,7 @@ inline size_t removeDegenerateFaces(
 			return Corners {t[(k + 1) % 3], t[(k + 2) % 3], f};
 		},
 		progress.part(0.1, 0.8), repairing);
-	std::vector<char> copy =
-		filledArray(triangles.size(), char(0), progress.part(0.8, 0.8), repairing);
+	std::vector<char> copy = filledArray(triangles.size(), char(0), progress);
 	bool copies = false;
 	groups.forEach(
 		progress.part(0.8, 0.9), repairing, [&](int, const Corners* begin, const Corners* end) {
@@ -194,8 +193,8 @@ inline int orientCoherently(
 {
 	// Sets of faces, each known by its lowest one, and whether a face is turned against its parent.
 	const size_t count = triangles.size();
-	std::vector<int> parent = numberedArray(count, progress.part(0, 0.1), repairing);
-	std::vector<char> against = filledArray(count, char(0), progress.part(0.1, 0.1), repairing);
+	std::vector<int> parent = numberedArray(count, progress);
+	std::vector<char> against = filledArray(count, char(0), progress);
 	const auto find = [&](int f) {
 		bool turned = false;
 		while (parent[f] != f) {
@@ -225,7 +224,7 @@ inline int orientCoherently(
 	if (!twoSided)
 		return -1;
 	// The majority of a component keeps its side.
-	std::vector<int> majority = filledArray(count, 0, progress.part(0.7, 0.7), repairing);
+	std::vector<int> majority = filledArray(count, 0, progress);
 	reportedLoop(int(count), progress.part(0.7, 0.85), repairing, [&](int f) {
 		const auto [first, turned] = find(f);
 		majority[first] += turned ? 1 : -1;
@@ -246,7 +245,7 @@ inline std::vector<int> nonManifoldVertices(size_t vertices, const std::vector<T
 	const SoupEdges& edges, const Progress& progress)
 {
 	// Corners around a vertex are joined over shared edges: one class for each fan.
-	MergeForest joined(3 * int(triangles.size()), progress.part(0, 0.1), repairing);
+	MergeForest joined(3 * int(triangles.size()), progress);
 	const auto corner = [&](unsigned f, int v) {
 		return 3 * int(f) + (triangles[f][0] == v ? 0 : triangles[f][1] == v ? 1 : 2);
 	};
@@ -256,7 +255,7 @@ inline std::vector<int> nonManifoldVertices(size_t vertices, const std::vector<T
 				joined.merge(
 					joined.find(corner(begin[0].face, v)), joined.find(corner(begin[1].face, v)));
 		});
-	std::vector<char> fans = filledArray(vertices, char(0), progress.part(0.7, 0.7), repairing);
+	std::vector<char> fans = filledArray(vertices, char(0), progress);
 	reportedLoop(joined.size(), progress.part(0.7, 0.9), repairing, [&](int c) {
 		char& here = fans[triangles[c / 3][c % 3]];
 		if (joined.find(c) == c && here < 2)
@@ -284,7 +283,7 @@ inline RepairedSoup repairedSoup(const std::vector<Point3d>& points,
 	using namespace detail;
 	RepairedSoup result;
 	std::vector<Triangle>& faces = result.faces;
-	faces = copiedArray(triangles, progress, repairing);
+	faces = copiedArray(triangles, progress);
 	if (const size_t removed = removeDegenerateFaces(points.size(), faces, progress.part(0, 0.15)))
 		result.notes.push_back(
 			std::to_string(removed) + " degenerate or duplicate faces were left out.");
@@ -293,7 +292,7 @@ inline RepairedSoup repairedSoup(const std::vector<Point3d>& points,
 	std::vector<int>& vertexOfInput = result.vertexOfInput;
 	if (!defects.none()) {
 		std::vector<int> first = firstCoincident(points, progress.part(0.37, 0.45), repairing);
-		std::vector<Triangle> merged = copiedArray(faces, progress.part(0.45, 0.45), repairing);
+		std::vector<Triangle> merged = copiedArray(faces, progress);
 		size_t copies = 0;
 		reportedLoop(int(first.size()), progress.part(0.45, 0.47), repairing,
 			[&](int v) { copies += first[v] != v; });
@@ -314,7 +313,7 @@ inline RepairedSoup repairedSoup(const std::vector<Point3d>& points,
 		}
 	}
 	if (vertexOfInput.empty())
-		vertexOfInput = numberedArray(points.size(), progress.part(0.7, 0.72), repairing);
+		vertexOfInput = numberedArray(points.size(), progress);
 	if (faces.empty())
 		throw InvalidInput("All faces are degenerate: a closed triangle mesh is needed.");
 	if (defects.nonManifold)

@@ -113,8 +113,7 @@ inline std::vector<double> poleAnglesOfComponent(
 inline std::vector<double> poleAngles(
 	const SurfaceMesh& surface, const PoleSet& poles, const Progress& progress = Progress())
 {
-	return detail::foundByComponent(
-		surface, poles, progress, detail::measuringAngles, detail::poleAnglesOfComponent);
+	return detail::foundByComponent(surface, poles, progress, detail::poleAnglesOfComponent);
 }
 
 /**

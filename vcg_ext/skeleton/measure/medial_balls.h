@@ -32,7 +32,7 @@
 namespace vcg::tri::mcf {
 
 /// Points and triangles, mesh units.
-struct TriangleSoup
+struct BallUnion
 {
 	std::vector<Point3d> points;
 	std::vector<Triangle> triangles;
@@ -69,8 +69,8 @@ class CubeMesh : public TriMesh<std::vector<CubeVertex>, std::vector<CubeFace>>
  * Complexity: O(voxels + sum of the balls' voxels).
  * Source: Lorensen and Cline, "Marching cubes", 1987, in vcg's version.
  */
-inline TriangleSoup unionOfBalls(const std::vector<Point3d>& centre,
-	const std::vector<double>& radius, double voxel, const Progress& progress = Progress())
+inline BallUnion unionOfBalls(const std::vector<Point3d>& centre, const std::vector<double>& radius,
+	double voxel, const Progress& progress = Progress())
 {
 	constexpr double mostVoxels = 3e7;
 	constexpr int margin = 3; // voxels; the walker leaves out the last two layers
@@ -142,7 +142,7 @@ inline TriangleSoup unionOfBalls(const std::vector<Point3d>& centre,
 	MarchingCubes<detail::CubeMesh, Walker> cubes(mesh, walker);
 	walker.BuildMesh(mesh, volume, cubes, 0);
 
-	TriangleSoup soup;
+	BallUnion soup;
 	for (const detail::CubeVertex& v : mesh.vert)
 		soup.points.push_back(v.cP() * voxel + origin);
 	for (const detail::CubeFace& f : mesh.face)

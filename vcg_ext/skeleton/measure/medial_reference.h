@@ -132,7 +132,7 @@ inline MedialReference medialReference(const SurfaceMesh& surface, const Closest
 	constexpr double largest = 0.5;      // half the diagonal: no inner ball is larger
 	constexpr double margin = M_PI / 12; // that a first guess may be too narrow by
 	constexpr double leastRadius = 1e-4;
-	const Progress begin = progress.part(0, 0);
+	const Progress begin = progress.cancelOnly();
 	std::vector<SurfaceSample> samples = surfaceSamples(surface, count, begin);
 	std::vector<Point3d> outward;
 	for (const SurfaceSample& sample : samples) {

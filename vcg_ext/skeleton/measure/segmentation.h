@@ -12,7 +12,7 @@
 #include <skeleton/core/errors.h>
 #include <skeleton/core/parallel.h>
 #include <skeleton/core/progress.h>
-#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/core/segment.h>
 #include <skeleton/core/ticker.h>
 #include <skeleton/graph/closest_curve.h>
@@ -137,9 +137,8 @@ inline SurfaceParts surfaceParts(const SurfaceMesh& surface, const CurveSkeleton
 			throw InvalidInput("The skeleton's correspondence names nodes that it does not have.");
 	const std::vector<Branch> branches = skeletonBranches(skeleton);
 	const std::vector<int> branchOfNode = detail::branchOfNodes(skeleton, branches);
-	const char* const what = "Finding the parts";
-	std::vector<int> label = detail::filledArray(size_t(n), -1, progress.part(0, 0), what);
-	detail::reportedLoop(n, progress.part(0, 0), what, [&](int v) {
+	std::vector<int> label = detail::filledArray(size_t(n), -1, progress);
+	detail::cancellableLoop(n, progress, [&](int v) {
 		if (skeleton.node[v] >= 0)
 			label[v] = branchOfNode[skeleton.node[v]];
 	});
@@ -153,7 +152,7 @@ inline SurfaceParts surfaceParts(const SurfaceMesh& surface, const CurveSkeleton
 	parts.ofFace = labels.ofFaces(progress.part(0.6, 0.7));
 
 	const auto edges = detail::edgesAround(skeleton, branches);
-	parts.distance = detail::filledArray(size_t(n), 0.0, progress.part(0.7, 0.7), what);
+	parts.distance = detail::filledArray(size_t(n), 0.0, progress);
 	if (skeleton.position.empty())
 		return parts;
 	const ClosestCurve curve(skeleton);

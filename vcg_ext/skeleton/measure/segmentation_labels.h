@@ -7,7 +7,7 @@
 #ifndef VCG_MCF_SEGMENTATION_LABELS_H
 #define VCG_MCF_SEGMENTATION_LABELS_H
 
-#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/core/progress.h>
 #include <skeleton/mesh/surface_mesh.h>
 #include <skeleton/core/ticker.h>
@@ -31,7 +31,7 @@ public:
 			surface(surface),
 			label(std::move(label)), labels(labels)
 	{
-		fillReported(vertexArea, size_t(surface.vertexSlots()), 0.0, progress, finding);
+		fillArray(vertexArea, size_t(surface.vertexSlots()), 0.0, progress);
 		reportedLoop(surface.halfEdgeSlots(), progress, finding,
 			[&](int h) { vertexArea[surface.origin(h)] += surface.areaVector(h / 3).Norm(); });
 	}
@@ -132,7 +132,7 @@ public:
 			});
 		}
 		// Such a face hangs on its own part by one edge: without it that stays connected.
-		std::vector<int> stack = numberedArray(count, progress.part(0.8, 0.8), finding);
+		std::vector<int> stack = numberedArray(count, progress);
 		std::reverse(stack.begin(), stack.end());
 		Ticker ticker(progress.part(0.8, 1), finding, int(count));
 		while (!stack.empty()) {
@@ -172,7 +172,7 @@ private:
 	void keepLargest(std::vector<int>& of, const std::vector<double>& area,
 		const ForEachNeighbour& forEachNeighbour, const Progress& progress) const
 	{
-		std::vector<int> piece = filledArray(of.size(), -1, progress.part(0, 0), finding), stack;
+		std::vector<int> piece = filledArray(of.size(), -1, progress), stack;
 		Ticker ticker(progress.part(0, 0.8), finding, int(of.size()));
 		std::vector<double> pieceArea;
 		std::vector<int> largestPiece(size_t(labels), -1);
@@ -217,7 +217,7 @@ private:
 	std::vector<int> ringsFromBorders(
 		int most, std::vector<int>& order, const Progress& progress) const
 	{
-		std::vector<int> rings = filledArray(label.size(), -1, progress.part(0, 0), smoothing);
+		std::vector<int> rings = filledArray(label.size(), -1, progress);
 		order.clear();
 		reportedLoop(int(label.size()), progress.part(0, 0.6), smoothing, [&](int v) {
 			if (label[v] >= 0 && isOnBorder(v)) {
@@ -279,7 +279,7 @@ private:
 	/// Each step takes half of every vertex's mixture to its neighbours.
 	void diffuse(const std::vector<int>& band, const Progress& progress)
 	{
-		fillReported(mixture, label.size(), Mixture(), progress.part(0, 0), smoothing);
+		fillArray(mixture, label.size(), Mixture(), progress);
 		for (int v : band)
 			mixture[v] = {{label[v], 1}};
 		std::vector<Mixture> next(band.size());

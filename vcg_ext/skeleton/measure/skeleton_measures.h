@@ -12,7 +12,7 @@
 #include <skeleton/core/errors.h>
 #include <skeleton/core/parallel.h>
 #include <skeleton/core/progress.h>
-#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/core/ticker.h>
 #include <skeleton/graph/closest_curve.h>
 #include <skeleton/graph/curve_skeleton.h>
@@ -155,7 +155,7 @@ inline std::vector<Point3d> interiorPoints(
 {
 	constexpr int mostTries = 50; // for each
 	const char* const what = "Measuring the volume";
-	const Box3d box = surface.bounds(progress.part(0, 0));
+	const Box3d box = surface.bounds(progress);
 	std::vector<Point3d> inside;
 	const int blockSize = 4096;
 	std::vector<char> isInside(blockSize);
@@ -165,9 +165,8 @@ inline std::vector<Point3d> interiorPoints(
 			const auto u = evenPoint<3>(size_t(first + i));
 			return box.min + Point3d(u[0] * box.DimX(), u[1] * box.DimY(), u[2] * box.DimZ());
 		};
-		const double part = double(inside.size()) / count;
-		const Progress found = progress.part(part, part);
-		forEachBlock(blockSize, found, what, [&](int begin, int end) {
+		progress.report(double(inside.size()) / count, what);
+		forEachBlock(blockSize, progress.cancelOnly(), what, [&](int begin, int end) {
 			for (int i = begin; i < end; ++i)
 				isInside[i] = closest.clearance(point(i)) > 0;
 		});
@@ -197,7 +196,7 @@ inline SkeletonMeasures skeletonMeasures(const CurveSkeleton& skeleton, const Su
 	constexpr double sampleSpacing = 0.01; // of triangles with longer edges
 	constexpr int blocksPerReport = 4;
 	const char* const what = "Finding the medial axis";
-	const Progress begin = progress.part(0, 0);
+	const Progress begin = progress.cancelOnly();
 	const Box3d box = surface.bounds(begin);
 	const double diagonal = box.Diag();
 	const Point3d corner = box.min;
@@ -214,11 +213,11 @@ inline SkeletonMeasures skeletonMeasures(const CurveSkeleton& skeleton, const Su
 	SurfaceMesh unit = surface.copied(begin);
 	detail::reportedLoop(unit.vertexSlots(), begin, what,
 		[&](int v) { unit.position[v] = (unit.position[v] - corner) / diagonal; });
-	const ClosestSurface closest(unit, detail::numberedArray(unit.position.size(), begin, what),
+	const ClosestSurface closest(unit, detail::numberedArray(unit.position.size(), begin),
 		sampleSpacing, progress.part(0, 0.2));
 	const MedialReference reference =
 		medialReference(unit, closest, sampling.medialPoints, progress.part(0.2, 0.6));
-	const PointTree centres(reference.centre, progress.part(0.6, 0.6));
+	const PointTree centres(reference.centre, progress.cancelOnly());
 
 	const CurveSamples x = curveSamples(curve, sampling.spacing);
 	const int n = int(x.position.size());
@@ -255,7 +254,7 @@ inline SkeletonMeasures skeletonMeasures(const CurveSkeleton& skeleton, const Su
 	for (double r : clearance)
 		ball.push_back(std::max(r, 0.0));
 	const std::vector<SurfaceSample> samples =
-		surfaceSamples(unit, sampling.surfacePoints, progress.part(0.8, 0.8));
+		surfaceSamples(unit, sampling.surfacePoints, progress.cancelOnly());
 	const ClosestCurve closestCurve(curve);
 	std::vector<double> cover(samples.size()), recon(samples.size());
 	const auto measureCoverage = [&](int begin, int end) {

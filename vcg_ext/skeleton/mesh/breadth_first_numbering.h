@@ -10,7 +10,7 @@
 #include "surface_mesh.h"
 
 #include <skeleton/core/progress.h>
-#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/core/ticker.h>
 
 #include <utility>
@@ -52,9 +52,9 @@ inline Numbering breadthFirstOrder(const SurfaceMesh& mesh, const std::vector<in
 	const char* const what = "Ordering the surface";
 	const size_t faceSlots = size_t(mesh.faceSlots());
 	Numbering number;
-	detail::fillReported(number.vertex, size_t(mesh.vertexSlots()), -1, progress, what);
-	detail::fillReported(number.face, faceSlots, -1, progress, what);
-	detail::fillReported(number.firstCorner, faceSlots, char(0), progress, what);
+	detail::fillArray(number.vertex, size_t(mesh.vertexSlots()), -1, progress);
+	detail::fillArray(number.face, faceSlots, -1, progress);
+	detail::fillArray(number.firstCorner, faceSlots, char(0), progress);
 	number.component.reserve(mesh.vertexCount());
 	std::vector<int> order; // of the vertices, each as the half-edge that its ring begins with
 	order.reserve(mesh.vertexCount());

@@ -12,7 +12,7 @@
 
 #include <skeleton/core/parallel.h>
 #include <skeleton/core/progress.h>
-#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/core/ticker.h>
 
 #include <algorithm>
@@ -55,7 +55,7 @@ void forEachComponent(const SurfaceMesh& mesh, const std::vector<int>& component
 {
 	constexpr size_t large = 1 << 13;
 	const char* const what = "Measuring the surface";
-	const Progress begin = progress.part(0, 0);
+	const Progress begin = progress.cancelOnly();
 	const ComponentVertices vertices(component, components, begin);
 	const std::vector<std::vector<int>>& ids = vertices.ids;
 	const std::vector<int>& place = vertices.place;
@@ -67,9 +67,9 @@ void forEachComponent(const SurfaceMesh& mesh, const std::vector<int>& component
 	const auto visitOne = [&](int c, const Progress& part) {
 		std::vector<Point3d> position;
 		position.reserve(ids[c].size());
-		detail::reportedLoop(int(ids[c].size()), part.part(0, 0), what,
-			[&](int i) { position.push_back(mesh.position[ids[c][i]]); });
-		const SurfaceMesh own(std::move(position), triangles[c], part.part(0, 0));
+		detail::cancellableLoop(
+			int(ids[c].size()), part, [&](int i) { position.push_back(mesh.position[ids[c][i]]); });
+		const SurfaceMesh own(std::move(position), triangles[c], part.cancelOnly());
 		visit(c, own, ids[c], part);
 	};
 	const double all = mesh.vertexSlots();

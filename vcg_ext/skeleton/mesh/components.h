@@ -11,7 +11,7 @@
 
 #include <skeleton/core/disjoint_sets.h>
 #include <skeleton/core/progress.h>
-#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/core/ticker.h>
 
 #include <vector>
@@ -26,7 +26,7 @@ inline std::vector<int> connectedComponents(
 	// Sets of vertices that grow face by face, each known by its lowest vertex: unlike a walk over
 	// the surface that reads the mesh in the order in which it lies in memory.
 	const char* const what = "Measuring the surface";
-	MergeForest lowest(mesh.vertexSlots(), progress.part(0, 0), what);
+	MergeForest lowest(mesh.vertexSlots(), progress);
 	detail::reportedLoop(mesh.faceSlots(), progress.part(0, 0.8), what, [&](int f) {
 		if (!mesh.isFace(f))
 			return;
@@ -35,8 +35,7 @@ inline std::vector<int> connectedComponents(
 		lowest.join(t[1], t[2]);
 	});
 	const Progress counting = progress.part(0.8, 1);
-	std::vector<int> component =
-		detail::filledArray(size_t(mesh.vertexSlots()), -1, counting, what);
+	std::vector<int> component = detail::filledArray(size_t(mesh.vertexSlots()), -1, counting);
 	int count = 0;
 	detail::reportedLoop(mesh.vertexSlots(), counting, what, [&](int v) {
 		if (!mesh.isVertex(v))

@@ -10,7 +10,7 @@
 #include "surface_mesh.h"
 
 #include <skeleton/core/progress.h>
-#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/core/ticker.h>
 
 #include <utility>
@@ -23,8 +23,7 @@ inline std::vector<double> vertexAreas(
 	const SurfaceMesh& mesh, const Progress& progress = Progress())
 {
 	const char* const what = "Measuring the surface";
-	std::vector<double> area =
-		detail::filledArray(size_t(mesh.vertexSlots()), 0.0, progress.part(0, 0), what);
+	std::vector<double> area = detail::filledArray(size_t(mesh.vertexSlots()), 0.0, progress);
 	detail::reportedLoop(mesh.faceSlots(), progress, what, [&](int f) {
 		if (mesh.isFace(f))
 			for (int v : mesh.triangle(f))

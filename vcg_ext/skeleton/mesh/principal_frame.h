@@ -333,13 +333,13 @@ private:
  * @param component of each vertex. @throws Cancelled. Complexity: O(V + F), without such frames O(components).
  */
 inline void turnOverMirrored(SurfaceMesh& mesh, const std::vector<int>& component,
-	const std::vector<PrincipalFrame>& frames, const Progress& progress = Progress())
+	const std::vector<PrincipalFrame>& frames, const Cancellation& cancel = Cancellation())
 {
 	std::vector<char> isMirrored;
 	for (const PrincipalFrame& frame : frames)
 		isMirrored.push_back(frame.isMirrored());
 	if (std::find(isMirrored.begin(), isMirrored.end(), 1) != isMirrored.end())
-		mesh.turnOver([&](int v) { return isMirrored[component[v]] != 0; }, progress);
+		mesh.turnOver([&](int v) { return isMirrored[component[v]] != 0; }, cancel);
 }
 
 } // namespace vcg::tri::mcf

@@ -8,7 +8,7 @@
 #define VCG_MCF_SURFACE_MESH_H
 
 #include <skeleton/core/errors.h>
-#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/core/progress.h>
 #include <skeleton/core/ticker.h>
 
@@ -193,10 +193,10 @@ public:
 	}
 
 	/// @throws Cancelled
-	double area(const Progress& progress = Progress()) const
+	double area(const Cancellation& cancel = Cancellation()) const
 	{
 		double sum = 0;
-		detail::reportedLoop(faceSlots(), progress, measuring, [&](int f) {
+		detail::cancellableLoop(faceSlots(), cancel, [&](int f) {
 			if (isFace(f))
 				sum += areaVector(f).Norm();
 		});
@@ -205,12 +205,12 @@ public:
 
 	/// Signed volume; positive when the triangles are counter-clockwise seen from outside.
 	/// @throws Cancelled
-	double volume(const Progress& progress = Progress()) const
+	double volume(const Cancellation& cancel = Cancellation()) const
 	{
 		// About the middle: this keeps the digits of a mesh far from the origin.
-		const Point3d middle = bounds(progress.part(0, 0.2)).Center();
+		const Point3d middle = bounds(cancel).Center();
 		double sum = 0;
-		detail::reportedLoop(faceSlots(), progress.part(0.2, 1), measuring, [&](int f) {
+		detail::cancellableLoop(faceSlots(), cancel, [&](int f) {
 			if (isFace(f))
 				sum += (position[origins[3 * f]] - middle) * areaVector(f);
 		});
@@ -218,10 +218,10 @@ public:
 	}
 
 	/// @throws Cancelled
-	Box3d bounds(const Progress& progress = Progress()) const
+	Box3d bounds(const Cancellation& cancel = Cancellation()) const
 	{
 		Box3d box;
-		detail::reportedLoop(vertexSlots(), progress, measuring, [&](int v) {
+		detail::cancellableLoop(vertexSlots(), cancel, [&](int v) {
 			if (isVertex(v))
 				box.Add(position[v]);
 		});
@@ -233,7 +233,7 @@ public:
 	std::vector<Point3d> vertexNormals(const Progress& progress = Progress()) const
 	{
 		std::vector<Point3d> normals =
-			detail::filledArray(size_t(vertexSlots()), Point3d(0, 0, 0), progress, measuring);
+			detail::filledArray(size_t(vertexSlots()), Point3d(0, 0, 0), progress);
 		detail::reportedLoop(faceSlots(), progress.part(0, 0.8), measuring, [&](int f) {
 			if (!isFace(f))
 				return;
@@ -251,11 +251,11 @@ public:
 
 	/// The live triangles in the order of their ids.
 	/// @throws Cancelled
-	std::vector<Triangle> triangles(const Progress& progress = Progress()) const
+	std::vector<Triangle> triangles(const Cancellation& cancel = Cancellation()) const
 	{
 		std::vector<Triangle> live;
 		live.reserve(liveFaces);
-		detail::reportedLoop(faceSlots(), progress, "Copying the surface", [&](int f) {
+		detail::cancellableLoop(faceSlots(), cancel, [&](int f) {
 			if (isFace(f))
 				live.push_back(triangle(f));
 		});
@@ -516,8 +516,7 @@ public:
 	 */
 	std::vector<int> compact(const Progress& progress = Progress())
 	{
-		std::vector<int> newVertex =
-			detail::filledArray(size_t(vertexSlots()), -1, progress, ordering);
+		std::vector<int> newVertex = detail::filledArray(size_t(vertexSlots()), -1, progress);
 		int v = 0;
 		detail::reportedLoop(vertexSlots(), progress.part(0, 0.2), ordering, [&](int old) {
 			if (!isVertex(old))
@@ -528,7 +527,7 @@ public:
 		});
 		position.resize(v);
 		const Progress ofFaces = progress.part(0.2, 0.4);
-		std::vector<int> newFace = detail::filledArray(size_t(faceSlots()), -1, ofFaces, ordering);
+		std::vector<int> newFace = detail::filledArray(size_t(faceSlots()), -1, ofFaces);
 		int f = 0;
 		detail::reportedLoop(faceSlots(), ofFaces, ordering, [&](int old) {
 			if (isFace(old))
@@ -552,13 +551,13 @@ public:
 		return newVertex;
 	}
 
-	/// A cancellable copy that reports its progress.
+	/// A copy that the user can cancel.
 	/// @throws Cancelled
-	SurfaceMesh copied(const Progress& progress) const
+	SurfaceMesh copied(const Cancellation& cancel) const
 	{
 		SurfaceMesh copy;
 		const auto take = [&](const auto array) {
-			copy.*array = detail::copiedArray(this->*array, progress, "Copying the surface");
+			copy.*array = detail::copiedArray(this->*array, cancel);
 		};
 		take(&SurfaceMesh::position);
 		take(&SurfaceMesh::origins);
@@ -588,15 +587,14 @@ public:
 		};
 		SurfaceMesh result;
 		const Progress ofVertices = progress.part(0, 0.2), ofFaces = progress.part(0.2, 0.8);
-		detail::fillReported(
-			result.position, size_t(liveVertices), Point3d(0, 0, 0), ofVertices, ordering);
+		detail::fillArray(result.position, size_t(liveVertices), Point3d(0, 0, 0), ofVertices);
 		detail::reportedLoop(vertexSlots(), ofVertices, ordering, [&](int v) {
 			if (newVertex[v] >= 0)
 				result.position[newVertex[v]] = position[v];
 		});
 		result.liveFaces = liveFaces;
 		for (std::vector<int>* array : {&result.origins, &result.twins})
-			detail::fillReported(*array, 3 * size_t(liveFaces), -1, ofFaces, ordering);
+			detail::fillArray(*array, 3 * size_t(liveFaces), -1, ofFaces);
 		detail::reportedLoop(halfEdgeSlots(), ofFaces, ordering, [&](int h) {
 			if (newFace[h / 3] < 0)
 				return;
@@ -605,7 +603,7 @@ public:
 			result.twins[id] = newId(twins[h]);
 		});
 		const Progress ofLinks = progress.part(0.8, 1);
-		detail::fillReported(result.outgoings, result.position.size(), -1, ofLinks, ordering);
+		detail::fillArray(result.outgoings, result.position.size(), -1, ofLinks);
 		result.chooseOutgoing(ofLinks);
 		return result;
 	}
@@ -616,10 +614,10 @@ public:
 	 * @throws Cancelled. Complexity: O(V + F).
 	 */
 	template <class IsTurned>
-	void turnOver(IsTurned&& isTurned, const Progress& progress = Progress())
+	void turnOver(IsTurned&& isTurned, const Cancellation& cancel = Cancellation())
 	{
 		const auto newId = [](int h) { return h + 2 - 2 * (h % 3); };
-		detail::reportedLoop(faceSlots(), progress.part(0, 0.5), ordering, [&](int f) {
+		detail::cancellableLoop(faceSlots(), cancel, [&](int f) {
 			if (!isFace(f) || !isTurned(origins[3 * f]))
 				return;
 			std::swap(origins[3 * f + 1], origins[3 * f + 2]);
@@ -628,7 +626,7 @@ public:
 				twins[h] = newId(twins[h]);
 		});
 		const int last = halfEdgeSlots() - 1;
-		detail::reportedLoop(halfEdgeSlots(), progress.part(0.5, 1), ordering, [&](int i) {
+		detail::cancellableLoop(halfEdgeSlots(), cancel, [&](int i) {
 			if (const int h = last - i; isHalfEdge(h))
 				outgoings[origins[h]] = h;
 		});
@@ -695,9 +693,9 @@ private:
 
 	void setTriangles(const std::vector<Triangle>& triangles, const Progress& progress)
 	{
-		detail::fillReported(origins, 3 * triangles.size(), -1, progress, checking);
-		detail::fillReported(twins, origins.size(), -1, progress.part(0.25, 1), checking);
-		detail::fillReported(outgoings, position.size(), -1, progress.part(0.5, 1), checking);
+		detail::fillArray(origins, 3 * triangles.size(), -1, progress);
+		detail::fillArray(twins, origins.size(), -1, progress);
+		detail::fillArray(outgoings, position.size(), -1, progress);
 		detail::reportedLoop(int(triangles.size()), progress.part(0.75, 1), checking, [&](int f) {
 			for (int k = 0; k < 3; ++k)
 				origins[3 * f + k] = triangles[f][k];
@@ -711,16 +709,15 @@ private:
 	bool pairTwins(const Progress& progress)
 	{
 		const int n = int(position.size());
-		std::vector<int> start = detail::filledArray(size_t(n) + 1, 0, progress, checking);
-		std::vector<int> bucket =
-			detail::filledArray(origins.size(), 0, progress.part(0.1, 1), checking);
+		std::vector<int> start = detail::filledArray(size_t(n) + 1, 0, progress);
+		std::vector<int> bucket = detail::filledArray(origins.size(), 0, progress);
 		const auto lower = [&](int h) { return std::min(origin(h), target(h)); };
 		detail::reportedLoop(halfEdgeSlots(), progress.part(0.2, 0.3), checking,
 			[&](int h) { ++start[lower(h) + 1]; });
 		detail::reportedLoop(
 			n, progress.part(0.3, 0.4), checking, [&](int v) { start[v + 1] += start[v]; });
 		const Progress pairing = progress.part(0.4, 1);
-		std::vector<int> end = detail::copiedArray(start, pairing, checking);
+		std::vector<int> end = detail::copiedArray(start, pairing);
 		detail::reportedLoop(halfEdgeSlots(), pairing, checking, [&](int h) {
 			const int low = lower(h);
 			for (int i = start[low]; i < end[low]; ++i) {
@@ -745,7 +742,7 @@ private:
 			[&](int i) { outgoings[origins[last - i]] = last - i; });
 		liveVertices =
 			int(std::count_if(outgoings.begin(), outgoings.end(), [](int h) { return h >= 0; }));
-		detail::fillReported(stamps, outgoings.size(), 0, progress.part(1, 1), linking);
+		detail::fillArray(stamps, outgoings.size(), 0, progress);
 	}
 };
 

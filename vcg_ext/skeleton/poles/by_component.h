@@ -10,7 +10,7 @@
 #include "pole_set.h"
 
 #include <skeleton/core/progress.h>
-#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/core/ticker.h>
 #include <skeleton/mesh/component_meshes.h>
 #include <skeleton/mesh/components.h>
@@ -27,8 +27,8 @@ namespace detail {
  * @return one value for each vertex. @pre mesh is compact. @throws Cancelled, and what find() throws.
  */
 template <class Find>
-std::vector<double> foundByComponent(const SurfaceMesh& mesh, const PoleSet& poles,
-	const Progress& progress, const char* what, const Find& find)
+std::vector<double> foundByComponent(
+	const SurfaceMesh& mesh, const PoleSet& poles, const Progress& progress, const Find& find)
 {
 	int components = 0;
 	const std::vector<int> component =
@@ -36,17 +36,16 @@ std::vector<double> foundByComponent(const SurfaceMesh& mesh, const PoleSet& pol
 	const Progress finding = progress.part(0.02, 1);
 	if (components == 1)
 		return find(mesh, poles, finding);
-	std::vector<double> values = filledArray(component.size(), 0.0, finding.part(0, 0), what);
+	std::vector<double> values = filledArray(component.size(), 0.0, finding);
 	forEachComponent(mesh, component, components, finding,
 		[&](int, const SurfaceMesh& own, const std::vector<int>& ids, const Progress& part) {
 			PoleSet polesOfOwn;
-			reportedLoop(int(ids.size()), part.part(0, 0), what, [&](int i) {
+			cancellableLoop(int(ids.size()), part, [&](int i) {
 				polesOfOwn.centre.push_back(poles.centre[ids[i]]);
 				polesOfOwn.radius.push_back(poles.radius[ids[i]]);
 			});
 			const std::vector<double> found = find(own, polesOfOwn, part);
-			reportedLoop(
-				int(ids.size()), part.part(1, 1), what, [&](int i) { values[ids[i]] = found[i]; });
+			cancellableLoop(int(ids.size()), part, [&](int i) { values[ids[i]] = found[i]; });
 		});
 	return values;
 }

@@ -13,7 +13,7 @@
 
 #include <skeleton/core/parameters.h>
 #include <skeleton/core/progress.h>
-#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/core/ticker.h>
 #include <skeleton/mesh/component_meshes.h>
 #include <skeleton/mesh/components.h>
@@ -46,11 +46,11 @@ namespace detail {
 inline PoleSet polesOfComponent(const SurfaceMesh& mesh, const PrincipalFrame& frame,
 	const std::vector<int>& vertices, PoleMethod method, const Progress& progress)
 {
-	SurfaceMesh own = mesh.copied(progress.part(0, 0));
+	SurfaceMesh own = mesh.copied(progress);
 	reportedLoop(own.vertexSlots(), progress.part(0, 0.01), "Measuring the surface",
 		[&](int v) { own.position[v] = frame.onGrid(own.position[v]); });
 	if (frame.isMirrored())
-		own.turnOver([](int) { return true; }, progress.part(0.01, 0.01));
+		own.turnOver([](int) { return true; }, progress);
 	const Progress ofSearch = progress.part(0.01, 1);
 	PoleSet poles;
 	if (method == PoleMethod::Balls)
@@ -63,7 +63,7 @@ inline PoleSet polesOfComponent(const SurfaceMesh& mesh, const PrincipalFrame& f
 			poles.radius.push_back(all.radius[v]);
 		}
 	}
-	reportedLoop(int(vertices.size()), progress.part(1, 1), "Measuring the surface", [&](int i) {
+	cancellableLoop(int(vertices.size()), progress, [&](int i) {
 		Point3d& centre = poles.centre[i];
 		centre = frame.out(PrincipalFrame::rounded(centre));
 		if (poles.has(i))
@@ -86,25 +86,25 @@ inline PoleSet polesAt(const SurfaceMesh& mesh, const std::vector<int>& componen
 {
 	if (frames.size() == 1)
 		return detail::polesOfComponent(mesh, frames.front(), vertices, method, progress);
-	const Progress begin = progress.part(0, 0);
+	const Progress begin = progress.cancelOnly();
 	const char* const what = "Measuring the surface";
 	const int count = int(vertices.size());
-	std::vector<int> wanted = detail::filledArray(size_t(mesh.vertexSlots()), -1, begin, what);
+	std::vector<int> wanted = detail::filledArray(size_t(mesh.vertexSlots()), -1, begin);
 	detail::reportedLoop(count, begin, what, [&](int i) { wanted[vertices[i]] = i; });
 	PoleSet poles;
-	poles.centre = detail::filledArray(vertices.size(), Point3d(0, 0, 0), begin, what);
-	poles.radius = detail::filledArray(vertices.size(), -1.0, begin, what);
+	poles.centre = detail::filledArray(vertices.size(), Point3d(0, 0, 0), begin);
+	poles.radius = detail::filledArray(vertices.size(), -1.0, begin);
 	forEachComponent(mesh, component, int(frames.size()), progress,
 		[&](int c, const SurfaceMesh& own, const std::vector<int>& ids, const Progress& part) {
 			std::vector<int> ofThese;
-			detail::reportedLoop(int(ids.size()), part.part(0, 0), what, [&](int i) {
+			detail::cancellableLoop(int(ids.size()), part, [&](int i) {
 				if (wanted[ids[i]] >= 0)
 					ofThese.push_back(i);
 			});
 			if (ofThese.empty())
 				return;
 			const PoleSet found = detail::polesOfComponent(own, frames[c], ofThese, method, part);
-			detail::reportedLoop(int(ofThese.size()), part.part(1, 1), what, [&](int k) {
+			detail::cancellableLoop(int(ofThese.size()), part, [&](int k) {
 				const int i = wanted[ids[ofThese[k]]];
 				poles.centre[i] = found.centre[k];
 				poles.radius[i] = found.radius[k];

@@ -12,7 +12,7 @@
 
 #include <skeleton/core/parallel.h>
 #include <skeleton/core/progress.h>
-#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/core/ticker.h>
 #include <skeleton/mesh/surface_mesh.h>
 #include <skeleton/mesh/unit_frame.h>
@@ -111,8 +111,8 @@ PoleSet maximalBalls(const std::vector<Touch>& touches, size_t count, const Unit
 	constexpr int neighbours = 8;
 	PoleSet poles;
 	const char* const what = "Poles: shrinking balls";
-	fillReported(poles.centre, count, Point3d(0, 0, 0), progress, what);
-	fillReported(poles.radius, count, -1.0, progress, what);
+	fillArray(poles.centre, count, Point3d(0, 0, 0), progress);
+	fillArray(poles.radius, count, -1.0, progress);
 	const int size = int(touches.size());
 	forEachBlock(size, progress, what, [&](int begin, int end) {
 		// What held the balls of the last points will nearly hold the next one.
@@ -185,8 +185,8 @@ inline OsculatingNormals osculatingNormals(const SurfaceMesh& mesh, const Progre
 	const char* const what = "Measuring the surface";
 	OsculatingNormals found;
 	const size_t vertices = size_t(mesh.vertexSlots());
-	fillReported(found.normal, vertices, Point3d(0, 0, 0), progress, what);
-	fillReported(found.leadsInside, vertices, char(1), progress, what);
+	fillArray(found.normal, vertices, Point3d(0, 0, 0), progress);
+	fillArray(found.leadsInside, vertices, char(1), progress);
 	reportedLoop(mesh.faceSlots(), progress.part(0, 0.4), what, [&](int f) {
 		const Triangle t = mesh.triangle(f);
 		const Point3d areaVector = mesh.areaVector(f);
@@ -263,7 +263,7 @@ inline PoleSet shrinkingBalls(const std::vector<Point3d>& points,
 inline PoleSet shrinkingBallPoles(const SurfaceMesh& mesh, const std::vector<int>& vertices,
 	double delta = 0, const Progress& progress = Progress())
 {
-	const Progress begin = progress.part(0, 0);
+	const Progress begin = progress.cancelOnly();
 	const UnitFrame frame(mesh.position, begin);
 	const PointTree tree(frame.in(mesh.position, begin), progress.part(0, 0.2));
 	std::vector<int> place(mesh.vertexSlots(), -1);
@@ -274,13 +274,12 @@ inline PoleSet shrinkingBallPoles(const SurfaceMesh& mesh, const std::vector<int
 	touches.reserve(vertices.size());
 	const detail::OsculatingNormals normals =
 		detail::osculatingNormals(mesh, progress.part(0.2, 0.25));
-	detail::reportedLoop(
-		tree.size(), progress.part(0.25, 0.25), "Sorting the surface", [&](int slot) {
-			const int v = tree.order()[slot];
-			if (place[v] < 0)
-				return;
-			touches.push_back({tree.point(slot), normals.normal[v], tolerance, place[v], slot});
-		});
+	detail::cancellableLoop(tree.size(), progress, [&](int slot) {
+		const int v = tree.order()[slot];
+		if (place[v] < 0)
+			return;
+		touches.push_back({tree.point(slot), normals.normal[v], tolerance, place[v], slot});
+	});
 	const InnerSegments segments(mesh, tree, progress.part(0.25, 0.4));
 	return detail::maximalBalls(
 		touches, vertices.size(), frame, tree, progress.part(0.4, 1),

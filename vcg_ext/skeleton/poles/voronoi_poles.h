@@ -13,7 +13,7 @@
 #include <skeleton/core/errors.h>
 #include <skeleton/core/has_qhull.h>
 #include <skeleton/core/progress.h>
-#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/mesh/surface_mesh.h>
 #include <skeleton/mesh/unit_frame.h>
 #include <skeleton/spatial/inner_segments.h>
@@ -333,11 +333,11 @@ inline PoleSet voronoiPoles(const SurfaceMesh& mesh, const Progress& progress = 
 	constexpr double tolerance = 1e-5; // of about the diagonal: what moving the points may cost
 	const char* what = "Poles: Voronoi diagram";
 	progress.report(0, what);
-	const Progress begin = progress.part(0, 0);
+	const Progress begin = progress.cancelOnly();
 	PoleSet poles;
 	const size_t count = size_t(mesh.vertexSlots());
-	detail::fillReported(poles.centre, count, Point3d(0, 0, 0), begin, what);
-	detail::fillReported(poles.radius, count, -1.0, begin, what);
+	detail::fillArray(poles.centre, count, Point3d(0, 0, 0), begin);
+	detail::fillArray(poles.radius, count, -1.0, begin);
 	const UnitFrame frame(mesh.position, begin);
 	if (!std::isfinite(frame.diagonal()))
 		throw SolverError("The Voronoi diagram of points at infinity is not defined.");

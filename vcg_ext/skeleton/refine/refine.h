@@ -459,7 +459,7 @@ inline Defect refineChecked(CurveSkeleton& refined, ClosestSurface& surface,
 			CurveSkeleton curve = refineComponent(
 				unrefined, surface, component, own, parameters, progress.part(from, to));
 			nodes = curve.position.size();
-			const Progress end = progress.part(to, to);
+			const Progress end = progress.cancelOnly();
 			const double spacing = parameters.spacing * own.least(component.vertices);
 			Defect defect = defectOf(curve, unrefined, spacing, inside, end);
 			if (defect == Defect::Outside && !own.isUniform())
@@ -525,7 +525,7 @@ inline Refinement refineChecked(const CurveSkeleton& curve, const SurfaceMesh& s
 			+ std::to_string(surface.vertexSlots())
 			+ ": choose the surface that it was made from.");
 	const char* const what = "Refining the skeleton";
-	const Progress begin = progress.part(0, 0);
+	const Progress begin = progress.cancelOnly();
 	detail::reportedLoop(int(curve.node.size()), begin, what, [&](int s) {
 		if (curve.node[s] >= int(curve.position.size()))
 			throw InvalidInput("The skeleton's correspondence names nodes that it does not have.");
@@ -536,7 +536,7 @@ inline Refinement refineChecked(const CurveSkeleton& curve, const SurfaceMesh& s
 	const std::vector<int> component =
 		connectedComponents(surface, &components, progress.part(0, 0.01));
 	const std::vector<int> componentOfNode = componentOfNodes(curve, component);
-	const ComponentVertices vertices(component, components, progress.part(0.01, 0.01));
+	const ComponentVertices vertices(component, components, progress.cancelOnly());
 	std::vector<std::vector<int>> nodes(components), edges(components);
 	for (size_t v = 0; v < componentOfNode.size(); ++v)
 		if (componentOfNode[v] >= 0)
@@ -553,22 +553,22 @@ inline Refinement refineChecked(const CurveSkeleton& curve, const SurfaceMesh& s
 	const auto fromUnit = [&](const Point3d& p, int c) {
 		return frame[c].out(p * frame[c].sizeInside());
 	};
-	SurfaceMesh unit = surface.copied(progress.part(0.02, 0.02));
+	SurfaceMesh unit = surface.copied(progress);
 	detail::reportedLoop(surface.vertexSlots(), progress.part(0.02, 0.03), what,
 		[&](int v) { unit.position[v] = toUnit(surface.position[v], component[v]); });
-	turnOverMirrored(unit, component, frame, progress.part(0.03, 0.03));
+	turnOverMirrored(unit, component, frame, progress);
 
 	Refinement result;
 	CurveSkeleton& refined = result.skeleton;
 	RefineReport& report = result.report;
-	detail::fillReported(refined.node, curve.node.size(), -1, progress.part(0.03, 0.03), what);
+	detail::fillArray(refined.node, curve.node.size(), -1, progress);
 	std::vector<int> number(curve.position.size(), -1);
 	std::vector<std::pair<int, int>>
 		kept; // nodes of the result that are as they were, and what they were
 	constexpr double sampleSpacing = 0.01;
 	refining::LocalScale scale(unit,
 		refining::scaleOfVertices(
-			surface, component, components, frame, parameters, poles, progress.part(0.03, 0.03)));
+			surface, component, components, frame, parameters, poles, progress.cancelOnly()));
 	const auto isThin = [&](int c) { return scale.least(vertices.ids[c]) < 1; };
 	for (int c = 0; c < components; ++c) {
 		if (nodes[c].empty())
@@ -594,8 +594,8 @@ inline Refinement refineChecked(const CurveSkeleton& curve, const SurfaceMesh& s
 		refining::addTo(report, defect);
 		const bool isRefined = defect == refining::Defect::None;
 		if (!isRefined) {
-			const int outside = refining::InsideCheck(closest, own)
-									.countOutside(part, ofComponent.part(0.95, 0.95));
+			const int outside =
+				refining::InsideCheck(closest, own).countOutside(part, ofComponent.cancelOnly());
 			report.nodesOutside += outside;
 			report.curvesOutside += outside > 0;
 		}
@@ -612,7 +612,7 @@ inline Refinement refineChecked(const CurveSkeleton& curve, const SurfaceMesh& s
 				isRefined ? refining::nearestAlong(part, neighbours, node, unit.position[s]) : node;
 		});
 		part.node = std::move(ofVertex);
-		const NestedBranches nested = refining::nestedIn(closest, part, ofComponent.part(1, 1));
+		const NestedBranches nested = refining::nestedIn(closest, part, ofComponent.cancelOnly());
 		part = significantPart(std::move(part), nested, isRefined ? 1 - parameters.detail : 0);
 		const int first = int(refined.position.size());
 		for (size_t i = 0; i < ids.size(); ++i)
@@ -629,7 +629,7 @@ inline Refinement refineChecked(const CurveSkeleton& curve, const SurfaceMesh& s
 			refined.edges.push_back({first + a, first + b});
 	}
 	refined.radius =
-		meanSurfaceDistance(refined.position, surface.position, refined.node, progress.part(1, 1));
+		meanSurfaceDistance(refined.position, surface.position, refined.node, progress);
 	fillUnknownRadii(refined.radius, refined.neighbours());
 	for (const auto& [node, before] : kept)
 		if (before < int(curve.radius.size()))

@@ -318,8 +318,8 @@ inline void growFeatures(CurveSkeleton& skeleton, const SurfaceComponent& compon
 	const std::vector<int> covering = coveringNodes(skeleton);
 	for (int v : covering)
 		skeleton.radius[v] = std::max(clearances.at(skeleton.position[v]), 0.0);
-	const Heights heights = heightsAbove(skeleton, covering, component,
-		surface.vertexOrder(progress.part(0, 0)), progress.part(0, 0.4));
+	const Heights heights = heightsAbove(
+		skeleton, covering, component, surface.vertexOrder(progress), progress.part(0, 0.4));
 	const auto add = [&](const FeatureBranch& branch) {
 		int last = branch.joint;
 		for (size_t i = branch.points.size(); i-- > 0;) {
@@ -334,7 +334,7 @@ inline void growFeatures(CurveSkeleton& skeleton, const SurfaceComponent& compon
 	std::vector<Feature> features;
 	for (const Peak& peak : peaks(skeleton, component, heights, rule, progress.part(0.4, 0.8))) {
 		FeatureBranch branch =
-			branchInto(peak, skeleton, component, heights, surface, rule, progress.part(0.8, 0.8));
+			branchInto(peak, skeleton, component, heights, surface, rule, progress.cancelOnly());
 		const bool grown = leadsIntoLimb(branch, peak, rule);
 		if (grown)
 			add(branch);

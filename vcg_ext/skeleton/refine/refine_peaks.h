@@ -11,7 +11,7 @@
 
 #include <skeleton/core/parallel.h>
 #include <skeleton/core/progress.h>
-#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/core/ticker.h>
 #include <skeleton/graph/curve_skeleton.h>
 #include <skeleton/graph/skeleton_branches.h>
@@ -123,8 +123,8 @@ inline Heights heightsAbove(const CurveSkeleton& skeleton, const std::vector<int
 	constexpr int groupSize = 16;
 	const char* const what = "Refining the skeleton";
 	const size_t size = size_t(surface.size());
-	Heights heights = {detail::filledArray(size, 0.0, progress, what),
-		detail::filledArray(size, -1, progress, what)};
+	Heights heights = {
+		detail::filledArray(size, 0.0, progress), detail::filledArray(size, -1, progress)};
 	forEachBlock(surface.size(), progress, what, [&](int begin, int end) {
 		const auto boxOf = [&](int first, int last) {
 			Box3d box;
@@ -186,14 +186,14 @@ public:
 		const auto slice = [&](int v) {
 			return std::min(slices - 1, int((1 - height[v] / top) * slices));
 		};
-		detail::fillReported(ends, size_t(slices) + 1, 0, progress, what);
+		detail::fillArray(ends, size_t(slices) + 1, 0, progress);
 		detail::reportedLoop(surface.size(), progress.part(0, 0.5), what, [&](int v) {
 			if (height[v] > 0)
 				++ends[slice(v) + 1];
 		});
 		std::partial_sum(ends.begin(), ends.end(), ends.begin());
 		const Progress placing = progress.part(0.5, 1);
-		detail::fillReported(entries, size_t(ends.back()), {0.0, -1}, placing, what);
+		detail::fillArray(entries, size_t(ends.back()), {0.0, -1}, placing);
 		detail::reportedLoop(surface.size(), placing, what, [&](int v) {
 			if (height[v] > 0)
 				entries[ends[slice(v)]++] = {height[v], v};
@@ -250,10 +250,10 @@ inline std::vector<Peak> peaks(const CurveSkeleton& skeleton, const SurfaceCompo
 	detail::reportedLoop(surface.size(), progress.part(0.4, 0.5), what,
 		[&](int v) { highLeft += height[v] > 0 && isHigh(v); });
 	// The parts above a level that falls, as a forest; they are numbered from the highest peak down.
-	const Progress begin = progress.part(0.5, 0.5);
-	MergeForest forest(surface.size(), begin, what);
-	std::vector<char> isAbove = detail::filledArray(size_t(surface.size()), char(0), begin, what);
-	std::vector<int> partOfRoot = detail::filledArray(isAbove.size(), -1, begin, what);
+	const Progress begin = progress.cancelOnly();
+	MergeForest forest(surface.size(), progress);
+	std::vector<char> isAbove = detail::filledArray(size_t(surface.size()), char(0), begin);
+	std::vector<int> partOfRoot = detail::filledArray(isAbove.size(), -1, begin);
 	std::vector<Peak> parts;
 	// Peaks that are high enough and may still turn out to be spikier.
 	int open = 0;

@@ -163,7 +163,7 @@ inline ClosedSeams closeSeams(const std::vector<Point3d>& points, std::vector<Tr
 				for (int& v : t)
 					v = vertices.find(v);
 		if (merged || junctions)
-			detail::removeDegenerateFaces(points.size(), triangles, part.part(1, 1));
+			detail::removeDegenerateFaces(points.size(), triangles, part.cancelOnly());
 		if (!junctions)
 			break;
 	}

@@ -431,18 +431,18 @@ private:
 	bool isToBeWrapped(
 		const SurfaceMesh& mesh, std::vector<std::string>& notes, const Progress& progress)
 	{
-		const std::vector<Triangle> faces = mesh.triangles(progress.part(0, 0));
+		const std::vector<Triangle> faces = mesh.triangles(progress);
 		SolidReport& report = solid.report;
 		report.overlap =
 			windingVolumes(mesh.position, faces, 128, progress.part(0, 0.3)).wrongPart();
 		int pieces = 0;
-		connectedComponents(mesh, &pieces, progress.part(0.3, 0.3));
+		connectedComponents(mesh, &pieces, progress.cancelOnly());
 		if (report.overlap < smallestOverlap && pieces == 1)
 			return false;
 		const TriangleTree tree(mesh.position, faces, progress.part(0.3, 0.4));
 		if (pieces > 1
 			&& sharedWalls(mesh.position, faces, tree, progress.part(0.4, 0.5)) > noticeableWalls
-			&& !isTooThin(mesh.position, faces, tree, progress.part(0.5, 0.5)))
+			&& !isTooThin(mesh.position, faces, tree, progress.cancelOnly()))
 			return true;
 		if (report.overlap < smallestOverlap)
 			return false;
@@ -570,8 +570,8 @@ private:
 		TriangleTree tree(given, faces, progress.part(0.05, 0.1));
 		std::vector<SurfacePlace> places = placesByArea(given, faces, samples);
 		const std::vector<double> weights =
-			layerWeights(tree, isOfOpenPiece(given, faces, progress.part(0.1, 0.1)),
-				layersApart * box.Diag(), progress.part(0.1, 0.1));
+			layerWeights(tree, isOfOpenPiece(given, faces, progress.cancelOnly()),
+				layersApart * box.Diag(), progress.cancelOnly());
 		Enclosure enclosure;
 		{
 			const WindingNumber winding(tree, progress.part(0.1, 0.12), weights);
@@ -669,7 +669,7 @@ private:
 		for (size_t v = 0; v < kept.size(); ++v)
 			if (!kept[v])
 				made.push_back(mesh.position[v]);
-		const std::vector<Triangle> faces = mesh.triangles(progress.part(0.3, 0.3));
+		const std::vector<Triangle> faces = mesh.triangles(progress);
 		const Distances there =
 			distances(made, mesh.position.size(), points, finite, progress.part(0.3, 0.65));
 		const Distances back = distances(left, all, mesh.position, faces, progress.part(0.65, 1));

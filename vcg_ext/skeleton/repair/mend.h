@@ -14,7 +14,7 @@
 
 #include <skeleton/core/errors.h>
 #include <skeleton/core/progress.h>
-#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/input/coincident_points.h>
 #include <skeleton/input/soup_repair.h>
 #include <skeleton/mesh/surface_mesh.h>
@@ -290,7 +290,7 @@ inline MendedSurface mend(const std::vector<Point3d>& points,
 	using namespace detail;
 	MendedSurface mended;
 	MendReport& report = mended.report;
-	mended.points = copiedArray(points, progress, repairing);
+	mended.points = copiedArray(points, progress);
 	std::vector<Triangle>& faces = mended.triangles;
 	const auto isFinite = [&](int v) {
 		const Point3d& p = points[size_t(v)];
@@ -312,7 +312,7 @@ inline MendedSurface mend(const std::vector<Point3d>& points,
 	std::iota(vertexOfInput.begin(), vertexOfInput.end(), 0);
 	const auto defectsOf = [&](const std::vector<Triangle>& some) {
 		const EdgeDefects defects = edgeDefects(mended.points,
-			sortedSoupEdges(points.size(), some, progress.part(0.1, 0.1)), progress.part(0.1, 0.1));
+			sortedSoupEdges(points.size(), some, progress.cancelOnly()), progress.cancelOnly());
 		return defects.border + defects.nonManifold;
 	};
 	if (const size_t defects = defectsOf(faces)) {
@@ -344,8 +344,8 @@ inline MendedSurface mend(const std::vector<Point3d>& points,
 	std::vector<int> partedFrom;
 	const auto turn = [&] {
 		return orientCoherently(faces,
-			sortedSoupEdges(mended.points.size(), faces, progress.part(0.5, 0.5)),
-			progress.part(0.5, 0.5));
+			sortedSoupEdges(mended.points.size(), faces, progress.cancelOnly()),
+			progress.cancelOnly());
 	};
 	// First over the edges with two faces only: how the others are parted depends on it.
 	const int turnedFirst = turn();
@@ -367,7 +367,7 @@ inline MendedSurface mend(const std::vector<Point3d>& points,
 	report.holesLeft = holes.left;
 	constexpr int mostCuts = 3;
 	for (int round = 0; round < mostCuts && report.holesLeft > 0; ++round) {
-		const Progress again = progress.part(0.95, 0.95);
+		const Progress again = progress.cancelOnly();
 		std::vector<Triangle> fewer = faces;
 		const size_t pointsBefore = mended.points.size();
 		const int cut = cutAroundHoles(mended.points, fewer, again);
@@ -387,16 +387,16 @@ inline MendedSurface mend(const std::vector<Point3d>& points,
 		report.holesLeft = filled.left;
 	}
 	const int walls =
-		report.holesLeft > 0 ? dropInnerWalls(mended.points, faces, progress.part(0.95, 0.95)) : 0;
+		report.holesLeft > 0 ? dropInnerWalls(mended.points, faces, progress.cancelOnly()) : 0;
 	report.piecesDropped += walls;
 	if (walls)
-		report.holesLeft = holesOf(mended.points, faces, progress.part(0.95, 0.95));
+		report.holesLeft = holesOf(mended.points, faces, progress.cancelOnly());
 	if (report.holesLeft > 0) {
 		constexpr double tiny =
 			0.002; // of the area: a fold there is better than to wrap all the rest
 		HoleLimits rough = limits;
 		rough.anyhow = tiny;
-		const Progress again = progress.part(0.95, 0.95);
+		const Progress again = progress.cancelOnly();
 		partner = partSurface(mended.points, faces, partedFrom, true, again).partner;
 		const FilledHoles filled = fillHoles(mended.points, faces, partner, rough, again);
 		report.holesClosed += filled.closed;

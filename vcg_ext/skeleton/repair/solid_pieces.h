@@ -185,7 +185,7 @@ inline LeftOutPieces keepSolidPieces(
 			points.push_back(mesh.position[size_t(v)]);
 		}
 	std::vector<Triangle> kept;
-	for (const Triangle& t : mesh.triangles(progress.part(0.8, 0.8)))
+	for (const Triangle& t : mesh.triangles(progress))
 		if (number[size_t(t[0])] >= 0)
 			kept.push_back({number[size_t(t[0])], number[size_t(t[1])], number[size_t(t[2])]});
 	for (int& v : surface.vertexOfInput)

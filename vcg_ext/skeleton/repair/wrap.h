@@ -151,7 +151,7 @@ private:
 			const int to = lattice.size();
 			value.resize(size_t(to));
 			// Of what the first round leaves nobody knows how much it is.
-			const Progress part = from == 0 ? progress.part(0, 0.9) : progress.part(0.9, 0.9);
+			const Progress part = from == 0 ? progress.part(0, 0.9) : progress.cancelOnly();
 			forEachBlock(to - from, part, wrapping, [&](int begin, int end) {
 				for (int i = from + begin; i < from + end; ++i)
 					value[size_t(i)] = winding(lattice.position(i));

@@ -7,7 +7,7 @@
 #ifndef VCG_MCF_FEATURE_EDGES_H
 #define VCG_MCF_FEATURE_EDGES_H
 
-#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/core/progress.h>
 #include <skeleton/core/segment.h>
 #include <skeleton/mesh/surface_mesh.h>
@@ -62,10 +62,10 @@ public:
 			return;
 		const Progress chains = progress.part(0.9, 1);
 		const size_t count = size_t(surface.halfEdgeSlots());
-		std::vector<char> candidate = detail::filledArray(count, char(0), chains, findingCreases);
+		std::vector<char> candidate = detail::filledArray(count, char(0), chains);
 		for (int h : candidates)
 			candidate[h] = candidate[surface.twin(h)] = 1;
-		detail::fillReported(marks, count, char(0), chains, findingCreases);
+		detail::fillArray(marks, count, char(0), chains);
 		bool any = false;
 		detail::reportedLoop(int(candidates.size()), chains, findingCreases, [&](int i) {
 			const int h = candidates[i];
@@ -186,8 +186,8 @@ private:
 
 	static std::vector<Point3d> unitNormals(const SurfaceMesh& surface, const Progress& progress)
 	{
-		std::vector<Point3d> normals = detail::filledArray(
-			size_t(surface.faceSlots()), Point3d(0, 0, 0), progress, findingCreases);
+		std::vector<Point3d> normals =
+			detail::filledArray(size_t(surface.faceSlots()), Point3d(0, 0, 0), progress);
 		detail::reportedLoop(surface.faceSlots(), progress, findingCreases, [&](int f) {
 			if (!surface.isFace(f))
 				return;

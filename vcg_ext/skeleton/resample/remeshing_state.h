@@ -11,7 +11,7 @@
 #include "feature_edges.h"
 
 #include <skeleton/core/progress.h>
-#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/core/ticker.h>
 #include <skeleton/mesh/breadth_first_numbering.h>
 #include <skeleton/mesh/closest_point_walk.h>
@@ -62,14 +62,13 @@ public:
 											   : localLength[v]);
 				},
 				progress),
-			surfaceRoles(surfaceCreases.roles(surface, progress.part(1, 1))),
+			surfaceRoles(surfaceCreases.roles(surface, progress.cancelOnly())),
 			creases(surfaceCreases), role(surfaceRoles),
-			component(copiedArray(componentOfVertex, progress.part(1, 1), tracking)),
-			length(targetLength), surfaceLength(localLength),
-			own(copiedArray(localLength, progress.part(1, 1), tracking)),
-			track(filledArray(size_t(surface.vertexSlots()), -1, progress.part(1, 1), tracking))
+			component(copiedArray(componentOfVertex, progress)), length(targetLength),
+			surfaceLength(localLength), own(copiedArray(localLength, progress)),
+			track(filledArray(size_t(surface.vertexSlots()), -1, progress))
 	{
-		const Progress end = progress.part(1, 1);
+		const Progress end = progress.cancelOnly();
 		reportedLoop(
 			surface.vertexSlots(), end, tracking, [&](int v) { track[v] = surface.outgoing(v); });
 		if (surfaceCreases.empty())
@@ -175,8 +174,8 @@ public:
 	/// @throws Cancelled
 	void startPatches(const Progress& progress)
 	{
-		fillReported(patch, size_t(mesh.faceSlots()), -1, progress, tracking);
-		fillReported(isInputPatch, size_t(mesh.faceSlots()), char(0), progress, tracking);
+		fillArray(patch, size_t(mesh.faceSlots()), -1, progress);
+		fillArray(isInputPatch, size_t(mesh.faceSlots()), char(0), progress);
 		reportedLoop(mesh.faceSlots(), progress, tracking, [&](int f) {
 			patch[f] = f;
 			isInputPatch[f] = mesh.isFace(f) && mesh.triangle(f) == surface.triangle(f);

@@ -86,8 +86,8 @@ inline SurfaceMesh resampleAll(const MeasuredSurface& surface,
 	std::optional<SurfaceMesh> turnedOver;
 	for (const PrincipalFrame& frame : surface.allFrames())
 		if (frame.isMirrored() && !turnedOver) {
-			turnedOver = surface.mesh().copied(progress.part(0, 0));
-			turnOverMirrored(*turnedOver, component, surface.allFrames(), progress.part(0, 0));
+			turnedOver = surface.mesh().copied(progress);
+			turnOverMirrored(*turnedOver, component, surface.allFrames(), progress);
 		}
 	const SurfaceMesh& outwards = turnedOver ? *turnedOver : surface.mesh();
 	const std::vector<int> seeds = leastHalfEdges(
@@ -126,7 +126,7 @@ inline SurfaceMesh resampleAll(const MeasuredSurface& surface,
 	remesher.flipForAngles(progress.part(0.95, 0.96));
 	remesher.smoothAndProject(progress.part(0.96, 0.99));
 	remesher.flipForAngles(progress.part(0.99, 1));
-	const Progress end = progress.part(1, 1);
+	const Progress end = progress.cancelOnly();
 	SurfaceMesh result = remesher.take(end);
 	const std::vector<int>& componentOfResult = remesher.componentOfVertex();
 	// On a grid of its own: far from the origin the digits beyond are lost on the way out.
@@ -146,7 +146,7 @@ inline SurfaceMesh resampleMoving(const MeasuredSurface& surface,
 	const std::vector<char>& rests, int iterations, const Progress& progress)
 {
 	const char* const what = "Ordering the surface";
-	const Progress begin = progress.part(0, 0), end = progress.part(1, 1);
+	const Progress begin = progress.cancelOnly(), end = progress.cancelOnly();
 	const auto trianglesOf = [&](const SurfaceMesh& mesh, const std::vector<int>& number,
 								 std::vector<Triangle>& triangles, const Progress& part) {
 		reportedLoop(mesh.faceSlots(), part, what, [&](int f) {
@@ -261,11 +261,11 @@ inline SurfaceMesh resample(const MeasuredSurface& surface,
 		if (!(length > 0) || !std::isfinite(length))
 			throw InvalidParameter("The target length of a component must be greater than 0.");
 	if (iterations <= 0) {
-		SurfaceMesh copy = surface.mesh().copied(progress.part(0, 0));
+		SurfaceMesh copy = surface.mesh().copied(progress);
 		copy.compact(progress);
 		return copy;
 	}
-	const std::vector<char> rests = componentsAtRest(surface, progress.part(0, 0));
+	const std::vector<char> rests = componentsAtRest(surface, progress.cancelOnly());
 	if (std::find(rests.begin(), rests.end(), 1) == rests.end())
 		return detail::resampleAll(surface, targetLengthOfComponent, field, iterations, progress);
 	return detail::resampleMoving(

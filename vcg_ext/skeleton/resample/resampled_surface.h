@@ -165,7 +165,7 @@ inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Paramete
 	if (parameters.adaptive && result.noise.isNoisy()) {
 		still = thinParts(surface, parameters, progress.part(0.1, 0.15));
 		if (!still.empty())
-			result.noise = measureNoise(surface, progress.part(0.15, 0.15), still);
+			result.noise = measureNoise(surface, progress.cancelOnly(), still);
 	}
 	const bool isNoisy = result.noise.isNoisy();
 	const bool smooth = parameters.denoise && isNoisy;

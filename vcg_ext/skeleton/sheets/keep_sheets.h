@@ -161,8 +161,8 @@ inline SheetCollapse collapseOneKeepingSheets(
 {
 	const SurfaceMesh& mesh = stage.mesh;
 	const BettiNumbers solid = {1, 1 - mesh.eulerCharacteristic() / 2, 0};
-	const std::vector<double> area = vertexAreas(mesh, progress.part(0, 0));
-	std::vector<std::vector<int>> parts = markedParts(mesh, sheet, 1, progress.part(0, 0));
+	const std::vector<double> area = vertexAreas(mesh, progress.cancelOnly());
+	std::vector<std::vector<int>> parts = markedParts(mesh, sheet, 1, progress.cancelOnly());
 	std::stable_sort(parts.begin(), parts.end(),
 		[&](const auto& a, const auto& b) { return areaOf(a, area) < areaOf(b, area); });
 	SheetCollapse result;
@@ -278,8 +278,8 @@ inline SheetCollapse collapseKeepingSheets(const Stage& stage, const std::vector
 	if (components == 1)
 		return detail::collapseOneKeepingSheets(stage, sheet, epsilon, progress);
 	const ComponentVertices onSurface(
-		componentOfSurfaceVertices(stage, progress.part(0, 0)), components, progress.part(0, 0));
-	const ComponentVertices onMesh(stage.component, components, progress.part(0, 0));
+		componentOfSurfaceVertices(stage, progress), components, progress.cancelOnly());
+	const ComponentVertices onMesh(stage.component, components, progress.cancelOnly());
 	std::vector<SheetCollapse> found(static_cast<size_t>(components));
 	forEachComponent(stage.mesh, stage.component, components, progress,
 		[&](int c, const SurfaceMesh& own, const std::vector<int>& ids, const Progress& part) {

@@ -437,9 +437,9 @@ inline std::vector<VertexKind> vertexKinds(
 	const std::vector<Point3d> normal = mesh.vertexNormals(progress.part(0, 0.1));
 	std::vector<VertexKind> kind(size_t(mesh.vertexSlots()), VertexKind::Volume);
 	const int components = int(stage.diagonal.size());
-	const ComponentVertices vertices(stage.component, components, progress.part(0.1, 0.1));
+	const ComponentVertices vertices(stage.component, components, progress.cancelOnly());
 	std::vector<std::vector<int>> faces(vertices.ids.size());
-	detail::reportedLoop(mesh.faceSlots(), progress.part(0.1, 0.1), detail::tellingKinds,
+	detail::cancellableLoop(mesh.faceSlots(), progress,
 		[&](int f) { faces[size_t(stage.component[mesh.origin(3 * f)])].push_back(f); });
 	int done = 0;
 	for (int c = 0; c < components; ++c) {
@@ -452,8 +452,8 @@ inline std::vector<VertexKind> vertexKinds(
 		done += count;
 		const double epsilon = stage.epsilon * stage.diagonal[size_t(c)];
 		Box3d box;
-		detail::reportedLoop(count, part.part(0, 0), detail::tellingKinds,
-			[&](int i) { box.Add(mesh.position[own[size_t(i)]]); });
+		detail::cancellableLoop(
+			count, part, [&](int i) { box.Add(mesh.position[own[size_t(i)]]); });
 		const detail::CellGrid grid(box, detail::kindCell * epsilon);
 		const detail::PointsByCell sorted(
 			count, [&](int i) { return mesh.position[own[size_t(i)]]; }, grid, part.part(0, 0.1),

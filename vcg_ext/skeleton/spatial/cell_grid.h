@@ -7,7 +7,7 @@
 #ifndef VCG_MCF_CELL_GRID_H
 #define VCG_MCF_CELL_GRID_H
 
-#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/core/progress.h>
 #include <skeleton/core/ticker.h>
 
@@ -69,7 +69,7 @@ struct PointsByCell
 			std::int64_t cell;
 			int id;
 		};
-		std::vector<Entry> sorted = filledArray(size_t(count), Entry(), progress, what);
+		std::vector<Entry> sorted = filledArray(size_t(count), Entry(), progress);
 		std::vector<Entry> entries;
 		entries.reserve(size_t(count));
 		reportedLoop(count, progress.part(0, 0.2), what, [&](int i) {

@@ -68,8 +68,8 @@ public:
 			vertexCount(int(vertices.size())),
 			tree(samples(vertices, spacing, progress.part(0, 0.3)), progress.part(0.3, 1))
 	{
-		detail::reportedLoop(int(vertices.size()), progress.part(1, 1), sorting,
-			[&](int i) { box.Add(surface.position[vertices[i]]); });
+		detail::cancellableLoop(
+			int(vertices.size()), progress, [&](int i) { box.Add(surface.position[vertices[i]]); });
 	}
 
 	/**
@@ -117,11 +117,11 @@ public:
 
 	/// The places of the vertices among those given at the beginning, in an order in which neighbours are
 	/// near each other. @throws Cancelled
-	std::vector<int> vertexOrder(const Progress& progress = Progress()) const
+	std::vector<int> vertexOrder(const Cancellation& cancel = Cancellation()) const
 	{
 		std::vector<int> order;
 		order.reserve(vertexCount);
-		detail::reportedLoop(tree.size(), progress, sorting, [&](int slot) {
+		detail::cancellableLoop(tree.size(), cancel, [&](int slot) {
 			if (const int sample = tree.order()[slot]; sample < vertexCount)
 				order.push_back(sample);
 		});

@@ -12,7 +12,7 @@
 #include "point_tree.h"
 
 #include <skeleton/core/progress.h>
-#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/core/ticker.h>
 #include <skeleton/mesh/surface_mesh.h>
 
@@ -48,13 +48,13 @@ public:
 		const char* const what = "Sorting the surface";
 		sortFaces(tree.order(), progress.part(0, 0.5), what);
 		const Progress ofBoxes = progress.part(0.5, 1);
-		const Box3d all = mesh.bounds(ofBoxes.part(0, 0));
+		const Box3d all = mesh.bounds(ofBoxes);
 		origin = all.Center();
 		slack = FourBoxes::slack(all.Diag());
 		double longest = 0;
 		const auto four = [](size_t count) { return (count + 3) / 4; };
-		std::vector<Box3d> boxes = detail::filledArray(four(faces.size()), Box3d(), ofBoxes, what);
-		levels.push_back(detail::filledArray(boxes.size(), FourBoxes(), ofBoxes, what));
+		std::vector<Box3d> boxes = detail::filledArray(four(faces.size()), Box3d(), ofBoxes);
+		levels.push_back(detail::filledArray(boxes.size(), FourBoxes(), ofBoxes));
 		detail::reportedLoop(int(faces.size()), ofBoxes, what, [&](int i) {
 			Box3d box;
 			for (int k = 0; k < 3; ++k) {
@@ -68,10 +68,10 @@ public:
 		});
 		largestPower = longest / 3;
 		while (boxes.size() > 1) {
-			const Progress end = progress.part(1, 1);
+			const Progress end = progress.cancelOnly();
 			std::vector<FourBoxes> level =
-				detail::filledArray(four(boxes.size()), FourBoxes(), end, what);
-			std::vector<Box3d> above = detail::filledArray(level.size(), Box3d(), end, what);
+				detail::filledArray(four(boxes.size()), FourBoxes(), end);
+			std::vector<Box3d> above = detail::filledArray(level.size(), Box3d(), end);
 			detail::reportedLoop(int(boxes.size()), end, what, [&](int i) {
 				level[i / 4].set(i % 4, boxes[i], origin);
 				above[i / 4].Add(boxes[i]);
@@ -117,20 +117,19 @@ private:
 	/// Orders the faces by the lowest place of a corner in the order of the vertices.
 	void sortFaces(const std::vector<int>& order, const Progress& progress, const char* what)
 	{
-		std::vector<int> place = detail::filledArray(order.size(), 0, progress, what);
-		detail::reportedLoop(
-			int(order.size()), progress.part(0, 0), what, [&](int i) { place[order[i]] = i; });
+		std::vector<int> place = detail::filledArray(order.size(), 0, progress);
+		detail::cancellableLoop(int(order.size()), progress, [&](int i) { place[order[i]] = i; });
 		const auto key = [&](int f) {
 			const Triangle t = mesh.triangle(f);
 			return std::min({place[t[0]], place[t[1]], place[t[2]]});
 		};
-		std::vector<int> start = detail::filledArray(order.size() + 1, 0, progress, what);
+		std::vector<int> start = detail::filledArray(order.size() + 1, 0, progress);
 		detail::reportedLoop(
 			mesh.faceSlots(), progress.part(0, 0.5), what, [&](int f) { ++start[key(f) + 1]; });
 		const Progress placing = progress.part(0.5, 1);
-		detail::reportedLoop(
-			int(order.size()), placing.part(0, 0), what, [&](int i) { start[i + 1] += start[i]; });
-		detail::fillReported(faces, size_t(mesh.faceSlots()), Triangle(), placing, what);
+		detail::cancellableLoop(
+			int(order.size()), placing, [&](int i) { start[i + 1] += start[i]; });
+		detail::fillArray(faces, size_t(mesh.faceSlots()), Triangle(), placing);
 		detail::reportedLoop(mesh.faceSlots(), placing, what,
 			[&](int f) { faces[start[key(f)]++] = mesh.triangle(f); });
 	}

@@ -12,7 +12,7 @@
 
 #include <skeleton/core/parallel.h>
 #include <skeleton/core/progress.h>
-#include <skeleton/core/reported_arrays.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/core/ticker.h>
 
 #include <vcg/space/box3.h>
@@ -50,8 +50,7 @@ inline std::vector<int> nearestPoints(const std::vector<Point3d>& points,
 	const char* const what = "Finding the nearest points";
 	Box3d box;
 	for (const std::vector<Point3d>* some : {&points, &queries})
-		detail::reportedLoop(
-			int(some->size()), progress.part(0, 0), what, [&](int i) { box.Add((*some)[i]); });
+		detail::cancellableLoop(int(some->size()), progress, [&](int i) { box.Add((*some)[i]); });
 	const detail::CellGrid grid(box, cellOfSpacing * spacing);
 	const auto sorted = [&](const std::vector<Point3d>& some, const Progress& ofSorting) {
 		return detail::PointsByCell(
@@ -68,8 +67,7 @@ inline std::vector<int> nearestPoints(const std::vector<Point3d>& points,
 		int id;
 	};
 
-	std::vector<int> result =
-		detail::filledArray(queries.size(), -1, progress.part(0.2, 0.2), what);
+	std::vector<int> result = detail::filledArray(queries.size(), -1, progress);
 	const auto blockOfCells = [&](int begin, int end) {
 		std::array<std::int64_t, 9> row;
 		std::array<size_t, 9> next;

@@ -46,7 +46,7 @@ public:
 		Box3d box;
 		std::vector<Sample> samples;
 		samples.reserve(points.size());
-		detail::reportedLoop(int(points.size()), progress.part(0, 0), sorting, [&](int i) {
+		detail::cancellableLoop(int(points.size()), progress, [&](int i) {
 			samples.push_back({points[i], i});
 			box.Add(points[i]);
 		});
