@@ -72,6 +72,7 @@ Results run(FilterRun& run)
 	const SurfaceLayer& read = solid.surface;
 	logNotes(run, read);
 	mcf::SurfaceInput surfaceInput {read.mesh, selectionToHold(run, read)};
+	surfaceInput.hollow = solid.report.leftOut.hollow;
 	if (!parameters.resample && !solid.isRepaired())
 		surfaceInput.poles = readPoles(run.layer(), read, run.progress.cancelOnly());
 	if (surfaceInput.poles)

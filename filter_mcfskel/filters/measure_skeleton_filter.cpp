@@ -6,8 +6,10 @@
 #include "skeletons.h"
 
 #include <skeleton/measures.h>
+#include <skeleton/solid.h>
 
 #include <algorithm>
+#include <optional>
 
 namespace mcfskel {
 
@@ -19,9 +21,16 @@ Results run(FilterRun& run)
 {
 	const CurveLayer curve = skeletonOn(run, run.layer());
 	const SkeletonSurface surface = requireSurface(run, curve, run.progress.part(0, 0.1));
-	const mcf::SkeletonMeasures m =
-		mcf::skeletonMeasures(curve.skeleton, *surface.surface.mesh, {}, run.progress.part(0.1, 1));
+	int cavities = 0;
+	const std::optional<mcf::SurfaceMesh> hollow = mcf::withCavitiesInward(
+		*surface.surface.mesh, surface.surface.turned, cavities, run.progress.part(0.1, 0.2));
+	const mcf::SkeletonMeasures m = mcf::skeletonMeasures(
+		curve.skeleton, hollow ? *hollow : *surface.surface.mesh, {}, run.progress.part(0.2, 1));
 	const auto& distance = m.nodeMedialDistance;
+	if (cavities > 0)
+		run.log(
+			QString("The surface has %1, which count as outside.")
+				.arg(cavities == 1 ? QString("a cavity") : QString("%1 cavities").arg(cavities)));
 	Results results = curveResults(curve.skeleton);
 	results.merge(Results {
 		{"inside_fraction", m.insideFraction},

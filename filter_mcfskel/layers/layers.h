@@ -38,6 +38,8 @@ struct SurfaceLayer
 	std::shared_ptr<const std::vector<int>> vertexOfSlot;
 	/// What had to be repaired, for the log.
 	std::vector<std::string> notes;
+	/// For each connected component whether it was given inside out; empty if all or none of them were.
+	std::vector<char> turned = {};
 };
 
 /// Which layer a stage or skeleton comes from.

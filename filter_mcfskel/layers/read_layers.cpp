@@ -150,7 +150,7 @@ SurfaceLayer surfaceLayer(mcf::CheckedSurface&& checked, const std::vector<int>&
 			vertexOfSlot->push_back(point < 0 ? -1 : checked.vertexOfInput[size_t(point)]);
 		});
 	return {std::make_shared<const mcf::SurfaceMesh>(std::move(checked.mesh)), vertexOfSlot,
-		std::move(checked.notes)};
+		std::move(checked.notes), std::move(checked.turned)};
 }
 
 } // namespace
@@ -172,7 +172,8 @@ SolidLayer readSolid(
 		if (!(choices.minComponent > 0))
 			return same;
 		mcf::CheckedSurface pieces {*known->mesh, *known->vertexOfSlot, {}, known->notes};
-		same.report.leftOut = mcf::keepSolidPieces(pieces, choices.minComponent, false, progress);
+		same.report.leftOut =
+			mcf::keepSolidPieces(pieces, choices.minComponent, mcf::Cavities::Kept, progress);
 		if (same.isRepaired())
 			same.surface = {std::make_shared<const mcf::SurfaceMesh>(std::move(pieces.mesh)),
 				std::make_shared<const std::vector<int>>(std::move(pieces.vertexOfInput)),

@@ -5,9 +5,10 @@
 
 Lengths are in percent of the mesh's bounding box diagonal; the skeleton is sampled at 0.1 %.
 
-  topology        components, cycles (E - V + components), genus of the mesh; a right skeleton has
+  topology        components, cycles (E - V + components), genus of the mesh, a surface that bounds a void
+                  (turned inward, in a body) being no component of its own; a right skeleton has
                   one component per component of the mesh and as many cycles as the genus
-  inside          fraction of the skeleton's length inside the mesh (winding number)
+  inside          fraction of the skeleton's length inside the mesh (winding number): a void is outside
   medial          mean distance of the skeleton to the medial axis, here the centres of maximal
                   inscribed balls whose two contacts are seen under at least 60 degrees
   reconstruction  mean distance of the surface to the union of the balls that are centred on the
@@ -112,10 +113,14 @@ class Shape:
         self.normals = np.array(mesh.face_normals)
         self.vertex_normals = np.array(mesh.vertex_normals)
         self.areas = np.array(mesh.area_faces)
-        self.components = len(trimesh.graph.connected_components(mesh.face_adjacency))
+        parts = trimesh.graph.connected_components(mesh.face_adjacency)
+        corners = mesh.triangles - self.origin
+        sixfold = np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))
+        self.voids = sum(bool(sixfold[part].sum() < 0) for part in parts)
+        self.components = len(parts) - self.voids
         edges = len(mesh.edges_unique)
         referenced = len(np.unique(self.faces))
-        self.genus = self.components - (referenced - edges + len(self.faces)) // 2
+        self.genus = len(parts) - (referenced - edges + len(self.faces)) // 2
         self._tree = igl.AABB()
         self._tree.init(self.vertices, self.faces)
 

@@ -279,14 +279,32 @@ void addSkeleton(const mcf::Skeletonization& result, const Options& options, ben
 		.add("terminals", counts.terminals)
 		.add("junctions", counts.junctions)
 		.add("skeleton_length", counts.length);
-	if (result.sheets)
-		report.add("sheet_faces", curve.faces.size());
+	if (result.sheets) {
+		const mcf::BettiNumbers b = result.sheets->skeleton.betti();
+		report.add("sheet_faces", curve.faces.size())
+			.add("sheets", result.sheets->sheets)
+			.add("sheets_given_up", result.sheets->givenUp)
+			.add("b0", b.b0)
+			.add("b1", b.b1)
+			.add("b2", b.b2);
+	}
 	if (!options.significance.empty())
 		bench::writeNumbers(result.curve.significance, options.significance);
 	if (!options.stage.empty())
 		bench::writeMesh(stage.mesh, options.stage);
 	if (!options.skeleton.empty())
 		bench::writeObj(curve, options.skeleton);
+}
+
+/// What the notes say of cavities, which a user has to know: the skeleton is not that of the solid.
+void warnOfCavities(const mcf::Skeletonization& result)
+{
+	const mcf::LeftOutPieces& leftOut = result.solid.leftOut;
+	if (!leftOut.hollow)
+		return;
+	for (const std::string& note : leftOut.notes())
+		std::cerr << note << '\n';
+	std::cerr << 100 * result.inCavities << " % of the skeleton lies in cavities.\n";
 }
 
 void run(const Options& options)
@@ -334,12 +352,14 @@ void run(const Options& options)
 	else {
 		const mcf::Skeletonization result = mcf::skeletonize(
 			soup.points, soup.triangles, parameters, progress, observer, options.refinement);
+		if (!options.verbose)
+			warnOfCavities(result);
 		if (parameters.resample)
 			report.add("noise", result.noise.level);
 		addSolid(result.solid);
 		addSurface(*result.surface, options, report);
 		addSkeleton(result, options, report);
-		report.add("bridges", result.bridges.count);
+		report.add("bridges", result.bridges.count).add("in_cavities", result.inCavities);
 	}
 	if (options.progressGaps)
 		report.add("longest_silence_ms", listener.longestMs())

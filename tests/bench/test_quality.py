@@ -117,6 +117,35 @@ def test_a_ring_in_a_torus_has_its_one_cycle(torus):
     assert (cut["cycles"], cut["tips"]) == (0, 2)
 
 
+def inward(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
+    mesh.invert()
+    return mesh
+
+
+def test_a_void_is_outside():
+    hollow = trimesh.util.concatenate([
+        trimesh.creation.capsule(height=6.0, radius=1.0, count=[48, 48]),
+        inward(trimesh.creation.capsule(height=3.0, radius=0.5, count=[48, 48]))])
+    hollow.apply_translation(-hollow.bounds.mean(axis=0))
+    shape = Shape(hollow)
+    assert (shape.components, shape.voids, shape.genus) == (1, 1, 0)
+    axis = shape.medial_axis(SAMPLES)
+    assert measure(shape, axis, chain(AXIS))["inside"] == pytest.approx(1 / 3, abs=0.01)
+    assert measure(shape, axis, chain(AXIS + [0.75, 0, 0]))["medial"] < 3
+
+
+def test_voids_of_nested_shells_and_of_a_torus():
+    ball = trimesh.creation.icosphere
+    nested = Shape(trimesh.util.concatenate(
+        [ball(3, 1.0), inward(ball(3, 0.7)), ball(3, 0.5), inward(ball(3, 0.25))]))
+    assert (nested.components, nested.voids, nested.genus) == (2, 2, 0)
+    along = np.array([[0.85, 0, 0], [0.6, 0, 0], [0.4, 0, 0], [0.1, 0, 0]])
+    assert nested.contains((along - nested.origin) / nested.diagonal).tolist() == [True, False, True, False]
+    ring = Shape(trimesh.util.concatenate([
+        trimesh.creation.torus(1.0, 0.4), inward(trimesh.creation.torus(1.0, 0.2))]))
+    assert (ring.components, ring.voids, ring.genus) == (1, 1, 2)
+
+
 def test_measures_do_not_depend_on_size_and_place(capsule):
     shape, _ = capsule
     mesh = trimesh.Trimesh(shape.vertices * 1e5 + [7e5, 0.0, 0.0], shape.faces, process=False)

@@ -145,6 +145,24 @@ class TestSameBits:
             "check", "resample", "poles", "contraction", "conversion", "refine"}
 
 
+def test_command_line_warns_of_cavities(command_line, tmp_path):
+    """Without --verbose too: the skeleton is not that of the solid."""
+    lines = (MESHES / "capsule.off").read_text().split("\n")
+    vertices, faces = (int(word) for word in lines[1].split()[:2])
+    rows = [line.split() for line in lines[2:2 + vertices + faces]]
+    inner = [" ".join(str(0.4 * float(x)) for x in row) for row in rows[:vertices]]
+    turned = [f"3 {int(c) + vertices} {int(b) + vertices} {int(a) + vertices}" for _, a, b, c in rows[vertices:]]
+    hollow = tmp_path / "hollow.off"
+    hollow.write_text("\n".join(["OFF", f"{2 * vertices} {2 * faces} 0", *lines[2:2 + vertices], *inner,
+                                 *lines[2 + vertices:2 + vertices + faces], *turned]) + "\n")
+    done = subprocess.run([command_line, hollow], capture_output=True, text=True, timeout=600, check=True)
+    report = json.loads(done.stdout)
+    assert 0.3 < report["in_cavities"] < 0.7 and report["pieces_left_out"] == 1
+    assert "a cavity" in done.stderr and "% of the skeleton lies in cavities" in done.stderr
+    assert subprocess.run([command_line, MESHES / "capsule.off"], capture_output=True, text=True, timeout=600,
+                          check=True).stderr == ""
+
+
 class TestFoundByCMake:
     def test_forces_no_warnings_on_its_users(self, examples):
         commands = json.loads((examples / "compile_commands.json").read_text())

@@ -151,6 +151,9 @@ def test_no_curve_in_a_cavity():
     results = layers.apply_filter(FULL, resample=False)
     assert (results["components"], results["pieces_left_out"]) == (1, 1)
     assert "mesh_0_solid" in labels(layers)
+    # The measures take it as outside.
+    measured = layers.apply_filter("compute_skeleton_measures_mcf", surface=0)
+    assert 0.3 < measured["inside_fraction"] < 0.7
     layers = document(hollow)
     assert layers.apply_filter(FULL, repair="off", resample=False)["components"] == 2
 

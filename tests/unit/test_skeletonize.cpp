@@ -300,6 +300,36 @@ TEST(Skeletonize, PlacesNoCurveInACavity)
 	EXPECT_GE(result.node.front(), 0);
 }
 
+TEST(Skeletonize, SaysHowMuchOfTheCurveLiesInACavity)
+{
+	// The axis of a capsule of half length 1: what is within the cavity, 0.4 as long, is not the solid's.
+	const shapes::Soup hollow = shapes::joined(
+		{shapes::capsule(), shapes::insideOut(shapes::scaled(shapes::capsule(), 0.4))});
+	std::vector<std::string> notes;
+	Observer observer;
+	observer.onNote = [&](const std::string& note) { notes.push_back(note); };
+	const Skeletonization result =
+		skeletonize(hollow.points, hollow.triangles, coarse(), Progress(), observer);
+	EXPECT_GT(result.inCavities, 0.3);
+	EXPECT_LT(result.inCavities, 0.7);
+	const auto said = [&](const char* words) {
+		return std::count_if(notes.begin(), notes.end(),
+			[&](const std::string& note) { return note.find(words) != std::string::npos; });
+	};
+	EXPECT_EQ(said("a cavity"), 1);
+	EXPECT_EQ(said("lies in cavities"), 1);
+
+	// A cavity beside the axis is in nobody's way.
+	const shapes::Soup aside = shapes::joined({shapes::capsule(),
+		shapes::insideOut(shapes::moved(shapes::sphere(2, 0.03), {0, 0.25, 0}))});
+	notes.clear();
+	const Skeletonization clear =
+		skeletonize(aside.points, aside.triangles, coarse(), Progress(), observer);
+	EXPECT_EQ(clear.inCavities, 0);
+	EXPECT_EQ(said("a cavity"), 1);
+	EXPECT_EQ(said("lies in cavities"), 0);
+}
+
 TEST(Skeletonize, SaysWhenItHasNotConverged)
 {
 	Observer observer;

@@ -166,7 +166,8 @@ public:
 			};
 		}
 		const mcf::Skeletonization result =
-			mcf::skeletonize({read.mesh, read.held}, parameters, progress.part(0.02, 1), observer);
+			mcf::skeletonize({read.mesh, read.held, nullptr, read.hollow}, parameters,
+				progress.part(0.02, 1), observer);
 		FillSkeleton(skeleton, result.curve, result.sheets);
 		WriteNodes(surface, read.vertexOfSlot, result.node);
 	}
@@ -317,14 +318,17 @@ private:
 		std::vector<int> vertexOfSlot;
 		/// 1 for the vertices that are held; empty if there are none.
 		std::vector<char> held;
+		/// With its cavities; null if there are none.
+		std::shared_ptr<const mcf::SurfaceMesh> hollow;
 
 		Surface(const MeshType& surface, const Params& params, const mcf::Progress& progress)
 		{
 			const mcf::TriangleSoup soup = mcf::readTriangles(surface, progress.part(0, 0.1));
-			mcf::CheckedSurface checked = mcf::solidSurface(
+			mcf::SolidSurface solid = mcf::solidSurface(
 				mcf::roundedCoordinates(soup.points, progress.part(0.1, 0.2)), soup.triangles,
-				{params.repair, params.min_component, true}, progress.part(0.2, 1))
-											  .surface;
+				{params.repair, params.min_component, true}, progress.part(0.2, 1));
+			hollow = solid.report.leftOut.hollow;
+			mcf::CheckedSurface& checked = solid.surface;
 			mesh = std::make_shared<const mcf::SurfaceMesh>(std::move(checked.mesh));
 			vertexOfSlot.reserve(soup.pointOfSlot.size());
 			for (int point : soup.pointOfSlot)

@@ -79,6 +79,9 @@ struct SurfaceInput
 	std::vector<char> held = {};
 	/// The medial poles of all vertices; null: they are computed. Of no use if the surface is resampled.
 	std::shared_ptr<const PoleSet> poles = nullptr;
+	/// The surface with cavities that are not in `mesh`, or not as such, see LeftOutPieces::hollow; null if there are
+	/// none.
+	std::shared_ptr<const SurfaceMesh> hollow = nullptr;
 };
 
 /// What skeletonize() returns.
@@ -106,6 +109,8 @@ struct Skeletonization
 	RefineReport refinement;
 	/// What was done to the triangles to make them those of a solid.
 	SolidReport solid;
+	/// The part of the skeleton that lies in cavities, see partOutside().
+	double inCavities = 0;
 	/// Between the skeletons of pieces, where they were to be joined.
 	Bridges bridges;
 	PhaseSeconds seconds;
@@ -432,6 +437,17 @@ inline Skeletonization skeletonize(const SurfaceInput& input, const Parameters& 
 		: detail::skeletonizeThin(input, given, progress, observer, refinement);
 	note(result.cut.text());
 	note(result.refinement.text());
+	if (input.hollow) {
+		CurveSkeleton lines = result.curve;
+		if (result.sheets) {
+			lines.position = result.sheets->skeleton.position;
+			lines.edges = result.sheets->skeleton.edges;
+		}
+		result.inCavities = partOutside(lines, *input.hollow, progress.part(1, 1));
+		if (result.inCavities > 0)
+			note(detail::sentence(2, 100 * result.inCavities,
+				" % of the skeleton lies in cavities, outside the solid."));
+	}
 	if (given.join && result.sheets)
 		note("The pieces are not joined: that is for curves without sheets.");
 	else if (given.join) {
@@ -467,7 +483,8 @@ inline Skeletonization skeletonize(const std::vector<Point3d>& points,
 			observer.onNote(text);
 	const double seconds = clock.end(Phase::Check);
 
-	const SurfaceInput input {std::make_shared<const SurfaceMesh>(std::move(checked.mesh))};
+	SurfaceInput input {std::make_shared<const SurfaceMesh>(std::move(checked.mesh))};
+	input.hollow = solid.report.leftOut.hollow;
 	Skeletonization result =
 		skeletonize(input, parameters, progress.part(0.02, 1), observer, refinement);
 	result.seconds.check = seconds;

@@ -55,6 +55,16 @@ TEST(SkeletonMeasures, OfACapsulesAxisArePerfect)
 		EXPECT_NEAR(d, 1, 0.005);
 }
 
+TEST(SkeletonMeasures, ACavityThatIsTurnedInwardIsOutside)
+{
+	const shapes::Soup hollow =
+		shapes::joined({shapes::capsule(6, 1, 64), shapes::insideOut(shapes::capsule(3, 0.5, 32))});
+	const SkeletonMeasures m = measured(axis(), hollow.mesh());
+	// The cavity reaches from -2 to 2 along the axis, which reaches from -3 to 3.
+	EXPECT_NEAR(m.insideFraction, 1.0 / 3, 0.01);
+	EXPECT_NEAR(m.outDepthMax, 0.5 / capsuleDiagonal, 0.003);
+}
+
 TEST(SkeletonMeasures, MovedAsideByHalfTheRadius)
 {
 	const SkeletonMeasures m = measured(axis({0, 0.5, 0}), capsule());

@@ -9,7 +9,9 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <string>
+#include <utility>
 
 using namespace vcg::tri::mcf;
 
@@ -60,6 +62,92 @@ TEST(SolidPieces, ACavityOfAMendedBodyIsLeftOut)
 	EXPECT_EQ(made.report.outcome, SolidReport::Mended);
 	EXPECT_EQ(made.report.leftOut.cavities, 1);
 	EXPECT_EQ(piecesOf(made), 1);
+}
+
+/// The part of a line from a to b that is outside the solid.
+double outside(const vcg::Point3d& a, const vcg::Point3d& b, const SolidSurface& made)
+{
+	CurveSkeleton line;
+	line.position = {a, b};
+	line.edges = {{0, 1}};
+	line.radius = {0, 0};
+	return partOutside(line, *made.report.leftOut.hollow);
+}
+
+TEST(SolidPieces, ACavityIsOutsideTheSolid)
+{
+	const SolidSurface made = solid(hollowBall(), withoutCavities);
+	EXPECT_EQ(outside({0.6, 0, 0}, {0.9, 0, 0}, made), 0);
+	EXPECT_EQ(outside({-0.4, 0, 0}, {0.4, 0, 0}, made), 1);
+	EXPECT_NEAR(outside({0, 0, 0}, {0.95, 0, 0}, made), 0.5 / 0.95, 0.01);
+}
+
+TEST(SolidPieces, NestedShellsAreTwoSolidsWithACavityEach)
+{
+	const shapes::Soup soup =
+		shapes::joined({shapes::sphere(), shapes::insideOut(shapes::sphere(3, 0.7)),
+			shapes::sphere(3, 0.5), shapes::insideOut(shapes::sphere(3, 0.25))});
+	const SolidSurface made = solid(soup, withoutCavities);
+	EXPECT_EQ(made.report.leftOut.cavities, 2);
+	EXPECT_EQ(piecesOf(made), 2);
+	EXPECT_NE(made.surface.notes.back().find("2 pieces are turned"), std::string::npos);
+	EXPECT_EQ(outside({0.75, 0, 0}, {0.95, 0, 0}, made), 0);
+	EXPECT_EQ(outside({0.55, 0, 0}, {0.65, 0, 0}, made), 1);
+	EXPECT_EQ(outside({0.3, 0, 0}, {0.45, 0, 0}, made), 0);
+	EXPECT_EQ(outside({-0.2, 0, 0}, {0.2, 0, 0}, made), 1);
+}
+
+TEST(SolidPieces, ATorusMayHaveCavitiesOfEitherGenus)
+{
+	const shapes::Soup ringInside =
+		shapes::joined({shapes::torus(1, 0.4), shapes::insideOut(shapes::torus(1, 0.2))});
+	const shapes::Soup ballsInside = shapes::joined(
+		{shapes::torus(1, 0.4), shapes::insideOut(shapes::moved(shapes::sphere(3, 0.2), {1, 0, 0})),
+			shapes::insideOut(shapes::moved(shapes::sphere(3, 0.2), {-1, 0, 0}))});
+	for (const auto& [soup, cavities] : {std::pair(ringInside, 1), std::pair(ballsInside, 2)}) {
+		const SolidSurface made = solid(soup, withoutCavities);
+		EXPECT_EQ(made.report.leftOut.cavities, cavities);
+		EXPECT_EQ(piecesOf(made), 1);
+		EXPECT_EQ(outside({0.95, 0, 0}, {1.05, 0, 0}, made), 1);
+		EXPECT_EQ(outside({0.65, 0, 0}, {0.75, 0, 0}, made), 0);
+	}
+}
+
+TEST(SolidPieces, ACavityThatStaysWithoutRepairIsSaid)
+{
+	const SolidSurface made = solid(hollowBall(), SolidChoices(Repair::Off, 0, true));
+	EXPECT_EQ(made.report.leftOut.cavitiesKept, 1);
+	EXPECT_FALSE(made.report.leftOut.any());
+	ASSERT_TRUE(made.report.leftOut.hollow);
+	EXPECT_NE(made.surface.notes.back().find("Without repair"), std::string::npos);
+}
+
+TEST(SolidPieces, ACavityOfWhatIsWrappedIsSaid)
+{
+	// Another ball runs into the shell, too deep for the surface to be left as it is.
+	const shapes::Soup soup =
+		shapes::joined({hollowBall(), shapes::moved(shapes::sphere(3, 0.6), {1.1, 0, 0})});
+	const SolidSurface made = solid(soup, withoutCavities);
+	EXPECT_EQ(made.report.outcome, SolidReport::Wrapped);
+	EXPECT_EQ(made.report.leftOut.cavities, 1);
+	EXPECT_NE(made.surface.notes.back().find("cavity"), std::string::npos);
+}
+
+TEST(SolidPieces, CavitiesAreTurnedInward)
+{
+	const shapes::Soup soup = hollowBall();
+	const CheckedSurface checked = checkedSurface(soup.points, soup.triangles);
+	int count = 0;
+	const std::optional<SurfaceMesh> hollow =
+		withCavitiesInward(checked.mesh, checked.turned, count);
+	ASSERT_TRUE(hollow);
+	EXPECT_EQ(count, 1);
+	const double ball = shapes::sphere().mesh().volume();
+	EXPECT_NEAR(hollow->volume(), ball * (1 - 0.125), 1e-6);
+	const shapes::Soup full = shapes::joined({shapes::sphere(), shapes::sphere(3, 0.5)});
+	const CheckedSurface bodies = checkedSurface(full.points, full.triangles);
+	EXPECT_FALSE(withCavitiesInward(bodies.mesh, bodies.turned, count));
+	EXPECT_EQ(count, 0);
 }
 
 TEST(SolidPieces, WhatIsInsideACavityIsABody)

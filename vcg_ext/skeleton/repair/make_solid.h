@@ -30,6 +30,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -46,7 +47,7 @@ struct SolidReport
 
 	Outcome outcome = Sound;
 	MendReport mended;
-	/// Pieces of the wrap that were left out: specks, and cavities.
+	/// Pieces of the wrap that were left out as specks.
 	int piecesDropped = 0;
 	/// Those that were cut, see cutHandles().
 	int handles = 0;
@@ -104,7 +105,7 @@ struct SolidChoices
 	Repair repair;
 	/// Pieces with a smaller part of the largest one's volume are left out; 0: none are.
 	double minComponent;
-	/// Cavities are left out, but where `repair` is Off: there is no skeleton in them.
+	/// Cavities are left out: there is no skeleton in them. Where `repair` is Off they stay, and a note says so.
 	bool withoutCavities;
 
 	SolidChoices(
@@ -333,8 +334,10 @@ inline Distances distances(const std::vector<Point3d>& from, size_t all,
 	return result;
 }
 
-/// Leaves out cavities and what is no larger than the lattice can tell from nothing. @return how many.
-inline int dropSmallPieces(WrappedSurface& surface, double spacing, const Progress& progress)
+/// Leaves out what is no larger than the lattice can tell from nothing, and then cavities.
+/// @return how many are small; the cavities, and the surface with them.
+inline std::pair<int, LeftOutPieces> dropSmallPieces(
+	WrappedSurface& surface, double spacing, const Progress& progress)
 {
 	const SurfaceMesh mesh(surface.points, surface.triangles, progress.part(0, 0.5));
 	int count = 0;
@@ -352,7 +355,14 @@ inline int dropSmallPieces(WrappedSurface& surface, double spacing, const Progre
 		if (volume[size_t(component[size_t(t[0])])] >= least)
 			kept.push_back(t);
 	surface.triangles = std::move(kept);
-	return int(std::count_if(volume.begin(), volume.end(), [&](double v) { return v < least; }));
+	LeftOutPieces leftOut;
+	leftOut.cavities =
+		int(std::count_if(volume.begin(), volume.end(), [&](double v) { return v <= -least; }));
+	if (leftOut.cavities > 0)
+		leftOut.hollow = std::make_shared<const SurfaceMesh>(mesh.copied(progress.part(1, 1)));
+	return {int(std::count_if(
+				volume.begin(), volume.end(), [&](double v) { return std::abs(v) < least; })),
+		leftOut};
 }
 
 /// Makes the solid; one object for each input.
@@ -380,9 +390,16 @@ public:
 			return std::move(solid);
 		if (!error) {
 			if (repair == Repair::Auto
-				&& isToBeWrapped(solid.surface.mesh, solid.surface.notes, progress.part(0.3, 0.4)))
+				&& isToBeWrapped(
+					solid.surface.mesh, solid.surface.notes, progress.part(0.3, 0.4))) {
+				// The wrap is that of all pieces turned outward.
+				LeftOutPieces& leftOut = solid.report.leftOut;
+				if (std::optional<SurfaceMesh> hollow = withCavitiesInward(solid.surface.mesh,
+						solid.surface.turned, leftOut.cavities, progress.part(0.4, 0.4)))
+					leftOut.hollow = std::make_shared<const SurfaceMesh>(*std::move(hollow));
 				wrapIt(solid.surface.mesh.position, solid.surface.mesh.triangles(), {},
 					progress.part(0.4, 1));
+			}
 			return std::move(solid);
 		}
 		MendedSurface mended = mend(points, triangles, HoleLimits(), progress.part(0.3, 0.5));
@@ -598,7 +615,11 @@ private:
 			refuse(error);
 		solid.report.outcome = SolidReport::Wrapped;
 		solid.report.spacing = spacing / box.Diag();
-		solid.report.piecesDropped = dropSmallPieces(made, spacing, progress.part(0.8, 0.85));
+		LeftOutPieces cavities;
+		std::tie(solid.report.piecesDropped, cavities) =
+			dropSmallPieces(made, spacing, progress.part(0.8, 0.85));
+		if (cavities.cavities > 0)
+			solid.report.leftOut = std::move(cavities);
 		solid.report.handles =
 			cutHandles(made.points, made.triangles, HandleLimits(), progress.part(0.85, 0.87));
 		CheckedSurface checked = checkedSurface(
@@ -706,8 +727,17 @@ inline SolidSurface solidSurface(const std::vector<Point3d>& points,
 {
 	SolidSurface solid =
 		detail::SolidMaker(points, triangles).run(choices.repair, progress.part(0, 0.95));
-	solid.report.leftOut = keepSolidPieces(solid.surface, choices.minComponent,
-		choices.withoutCavities && choices.repair != Repair::Off, progress.part(0.95, 1));
+	const Cavities cavities = !choices.withoutCavities ? Cavities::Kept
+		: choices.repair == Repair::Off                ? Cavities::Reported
+													   : Cavities::LeftOut;
+	const LeftOutPieces ofWrap = std::exchange(solid.report.leftOut, {});
+	for (std::string& note : ofWrap.notes())
+		solid.surface.notes.push_back(std::move(note));
+	LeftOutPieces& leftOut = solid.report.leftOut =
+		keepSolidPieces(solid.surface, choices.minComponent, cavities, progress.part(0.95, 1));
+	leftOut.cavities += ofWrap.cavities;
+	if (!leftOut.hollow)
+		leftOut.hollow = ofWrap.hollow;
 	return solid;
 }
 

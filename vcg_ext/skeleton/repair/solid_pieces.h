@@ -12,6 +12,8 @@
 #include <skeleton/core/notes.h>
 #include <skeleton/core/progress.h>
 #include <skeleton/core/ticker.h>
+#include <skeleton/graph/closest_curve.h>
+#include <skeleton/graph/curve_skeleton.h>
 #include <skeleton/input/check_input.h>
 #include <skeleton/mesh/components.h>
 #include <skeleton/mesh/surface_mesh.h>
@@ -23,17 +25,30 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace vcg::tri::mcf {
 
-/// What keepSolidPieces() has left out.
+/// What becomes of cavities, closed pieces inside a body and turned against it.
+enum class Cavities {
+	Kept,     ///< they stay as bodies of their own
+	Reported, ///< the same, and a note says so
+	LeftOut
+};
+
+/// What keepSolidPieces() has found and left out.
 struct LeftOutPieces
 {
 	int small = 0;
 	int cavities = 0;
+	/// Those that stay as bodies of their own.
+	int cavitiesKept = 0;
+	/// The whole surface with its cavities turned inward, the boundary of the paper's solid O (Sec. 4); null where
+	/// there is none.
+	std::shared_ptr<const SurfaceMesh> hollow;
 
 	bool any() const { return small > 0 || cavities > 0; }
 	/// One sentence each for the log.
@@ -41,10 +56,17 @@ struct LeftOutPieces
 	{
 		std::vector<std::string> list;
 		if (cavities > 0)
-			list.push_back(detail::sentence(6, cavities,
-				cavities == 1 ? " piece is" : " pieces are",
-				" turned against the body around: a cavity. It gets no skeleton, and the body is taken as if it "
-				"were full."));
+			list.push_back(
+				cavities == 1 ? std::string(
+					"1 piece is turned against the body around: a cavity. It gets no skeleton, and the body is taken as if it were full, so that a curve may run in the cavity.")
+							  : std::to_string(cavities)
+						+ " pieces are turned against the bodies around: cavities. They get no skeleton, and the bodies are taken as if they were full, so that curves may run in the cavities.");
+		if (cavitiesKept > 0)
+			list.push_back(
+				cavitiesKept == 1 ? std::string(
+					"1 piece is turned against the body around: a cavity. Without repair it gets a skeleton as if it were a body.")
+								  : std::to_string(cavitiesKept)
+						+ " pieces are turned against the bodies around: cavities. Without repair they get skeletons as if they were bodies.");
 		if (small > 0)
 			list.push_back(detail::sentence(6, small, small == 1 ? " piece gets" : " pieces get",
 				" no skeleton, smaller than min_component beside the largest."));
@@ -142,29 +164,103 @@ inline std::vector<char> cavitiesAmong(const SurfaceMesh& mesh, const ClosedPiec
 } // namespace detail
 
 /**
+ * The part of a skeleton that lies outside a solid: of the length of its curves, or of the nodes of what has none.
+ *
+ * A point is inside where the surface winds about it at least once: in a cavity the windings of the body and of
+ * the cavity cancel out, in a body inside a cavity that body's own is left.
+ * @param boundary  closed, cavities turned inward, see LeftOutPieces::hollow.
+ * @return in [0, 1]; 0 for an empty skeleton. Complexity: O(F log F), about O(log F) for each 0.1 % of the diagonal.
+ * @throws Cancelled
+ */
+inline double partOutside(const CurveSkeleton& skeleton, const SurfaceMesh& boundary,
+	const Progress& progress = Progress())
+{
+	constexpr double spacing = 0.001; // of the diagonal
+	const std::vector<Triangle> faces = boundary.triangles(progress.part(0, 0));
+	const TriangleTree tree(boundary.position, faces, progress.part(0, 0.5));
+	const WindingNumber winding(tree, progress.part(0.5, 0.7));
+	CurveSamples samples =
+		curveSamples(skeleton, spacing * boundary.bounds(progress.part(0.7, 0.7)).Diag());
+	if (skeleton.edges.empty())
+		samples.weight.assign(samples.weight.size(), 1);
+	double all = 0, outside = 0;
+	detail::reportedLoop(
+		int(samples.position.size()), progress.part(0.7, 1), "Measuring the skeleton", [&](int i) {
+			const double weight = samples.weight[size_t(i)];
+			if (!(weight > 0))
+				return;
+			all += weight;
+			if (winding(samples.position[size_t(i)]) < 0.5)
+				outside += weight;
+		});
+	return all > 0 ? outside / all : 0;
+}
+
+/// A surface with some of its pieces turned inward. @param isTurned of each piece, see connectedComponents().
+inline SurfaceMesh withPiecesTurned(const SurfaceMesh& mesh, const std::vector<int>& piece,
+	const std::vector<char>& isTurned, const Progress& progress = Progress())
+{
+	SurfaceMesh result = mesh.copied(progress.part(0, 0.5));
+	result.turnOver(
+		[&](int v) { return isTurned[size_t(piece[size_t(v)])] != 0; }, progress.part(0.5, 1));
+	return result;
+}
+
+/**
+ * The surface of a solid with its cavities turned inward, so that what asks on which side of it a point is takes
+ * them as outside.
+ * @param count  becomes the number of cavities.
+ * @return nothing where there is none. Complexity: as keepSolidPieces(). @throws Cancelled
+ */
+inline std::optional<SurfaceMesh> withCavitiesInward(const SurfaceMesh& mesh,
+	const std::vector<char>& turned, int& count, const Progress& progress = Progress())
+{
+	count = 0;
+	if (turned.empty())
+		return std::nullopt;
+	const detail::ClosedPieces pieces(mesh, progress.part(0, 0.4));
+	const std::vector<char> cavity =
+		detail::cavitiesAmong(mesh, pieces, turned, progress.part(0.4, 0.9));
+	count = int(std::count(cavity.begin(), cavity.end(), 1));
+	if (count == 0)
+		return std::nullopt;
+	return withPiecesTurned(mesh, pieces.ofVertex, cavity, progress.part(0.9, 1));
+}
+
+/**
  * Leaves out the pieces of a surface that get no skeleton; `vertexOfInput` is then -1 for their vertices.
  *
  * A cavity is a closed piece that lies wholly inside a body and was given turned against it: see
  * CheckedSurface::turned. What is inside a cavity is a body again.
  *
  * @param least     volume, as a part of that of the largest piece, below which a piece is left out; 0: none is.
- * @param cavities  whether cavities are left out.
+ * @param cavities  what becomes of them.
  * @throws Cancelled. Complexity: O(V + F); O(F log F) for each piece in the box of another one, where some are
  *         turned against others.
  */
 inline LeftOutPieces keepSolidPieces(
-	CheckedSurface& surface, double least, bool cavities, const Progress& progress = Progress())
+	CheckedSurface& surface, double least, Cavities cavities, const Progress& progress = Progress())
 {
 	LeftOutPieces leftOut;
-	cavities = cavities && !surface.turned.empty();
-	if (!(least > 0) && !cavities)
+	const bool areSought = cavities != Cavities::Kept && !surface.turned.empty();
+	if (!(least > 0) && !areSought)
 		return leftOut;
 	SurfaceMesh& mesh = surface.mesh;
 	const detail::ClosedPieces pieces(mesh, progress.part(0, 0.3));
 	std::vector<char> drop(pieces.count(), 0);
-	if (cavities)
+	if (areSought) {
 		drop = detail::cavitiesAmong(mesh, pieces, surface.turned, progress.part(0.3, 0.8));
-	leftOut.cavities = int(std::count(drop.begin(), drop.end(), 1));
+		const int found = int(std::count(drop.begin(), drop.end(), 1));
+		if (found > 0)
+			leftOut.hollow = std::make_shared<const SurfaceMesh>(
+				withPiecesTurned(mesh, pieces.ofVertex, drop, progress.part(0.8, 0.8)));
+		if (cavities == Cavities::LeftOut)
+			leftOut.cavities = found;
+		else {
+			leftOut.cavitiesKept = found;
+			drop.assign(drop.size(), 0);
+		}
+	}
 	double largest = 0;
 	for (size_t p = 0; p < pieces.count(); ++p)
 		if (!drop[p])
@@ -174,6 +270,8 @@ inline LeftOutPieces keepSolidPieces(
 			drop[p] = 1;
 			++leftOut.small;
 		}
+	for (std::string& note : leftOut.notes())
+		surface.notes.push_back(std::move(note));
 	if (!leftOut.any())
 		return leftOut;
 
@@ -192,8 +290,6 @@ inline LeftOutPieces keepSolidPieces(
 		v = v < 0 ? -1 : number[size_t(v)];
 	mesh = SurfaceMesh(std::move(points), kept, progress.part(0.8, 1));
 	surface.turned.clear();
-	for (std::string& note : leftOut.notes())
-		surface.notes.push_back(std::move(note));
 	return leftOut;
 }
 
