@@ -27,10 +27,12 @@ import trimesh
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "scripts" / "bench"))
+sys.path.insert(0, str(ROOT / "scripts"))
 
 from curve import Curve, read_curve  # noqa: E402
 from document import fill  # noqa: E402
 from meshes import read_mesh, write_mesh  # noqa: E402
+from meshgen.thin import THIN  # noqa: E402
 from paper_figures import PALE, RED, Mesh, Panel, draw_rows  # noqa: E402
 from quality import Shape, distance_to_medial_axis, measure  # noqa: E402
 from scipy.spatial import cKDTree  # noqa: E402
@@ -60,7 +62,9 @@ SWITCHES = {
     "the curve as collapsed": (*UNREFINED, "--no-tidy"),
     "all of them: paper": ("--preset", "paper"),
 }
-QUICK_VERTICES, QUICK_AXIS, AXIS = 4_000, 8_000, 80_000
+QUICK_VERTICES, VERTICES = 4_000, 12_000  # of DS06 and ATC08 the time grows faster than the size
+QUICK_AXIS, AXIS = 8_000, 40_000
+FLAT = ("slab", "plate3", "cup", "twin_ears")  # of meshes/, in the table of steady states
 
 
 class Work:
@@ -183,6 +187,13 @@ class Reference:
         return found | measure(self.shape, self.axis, curve)
 
 
+def size_of(options: argparse.Namespace, paper: int) -> int:
+    """How many vertices a mesh gets that has so many in the paper."""
+    if options.vertices:
+        return options.vertices
+    return QUICK_VERTICES if options.quick else paper if options.paper_sizes else VERTICES
+
+
 def table_1(work: Work, shapes: dict[str, Path], options: argparse.Namespace) -> tuple[str, dict]:
     """The table, and for each shape the mesh and the curves of Fig. 8."""
     head = ["shape", "vertices", "method", "seconds", "to DS06", "of its box", "paper", "back", "to the axis", "back",
@@ -191,7 +202,7 @@ def table_1(work: Work, shapes: dict[str, Path], options: argparse.Namespace) ->
     ratios = {(of, method): [] for of in ("to", "there") for method in ("paper", "default")}
     for name, source in shapes.items():
         paper = PAPER.get(name)
-        vertices = options.vertices or (QUICK_VERTICES if options.quick else paper[1] if paper else 36_000)
+        vertices = size_of(options, paper[1] if paper else 36_000)
         even = work.run(f"{name}: resampling", source, "--resample-only", "--no-denoise", "--no-adaptive",
                         "--target-length", percent_for(source, vertices))
         mesh = Path(f"{even['path']}_surface.ply")
@@ -283,16 +294,18 @@ def figure_2(work: Work, found: dict, folder: Path, options: argparse.Namespace)
 def figure_3(work: Work, found: dict, folder: Path, options: argparse.Namespace) -> None:
     source = ROOT / "meshes/cup.off"
     even = work.run("cup: resampling", source, "--resample-only", "--no-denoise", "--no-adaptive", "--target-length",
-                    percent_for(source, options.vertices or (QUICK_VERTICES if options.quick else 20_000)))
+                    percent_for(source, size_of(options, 20_000)))
     mesh = Path(f"{even['path']}_surface.ply")
     surface = read_mesh(mesh)
     theirs = work.peer("atc08", "cup: ATC08", mesh)
     ours = work.run("cup: curve", mesh)
     sheets = work.run("cup: sheets", mesh, "--keep-sheets")
     faces, curve = with_sheets(Path(f"{sheets['path']}.obj"))
+    used, numbered = np.unique(curve[1], return_inverse=True)  # without the nodes of the sheets
+    lines = (curve[0][used], numbered.reshape(-1, 2))
     panels = [Panel("ATC08", surface, curves=[curve_of(Path(f"{theirs['path']}.obj"))]),
               Panel("default", surface, curves=[curve_of(Path(f"{ours['path']}.obj"))]),
-              Panel("keep_sheets", surface, [coloured(faces, SHEET)])]
+              Panel("keep_sheets", surface, [coloured(faces, SHEET)], curves=[lines])]
     draw_rows(folder / "figure_3.png", [(surface[0], panels, {"up": "z"})])
 
 
@@ -442,6 +455,57 @@ def switches(work: Work, options: argparse.Namespace) -> str:
                      "turning", "inside"], body)
 
 
+def flat_shapes(folder: Path, quick: bool) -> dict[str, tuple[Path, tuple[int, int, int]]]:
+    """Meshes of thin shapes with the Betti numbers of their solids."""
+    found = {}
+    for name in FLAT:
+        known = json.loads((ROOT / f"meshes/{name}.json").read_text())
+        found[name] = (ROOT / f"meshes/{name}.off", (known["components"], known["genus"], 0))
+    for name, make in THIN.items():
+        shape = make()
+        path = folder / f"{name.replace(' ', '_').replace('_%', '')}.ply"
+        if not path.exists():
+            write_mesh(path, shape.vertices, shape.faces)
+        found[name] = (path, shape.betti)
+    return dict(list(found.items())[::4]) if quick else found
+
+
+def steady_states(work: Work, options: argparse.Namespace) -> str:
+    """The meso-skeletons at which the flow stops where sheets are kept."""
+    body = []
+    for name, (mesh, right) in flat_shapes(work.folder, options.quick).items():
+        run = work.run(f"{name}: sheets", mesh, "--keep-sheets")
+        path = Path(f"{run['path']}.obj")
+
+        def judged(_: Path) -> dict:
+            shape = Shape.read(mesh)
+            axis = shape.medial_axis(QUICK_AXIS)
+            (points, faces), (_, edges) = with_sheets(path)
+            points = (points - shape.origin) / shape.diagonal
+            a, b, c = (points[faces[:, k]] for k in range(3))
+            areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+            lengths = np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)
+            at = np.vstack([points[faces].mean(axis=1), points[edges].mean(axis=1)])
+            # Where there are sheets, they are what counts.
+            weights = np.concatenate([areas, lengths * (0 if len(faces) else 1)])
+            far = distance_to_medial_axis(shape, axis, at)
+            return {"far": float((far * weights).sum() / weights.sum()), "inside": float(
+                        (shape.contains(at) * weights).sum() / weights.sum()),
+                    "walls": float(areas.sum() / (shape.areas.sum() / shape.diagonal ** 2 / 2)),
+                    "curves": float(lengths.sum())}
+
+        found = work.kept(f"{name}: steady state", ("steady", digest(path), digest(mesh)), Path(__file__), judged)
+        # What has nothing flat is contracted to a curve.
+        betti = (run.get("b0", run["components"]), run.get("b1", run["cycles"]), run.get("b2", 0))
+        sheets, given_up = run.get("sheets", 0), run.get("sheets_given_up", 0)
+        body.append([name, str(run["iterations"]), "yes" if run["converged"] else "no", " ".join(map(str, betti)),
+                     "yes" if betti == right else "no: " + " ".join(map(str, right)),
+                     str(sheets - given_up), str(given_up), f"{found['walls']:.2f}",
+                     number(found["curves"], 2), f"{100 * found['far']:.3f}", f"{found['inside']:.3f}"])
+    return markdown(["shape", "iterations", "stops", "b0 b1 b2", "right", "sheets", "given up", "area / half surface",
+                     "curves / diagonal", "to the axis %", "inside"], body)
+
+
 FIGURES = {1: figure_1, 2: figure_2, 3: figure_3, 5: figure_5, 6: figure_6, 7: figure_7, 8: figure_8}
 
 
@@ -451,7 +515,8 @@ def parse_arguments() -> argparse.Namespace:
     parser.add_argument("meshes", nargs="*", type=Path, metavar="MESH",
                         help="further shapes of Table 1; `elephant` is that of Fig. 5 and 6, `fertility` of Table 1")
     parser.add_argument("--quick", action="store_true", help="small meshes, fewer weights, in five minutes")
-    parser.add_argument("--vertices", type=int, metavar="N", help="of the meshes of Table 1 (default: the paper's)")
+    parser.add_argument("--vertices", type=int, metavar="N", help=f"of the meshes of Table 1 (default: {VERTICES})")
+    parser.add_argument("--paper-sizes", action="store_true", help="as many vertices as in the paper, which takes several times as long")
     parser.add_argument("--docs", type=Path, metavar="FOLDER",
                         help="where paper.md is, and the folder paper with the pictures (default: docs; with --quick: "
                              "the tables are printed, the pictures go to build/reproduce)")
@@ -469,14 +534,16 @@ def main() -> int:
     work = Work(options.program, folder, 1)
     shapes["letters"] = letters(folder)
     shapes |= {p.stem: p for p in options.meshes if p.stem != "elephant"}
-    work.steps = 6 * len(shapes) + (90 if options.quick else 200)
+    work.steps = 6 * len(shapes) + (96 if options.quick else 215)
     docs = options.docs or (None if options.quick else ROOT / "docs")
     pictures = docs / "paper" if docs else folder / "pictures"
     blocks = {"run": "Made by `scripts/reproduce.sh" + (" --quick" if options.quick else "")
               + (f" --vertices {options.vertices}" if options.vertices else "")
+              + (" --paper-sizes" if options.paper_sizes else "")
               + f"` on {datetime.date.today():%d %B %Y}."}
     blocks["table 1"], found = table_1(work, shapes, options)
     blocks["switches"] = switches(work, options)
+    blocks["steady states"] = steady_states(work, options)
     for n, make in FIGURES.items():
         text = make(work, found, pictures, options)
         if text:

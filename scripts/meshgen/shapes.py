@@ -8,7 +8,8 @@ import numpy as np
 
 from .fields import (Array, Field, Tube, ball, channel, cup_body, ellipsoid, holed_plate,
                      thick_rectangle, union)
-from .polygonise import box_grid, decimate, polygonise, torus_grid
+from .grids import box_grid, torus_grid
+from .polygonise import decimate, polygonise
 from .skeletons import Skeleton, skeleton_of_tubes
 
 

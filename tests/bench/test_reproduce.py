@@ -73,3 +73,19 @@ def test_rows_of_pictures(tmp_path: Path):
     assert picture.shape[0] > 2 * 300 and picture.shape[1] > 2 * 300
     red = picture[..., 0] > picture[..., 1] + 40
     assert red[: picture.shape[0] // 2].any() and not red[picture.shape[0] // 2:].any()
+
+
+@pytest.mark.parametrize("name", list(reproduce.THIN))
+def test_thin_shapes_bound_the_solids_that_they_say(name: str):
+    shape = reproduce.THIN[name]()
+    mesh = trimesh.Trimesh(shape.vertices, shape.faces, process=False)
+    assert mesh.is_watertight and mesh.is_winding_consistent and mesh.volume > 0
+    b0, b1, b2 = shape.betti
+    assert mesh.euler_number == 2 * (b0 - b1 + b2)
+    assert len(trimesh.graph.connected_components(mesh.face_adjacency)) == 1
+
+
+@pytest.mark.parametrize("percent", [1.0, 0.1])
+def test_a_plate_is_as_thick_as_it_says(percent: float):
+    shape = reproduce.THIN[f"plate {1 if percent == 1 else percent} %"]()
+    assert np.ptp(shape.vertices[:, 2]) == pytest.approx(percent / 100 * np.sqrt(2))

@@ -443,7 +443,7 @@ inline Skeletonization skeletonize(const SurfaceInput& input, const Parameters& 
 			lines.position = result.sheets->skeleton.position;
 			lines.edges = result.sheets->skeleton.edges;
 		}
-		result.inCavities = partOutside(lines, *input.hollow, progress.part(1, 1));
+		result.inCavities = partOutside(lines, *input.hollow, progress.cancelOnly());
 		if (result.inCavities > 0)
 			note(detail::sentence(2, 100 * result.inCavities,
 				" % of the skeleton lies in cavities, outside the solid."));

@@ -359,7 +359,7 @@ inline std::pair<int, LeftOutPieces> dropSmallPieces(
 	leftOut.cavities =
 		int(std::count_if(volume.begin(), volume.end(), [&](double v) { return v <= -least; }));
 	if (leftOut.cavities > 0)
-		leftOut.hollow = std::make_shared<const SurfaceMesh>(mesh.copied(progress.part(1, 1)));
+		leftOut.hollow = std::make_shared<const SurfaceMesh>(mesh.copied(progress));
 	return {int(std::count_if(
 				volume.begin(), volume.end(), [&](double v) { return std::abs(v) < least; })),
 		leftOut};
@@ -395,7 +395,7 @@ public:
 				// The wrap is that of all pieces turned outward.
 				LeftOutPieces& leftOut = solid.report.leftOut;
 				if (std::optional<SurfaceMesh> hollow = withCavitiesInward(solid.surface.mesh,
-						solid.surface.turned, leftOut.cavities, progress.part(0.4, 0.4)))
+						solid.surface.turned, leftOut.cavities, progress.cancelOnly()))
 					leftOut.hollow = std::make_shared<const SurfaceMesh>(*std::move(hollow));
 				wrapIt(solid.surface.mesh.position, solid.surface.mesh.triangles(), {},
 					progress.part(0.4, 1));

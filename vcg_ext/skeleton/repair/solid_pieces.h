@@ -176,11 +176,10 @@ inline double partOutside(const CurveSkeleton& skeleton, const SurfaceMesh& boun
 	const Progress& progress = Progress())
 {
 	constexpr double spacing = 0.001; // of the diagonal
-	const std::vector<Triangle> faces = boundary.triangles(progress.part(0, 0));
+	const std::vector<Triangle> faces = boundary.triangles(progress);
 	const TriangleTree tree(boundary.position, faces, progress.part(0, 0.5));
 	const WindingNumber winding(tree, progress.part(0.5, 0.7));
-	CurveSamples samples =
-		curveSamples(skeleton, spacing * boundary.bounds(progress.part(0.7, 0.7)).Diag());
+	CurveSamples samples = curveSamples(skeleton, spacing * boundary.bounds(progress).Diag());
 	if (skeleton.edges.empty())
 		samples.weight.assign(samples.weight.size(), 1);
 	double all = 0, outside = 0;
@@ -198,11 +197,10 @@ inline double partOutside(const CurveSkeleton& skeleton, const SurfaceMesh& boun
 
 /// A surface with some of its pieces turned inward. @param isTurned of each piece, see connectedComponents().
 inline SurfaceMesh withPiecesTurned(const SurfaceMesh& mesh, const std::vector<int>& piece,
-	const std::vector<char>& isTurned, const Progress& progress = Progress())
+	const std::vector<char>& isTurned, const Cancellation& cancel = Cancellation())
 {
-	SurfaceMesh result = mesh.copied(progress.part(0, 0.5));
-	result.turnOver(
-		[&](int v) { return isTurned[size_t(piece[size_t(v)])] != 0; }, progress.part(0.5, 1));
+	SurfaceMesh result = mesh.copied(cancel);
+	result.turnOver([&](int v) { return isTurned[size_t(piece[size_t(v)])] != 0; }, cancel);
 	return result;
 }
 
@@ -224,7 +222,7 @@ inline std::optional<SurfaceMesh> withCavitiesInward(const SurfaceMesh& mesh,
 	count = int(std::count(cavity.begin(), cavity.end(), 1));
 	if (count == 0)
 		return std::nullopt;
-	return withPiecesTurned(mesh, pieces.ofVertex, cavity, progress.part(0.9, 1));
+	return withPiecesTurned(mesh, pieces.ofVertex, cavity, progress);
 }
 
 /**
@@ -253,7 +251,7 @@ inline LeftOutPieces keepSolidPieces(
 		const int found = int(std::count(drop.begin(), drop.end(), 1));
 		if (found > 0)
 			leftOut.hollow = std::make_shared<const SurfaceMesh>(
-				withPiecesTurned(mesh, pieces.ofVertex, drop, progress.part(0.8, 0.8)));
+				withPiecesTurned(mesh, pieces.ofVertex, drop, progress));
 		if (cavities == Cavities::LeftOut)
 			leftOut.cavities = found;
 		else {
