@@ -11,7 +11,7 @@
 #include "read_mesh.h"
 
 #include <skeleton/input/check_input.h>
-#include <skeleton/flow/cotangent_weights.h>
+#include <skeleton/flow/flow_system.h>
 #include <skeleton/skeletonize.h>
 #include <skeleton/mesh/surface_rounding.h>
 
@@ -87,7 +87,8 @@ void addStages(const std::string& path)
 	add(name + "start_of_flow", out, [data, parameters] {
 		return mcf::startOfFlow(*data->run.surface, *data->run.poles, {}, parameters);
 	});
-	add(name + "laplacian", out, [data] { return mcf::cotangentLaplacian(*data->run.surface); });
+	add(name + "system", out,
+		[data, parameters] { return mcf::flowSystem(data->initial, parameters); });
 	add(name + "copy_stage", out, [data] { return mcf::Stage(data->initial); });
 	add(name + "first_step", out,
 		[data, parameters] { return mcf::step(data->initial, parameters); });

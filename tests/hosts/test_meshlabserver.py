@@ -78,7 +78,7 @@ class TestFull:
         record = json.loads((MESHES / "y_tube.json").read_text())["skeleton"]
         nodes, _ = obj_graph(full_run[0] / "skeleton.obj")
         gaps = np.linalg.norm(nodes[:, None] - np.array(record["nodes"])[None], axis=2)
-        assert gaps.min(axis=1).max() < 0.5 * np.min(record["radius"])
+        assert gaps.min(axis=1).max() < 0.15 * np.min(record["radius"])
 
     def test_radius_as_quality(self, full_run):
         record = json.loads((MESHES / "y_tube.json").read_text())["skeleton"]

@@ -61,6 +61,40 @@ def test_no_two_files_share_a_name_between_plugin_and_library() -> None:
     assert not of_library & of_plugin
 
 
+def test_each_filter_is_where_contributing_says() -> None:
+    plugin = ROOT / "filter_mcfskel"
+    listed, catalogue = (plugin / "filters" / "all_filters.h").read_text(), (plugin / "filters.cpp").read_text()
+    built, names = (plugin / "CMakeLists.txt").read_text(), (ROOT / "tests" / "filter_names.py").read_text()
+    pages = "".join(p.read_text() for p in (ROOT / "docs").glob("*.md"))
+    files = sorted((plugin / "filters").glob("*_filter.cpp"))
+    assert len(files) >= 18
+    for file in files:
+        text = file.read_text()
+        functions = [f for f in re.findall(r"^FilterSpec (\w+)\(\)", text, re.M)]
+        assert len(functions) == 1, file.name
+        assert f"FilterSpec {functions[0]}();" in listed and f"{functions[0]}()," in catalogue, functions[0]
+        assert f"filters/{file.name}" in built
+        python_name = re.search(r'"(\w+_mcf)"', text)
+        assert python_name and python_name[1] in names and f"`{python_name[1]}`" in pages, file.name
+
+
+def test_each_header_has_a_unit_test_of_its_name_or_a_reason() -> None:
+    unit = ROOT / "tests" / "unit"
+    named = {p.stem.removeprefix("test_") for p in unit.rglob("test_*.cpp")}
+    without = {str(p.relative_to(LIBRARY)) for p in LIBRARY.rglob("*.h") if p.stem not in named}
+    rows = re.findall(r"^\| `([\w/]+\.h)` \| (.+?) \| (.+?) \|$", (unit / "README.md").read_text(), re.M)
+    assert {header for header, _, _ in rows} == without
+    for header, tests, _ in rows:
+        for test in re.findall(r"`([\w/]+\.cpp)`", tests):
+            assert (unit / test).is_file(), f"{header}: {test}"
+
+
+def test_every_unit_test_is_built() -> None:
+    listed = re.findall(r"\bunit/[\w/]+\.cpp", (ROOT / "tests" / "CMakeLists.txt").read_text())
+    there = [str(p.relative_to(ROOT / "tests")) for p in (ROOT / "tests" / "unit").rglob("test_*.cpp")]
+    assert sorted(listed) == sorted(there)
+
+
 @pytest.mark.parametrize("workflow", sorted((ROOT / ".github" / "workflows").glob("*.yml")), ids=lambda p: p.name)
 def test_workflows_can_be_read_and_call_scripts_that_are_there(workflow: Path) -> None:
     jobs = yaml.safe_load(workflow.read_text())["jobs"]

@@ -10,6 +10,7 @@
 #include "mesh_checks.h"
 
 #include <skeleton/mesh/breadth_first_numbering.h>
+#include <skeleton/solver/symmetric_csr.h>
 #include <skeleton/flow/cotangent_weights.h>
 #include <skeleton/flow/fill_reducing_order.h>
 
@@ -24,6 +25,44 @@ namespace systems {
 using namespace vcg::tri::mcf;
 using vcg::Point3d;
 using Sparse = Eigen::SparseMatrix<double>;
+
+/// cotangentWeight() of each half-edge's edge. Complexity: O(F).
+inline std::vector<double> cotangentWeights(const SurfaceMesh& mesh)
+{
+	std::vector<double> cotangent(mesh.halfEdgeSlots(), 0), weight(mesh.halfEdgeSlots(), 0);
+	for (int f = 0; f < mesh.faceSlots(); ++f) {
+		if (!mesh.isFace(f))
+			continue;
+		const TriangleMeasures measures = measureTriangle(mesh, f);
+		std::copy(measures.cotangent.begin(), measures.cotangent.end(), &cotangent[3 * size_t(f)]);
+	}
+	for (int h = 0; h < mesh.halfEdgeSlots(); ++h)
+		if (mesh.isHalfEdge(h))
+			weight[h] = cotangentWeight(cotangent[h], cotangent[mesh.twin(h)]);
+	return weight;
+}
+
+/**
+ * The positive semi-definite Laplacian of the whole mesh: (L x)_i = sum_j w_ij (x_i - x_j).
+ * Constants are its null space. @pre mesh is compact. Complexity: O(V).
+ */
+inline SymmetricRows cotangentLaplacian(const SurfaceMesh& mesh)
+{
+	const std::vector<double> weight = cotangentWeights(mesh);
+	SymmetricRows L;
+	L.start.push_back(0);
+	for (int v = 0; v < mesh.vertexSlots(); ++v) {
+		double sum = 0;
+		mesh.forEachOutgoing(v, [&](int h) {
+			sum += weight[h];
+			L.entries.push_back({mesh.target(h), float(-weight[h])});
+		});
+		L.excess.push_back(0);
+		L.diagonal.push_back(float(sum));
+		L.endRow();
+	}
+	return L;
+}
 
 inline Sparse sparse(const SymmetricRows& A)
 {

@@ -488,7 +488,7 @@ inline Skeletonization skeletonize(const std::vector<Point3d>& points,
 	Skeletonization result =
 		skeletonize(input, parameters, progress.part(0.02, 1), observer, refinement);
 	result.seconds.check = seconds;
-	result.solid = std::move(solid.report);
+	result.solid = solid.report;
 	std::vector<int> node;
 	node.reserve(checked.vertexOfInput.size());
 	for (int v : checked.vertexOfInput)

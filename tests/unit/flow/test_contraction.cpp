@@ -37,7 +37,7 @@ struct Energy
 
 	Energy(const Stage& start, const Parameters& p) :
 			start(start), wL(p.wL), wH(p.wH * publishedWeightUnit), wM(p.wM * publishedWeightUnit),
-			weight(cotangentWeights(start.mesh)), pulled(start.pole.size())
+			weight(systems::cotangentWeights(start.mesh)), pulled(start.pole.size())
 	{
 		const std::vector<Point3d> normal = start.mesh.vertexNormals();
 		for (size_t v = 0; v < pulled.size(); ++v)

@@ -5,6 +5,7 @@
 #include "shapes.h"
 
 #include <skeleton/flow/cotangent_weights.h>
+#include <skeleton/flow/flow_system.h>
 
 #include <Eigen/Dense>
 #include <Eigen/Eigenvalues>
@@ -15,6 +16,8 @@
 #include <vector>
 
 using namespace vcg::tri::mcf;
+using systems::cotangentLaplacian;
+using systems::cotangentWeights;
 using vcg::Point3d;
 
 namespace {
@@ -67,6 +70,22 @@ TEST(CotangentLaplacian, WeightsAreTheMeansOfTheOppositeCotangents)
 					mesh.position[mesh.target(e)]));
 		EXPECT_NEAR(weight[h], std::max(sum / 2, 1e-3), 1e-9);
 		EXPECT_EQ(weight[h], weight[mesh.twin(h)]);
+	}
+}
+
+/// What the tests below find of the Laplacian is true of the one that the flow solves with.
+TEST(CotangentLaplacian, IsTheMatrixOfTheFlow)
+{
+	for (const shapes::Soup& soup : {shapes::jittered(shapes::sphere(2), 0.02),
+			 shapes::joined({shapes::torus(1, 0.3, 12, 8), shapes::box()})}) {
+		const SurfaceMesh mesh = soup.mesh();
+		const FlowSystem system =
+			flowSystem(initialStage(mesh, checks::noPoles(mesh)), Parameters());
+		const Eigen::MatrixXd L = dense(cotangentLaplacian(mesh)), M = dense(system.M);
+		ASSERT_EQ(M.rows(), L.rows());
+		for (int i = 0; i < M.rows(); ++i)
+			for (int j = 0; j < M.rows(); ++j)
+				EXPECT_NEAR(M(i, j), L(system.vertex[size_t(i)], system.vertex[size_t(j)]), 1e-5);
 	}
 }
 

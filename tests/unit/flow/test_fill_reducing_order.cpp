@@ -95,5 +95,5 @@ TEST(EliminationOrder, HasANarrowEnvelope)
 	const long ordered = envelope(systems::orderedLaplacian(mesh));
 	// Two fronts run round the torus, one to each side.
 	EXPECT_LT(ordered, 4 * sides * mesh.vertexCount());
-	EXPECT_LT(5 * ordered, envelope(cotangentLaplacian(mesh)));
+	EXPECT_LT(5 * ordered, envelope(systems::cotangentLaplacian(mesh)));
 }

@@ -469,7 +469,9 @@ TEST(Refine, GrowsABranchIntoABluntCornerThatIsAlone)
 
 TEST(Refine, TakesLowLimbsIfTheyAreLongAndFlatOnesIfTheyComeToAPoint)
 {
-	const refining::FeatureRule rule = {0.55, 0.75, 0.56, 0.35, 0.05, 0.005, 0.05, 0.04, 0.005};
+	const RefineParameters shipped;
+	const refining::FeatureRule rule = {
+		shipped.featureGain, shipped.featureHeight, shipped.spacing};
 	// A way of balls that grow by two fifths of it.
 	const auto branch = [](double way, double flat) {
 		return refining::FeatureBranch {

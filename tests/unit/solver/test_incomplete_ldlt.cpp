@@ -72,7 +72,7 @@ TEST(IncompleteFactor, AnyNumberingIsRight)
 {
 	// Not in an order of low fill: slower, but the same solution.
 	const SymmetricRows L =
-		cotangentLaplacian(shapes::shuffled(shapes::torus(1, 0.3, 24, 10)).mesh());
+		systems::cotangentLaplacian(shapes::shuffled(shapes::torus(1, 0.3, 24, 10)).mesh());
 	EXPECT_LT(relativeError(L, std::vector<float>(L.size(), 0.1f), 0), 1e-4);
 }
 

@@ -8,12 +8,10 @@
 #define VCG_MCF_COTANGENT_WEIGHTS_H
 
 #include <skeleton/mesh/surface_mesh.h>
-#include <skeleton/solver/symmetric_csr.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <vector>
 
 namespace vcg::tri::mcf {
 
@@ -54,44 +52,6 @@ inline double cotangentWeight(double cotAlpha, double cotBeta)
 {
 	constexpr double leastWeight = 1e-3;
 	return std::max((cotAlpha + cotBeta) / 2, leastWeight);
-}
-
-/// cotangentWeight() of each half-edge's edge. Complexity: O(F).
-inline std::vector<double> cotangentWeights(const SurfaceMesh& mesh)
-{
-	std::vector<double> cotangent(mesh.halfEdgeSlots(), 0), weight(mesh.halfEdgeSlots(), 0);
-	for (int f = 0; f < mesh.faceSlots(); ++f) {
-		if (!mesh.isFace(f))
-			continue;
-		const TriangleMeasures measures = measureTriangle(mesh, f);
-		std::copy(measures.cotangent.begin(), measures.cotangent.end(), &cotangent[3 * size_t(f)]);
-	}
-	for (int h = 0; h < mesh.halfEdgeSlots(); ++h)
-		if (mesh.isHalfEdge(h))
-			weight[h] = cotangentWeight(cotangent[h], cotangent[mesh.twin(h)]);
-	return weight;
-}
-
-/**
- * The positive semi-definite Laplacian of the whole mesh: (L x)_i = sum_j w_ij (x_i - x_j).
- * Constants are its null space. @pre mesh is compact. Complexity: O(V).
- */
-inline SymmetricRows cotangentLaplacian(const SurfaceMesh& mesh)
-{
-	const std::vector<double> weight = cotangentWeights(mesh);
-	SymmetricRows L;
-	L.start.push_back(0);
-	for (int v = 0; v < mesh.vertexSlots(); ++v) {
-		double sum = 0;
-		mesh.forEachOutgoing(v, [&](int h) {
-			sum += weight[h];
-			L.entries.push_back({mesh.target(h), float(-weight[h])});
-		});
-		L.excess.push_back(0);
-		L.diagonal.push_back(float(sum));
-		L.endRow();
-	}
-	return L;
 }
 
 } // namespace vcg::tri::mcf

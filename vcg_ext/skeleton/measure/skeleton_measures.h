@@ -162,7 +162,7 @@ inline std::vector<Point3d> interiorPoints(
 	for (int first = 0; first < mostTries * count && int(inside.size()) < count;
 		 first += blockSize) {
 		const auto point = [&](int i) {
-			const auto u = evenPoint<3>(size_t(first + i));
+			const auto u = evenPoint<3>(size_t(first) + size_t(i));
 			return box.min + Point3d(u[0] * box.DimX(), u[1] * box.DimY(), u[2] * box.DimZ());
 		};
 		progress.report(double(inside.size()) / count, what);

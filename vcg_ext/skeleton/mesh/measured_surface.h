@@ -32,6 +32,7 @@ public:
 	 * @param mesh kept by reference.
 	 * @pre the positions are finite. @throws Cancelled. Complexity: about O(V + F).
 	 */
+	// NOLINTNEXTLINE(google-explicit-constructor)
 	MeasuredSurface(const SurfaceMesh& mesh, const Progress& progress = Progress()) :
 			surface(mesh), ofVertex(connectedComponents(mesh, &count, progress.part(0, 0.2))),
 			frames(

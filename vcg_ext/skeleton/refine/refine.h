@@ -130,12 +130,8 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 	// Between two searches of the whole surface the contacts are followed from round to round.
 	constexpr int roundsOfSearch = 3;
 	const double kappa = parameters.smoothing * std::pow(referenceSpacing / parameters.spacing, 4);
-	constexpr double leastWay = 0.75, leastProtrusion = 0.56;
-	constexpr double leastProminence = 0.05, leastRise = 0.005, leastLobe = 0.05;
-	constexpr double leastCorner = 0.04;
-	const FeatureRule features = {parameters.featureGain, leastWay, leastProtrusion,
-		parameters.featureHeight, leastProminence, leastRise, leastLobe, leastCorner,
-		parameters.spacing, scale};
+	const FeatureRule features = {
+		parameters.featureGain, parameters.featureHeight, parameters.spacing, scale};
 	const TipRule tips = {parameters.spacing, parameters.tipGain, parameters.tipRadius, scale};
 	const int total = parameters.stiffRounds + parameters.rounds + parameters.lastRounds + 2;
 	int done = 0;

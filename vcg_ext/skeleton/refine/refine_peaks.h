@@ -28,24 +28,24 @@ namespace vcg::tri::mcf::refining {
 /// What is a feature. Heights are distances from the union of the skeleton's balls.
 struct FeatureRule
 {
-	/// On the branch into a feature the balls reach further by at least this part of the way, ...
+	/// On the branch into a feature the balls reach further by at least this part of the way.
 	double leastGain;
-	/// ... which is at least this many radii of the ball that it ends in, ...
-	double leastWay;
-	/// ... and, times the relative height of its peak, at least this: low features are long ones.
-	double leastProtrusion;
-	/// The peak of a feature is as high as this part of the radius of the ball that is nearest, ...
+	/// The peak of a feature is as high as this part of the radius of the ball that is nearest.
 	double leastHeight;
-	/// ... and rises from its surroundings by this part of it, and by this many diagonals.
-	double leastProminence, leastRise;
-	/// The lobe of a plate is at least this many diagonals high.
-	double leastLobe;
-	/// A blunt corner is at least this many diagonals high.
-	double leastCorner;
 	/// Longest step of a branch, in diagonals.
 	double spacing;
 	/// Of the spacing.
 	const LocalScale& scale = sameEverywhere;
+	/// The way is at least this many radii of the ball that it ends in.
+	double leastWay = 0.75;
+	/// The way, in such radii, times the relative height of the peak is at least this: low features are long ones.
+	double leastProtrusion = 0.56;
+	/// The peak rises from its surroundings by this part of the radius of the nearest ball, and by this many diagonals.
+	double leastProminence = 0.05, leastRise = 0.005;
+	/// The lobe of a plate is at least this many diagonals high.
+	double leastLobe = 0.05;
+	/// A blunt corner is at least this many diagonals high.
+	double leastCorner = 0.04;
 };
 
 /// A component of a surface; its vertices are numbered by their place in it.

@@ -341,8 +341,8 @@ private:
 		 */
 		std::vector<int> growFrom(int source)
 		{
-			distance.assign(size_t(3 * faces), infinity);
-			from.assign(size_t(3 * faces), -1);
+			distance.assign(3 * size_t(faces), infinity);
+			from.assign(3 * size_t(faces), -1);
 			using Entry = std::pair<double, int>;
 			std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
 			distance[size_t(source)] = 0;

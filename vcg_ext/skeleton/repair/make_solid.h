@@ -108,6 +108,7 @@ struct SolidChoices
 	/// Cavities are left out: there is no skeleton in them. Where `repair` is Off they stay, and a note says so.
 	bool withoutCavities;
 
+	// NOLINTNEXTLINE(google-explicit-constructor): the choices are written in braces where they are made.
 	SolidChoices(
 		Repair repair = Repair::Auto, double minComponent = 0, bool withoutCavities = false) :
 			repair(repair),
