@@ -57,3 +57,16 @@ TEST(SpanningForest, ListsEachNodeAfterItsParent)
 			EXPECT_LT(placeOf(parent), placeOf(v));
 		}
 }
+
+TEST(SpanningForest, CompleteGraph)
+{
+	CurveSkeleton s;
+	for (int i = 0; i < 20; ++i) {
+		s.position.emplace_back(i, i * i, 0);
+		s.radius.push_back(1 + i % 7);
+		for (int j = 0; j < i; ++j)
+			s.edges.push_back({j, i});
+	}
+	tidyEdges(s.edges);
+	EXPECT_EQ(spanningForest(s).cuts.size(), 190u - 19u);
+}

@@ -30,49 +30,6 @@ std::set<std::pair<int, int>> renamed(
 
 } // namespace
 
-TEST(SpanningForest, CutsEachCycleAtItsThinnestEdge)
-{
-	const CurveSkeleton s = ringWithTailAndY();
-	const SpanningForest forest = spanningForest(s);
-	EXPECT_EQ(int(forest.cuts.size()), statistics(s).cycles);
-	// The edges at node 3 (radius 0.1) are the thinnest; the one that comes later in order is cut.
-	EXPECT_EQ(forest.cuts, (std::vector<std::array<int, 2>> {{3, 4}}));
-}
-
-TEST(SpanningForest, RootsEachTreeAtItsThickestNode)
-{
-	const SpanningForest forest = spanningForest(ringWithTailAndY());
-	std::vector<int> roots;
-	for (size_t v = 0; v < forest.parent.size(); ++v)
-		if (forest.parent[v] < 0)
-			roots.push_back(int(v));
-	EXPECT_EQ(roots, (std::vector<int> {2, 7}));
-}
-
-TEST(SpanningForest, EveryNodeComesAfterItsParent)
-{
-	const SpanningForest forest = spanningForest(ringWithTailAndY());
-	std::set<int> seen {-1};
-	for (int v : forest.order) {
-		EXPECT_TRUE(seen.count(forest.parent[size_t(v)]));
-		EXPECT_TRUE(seen.insert(v).second);
-	}
-	EXPECT_EQ(seen.size(), 12u);
-}
-
-TEST(SpanningForest, CompleteGraph)
-{
-	CurveSkeleton s;
-	for (int i = 0; i < 20; ++i) {
-		s.position.emplace_back(i, i * i, 0);
-		s.radius.push_back(1 + i % 7);
-		for (int j = 0; j < i; ++j)
-			s.edges.push_back({j, i});
-	}
-	tidyEdges(s.edges);
-	EXPECT_EQ(spanningForest(s).cuts.size(), 190u - 19u);
-}
-
 TEST(Swc, ReadsBackAsTheSameGraphWithoutItsCuts)
 {
 	const CurveSkeleton s = ringWithTailAndY();
