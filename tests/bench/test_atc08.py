@@ -69,7 +69,11 @@ def test_a_capsule_becomes_one_line_on_its_axis():
     curve = Curve(skeleton.points, skeleton.edges)
     assert (curve.components, curve.cycles) == (1, 0)
     assert sorted(curve.degree)[:3] == [1, 1, 2] and curve.degree.max() == 2
-    assert np.hypot(*skeleton.points[:, :2].T).max() < 0.15
+    off, along = np.hypot(*skeleton.points[:, :2].T), np.abs(skeleton.points[:, 2])
+    assert off[along < 3.0].max(initial=0.0) < 0.01
+    # Within the caps rounding, which differs from one processor's linear algebra to the other's, decides which
+    # vertices of a ring are left: there the line is not centred, but inside.
+    assert np.hypot(off, np.maximum(along - 3.0, 0.0)).max() < 1.0
     assert np.ptp(skeleton.points[:, 2]) > 5.0
     assert volumes[-1] < 1e-6
 

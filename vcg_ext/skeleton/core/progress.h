@@ -43,7 +43,7 @@ protected:
 	{
 		Callback callback;
 		int percent = 0;
-		const char* what = "";
+		const char* what = "Starting";
 	};
 	/// Null where nobody listens.
 	std::shared_ptr<Job> job;

@@ -139,8 +139,8 @@ inline Stage contractToSkeleton(Stage stage, const Parameters& given,
 {
 	given.check();
 	const Parameters parameters = sharedAmong(given, stage.diagonal);
-	const Progress begin = progress.cancelOnly(), end = progress.cancelOnly();
-	StageFrames frames(stage, begin); // found by the surface's own correspondence
+	progress.report(0, "Contracting");
+	StageFrames frames(stage, progress.cancelOnly()); // found by the surface's own correspondence
 	// The map from surface to stage is composed lazily: the vertices of a checkpoint stage are tracked, a
 	// new checkpoint is taken when half of them have merged, and the maps are composed on request.
 	const std::vector<int> ofSurface = std::move(stage.node);
@@ -185,7 +185,9 @@ inline Stage contractToSkeleton(Stage stage, const Parameters& given,
 			std::iota(stage.node.begin(), stage.node.end(), 0);
 		}
 	}
-	return outside(std::move(stage), end);
+	Stage result = outside(std::move(stage), progress.cancelOnly());
+	progress.report(1, "Contracting");
+	return result;
 }
 
 } // namespace vcg::tri::mcf
