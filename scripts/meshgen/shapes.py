@@ -391,9 +391,27 @@ def twin_ears() -> Shape:
                       parameters={"head_radius": 0.42})
 
 
+def embrace() -> Shape:
+    """Mother and child, as Fertility of Table 1: four arms' and legs' loops in one body."""
+    tubes = [line((-0.6, 0, -0.6), (-0.6, 0, 0.7), 0.34, 0.3), line((-0.6, 0, 0.9), (-0.55, 0, 1.4), 0.15),
+             line((-0.55, 0, 1.5), (-0.5, 0, 1.58), 0.3), line((0.75, 0, -0.3), (0.75, 0, 0.35), 0.22),
+             line((0.75, 0, 0.4), (0.7, 0, 0.95), 0.11), line((0.7, 0, 1.03), (0.7, 0, 1.08), 0.22),
+             bezier([(0.75, 0, 0.4), (0.1, 0, 0.75), (-0.6, 0, 0.7)], 0.1, 0.1),
+             bezier([(-0.6, 0, -0.55), (0, 0, -0.75), (0.75, 0, -0.3)], 0.2, 0.16),
+             line((0.2, 0, -1.9), (0.75, 0, -2.0), 0.15, 0.13)]
+    for side in (-1.0, 1.0):
+        tubes.append(bezier([(-0.6, 0.2 * side, 0.55), (-0.3, 0.95 * side, 0.5), (0.6, 0.85 * side, 0.2),
+                             (0.75, 0.1 * side, 0.0)], 0.14, 0.11))
+        tubes.append(bezier([(-0.6, 0.2 * side, -0.6), (-0.5, 0.85 * side, -0.9), (-0.2, 0.9 * side, -1.6),
+                             (0.2, 0, -1.9)], 0.2, 0.15))
+    return tube_shape(tubes, 0.06, blend=0.05, complete=False, mirror=True, genus=4, tips=3,
+                      description="Mother and child: two heads, arms around each other, a lap, legs that meet.",
+                      parameters={"loops": 4})
+
+
 SHAPES: dict[str, Callable[[], Shape]] = {
     f.__name__: f for f in (
         capsule, bent_tube, taper, horn, y_tube, tree, torus, knot, torus_capsule, plate3, slab,
-        cuboid, hand, cup, letter_s, letter_g, letter_p, animal, head, twin_ears, box8, torus72,
-        animal450)
+        cuboid, hand, cup, letter_s, letter_g, letter_p, animal, head, twin_ears, embrace, box8,
+        torus72, animal450)
 }
