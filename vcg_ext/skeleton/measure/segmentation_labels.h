@@ -266,15 +266,36 @@ private:
 		return band;
 	}
 
-	static void add(Mixture& sum, int part, double amount)
+	/// A mixture being added up: an array over all labels, so that many parts at one vertex cost no search.
+	class Sum
 	{
-		for (auto& [other, value] : sum)
-			if (other == part) {
-				value += amount;
-				return;
+	public:
+		explicit Sum(int labels) : amount(size_t(labels), 0) {}
+
+		void add(int part, double value)
+		{
+			if (amount[part] == 0)
+				parts.push_back(part);
+			amount[part] += value;
+		}
+
+		/// What has been added, parts in the order in which they came; leaves nothing behind.
+		Mixture take()
+		{
+			Mixture mixture;
+			mixture.reserve(parts.size());
+			for (int part : parts) {
+				mixture.emplace_back(part, amount[part]);
+				amount[part] = 0;
 			}
-		sum.emplace_back(part, amount);
-	}
+			parts.clear();
+			return mixture;
+		}
+
+	private:
+		std::vector<double> amount;
+		std::vector<int> parts;
+	};
 
 	/// Each step takes half of every vertex's mixture to its neighbours.
 	void diffuse(const std::vector<int>& band, const Progress& progress)
@@ -283,24 +304,24 @@ private:
 		for (int v : band)
 			mixture[v] = {{label[v], 1}};
 		std::vector<Mixture> next(band.size());
+		Sum sum(labels);
 		Ticker ticker(progress, smoothing, diffusionSteps * int(band.size()));
 		for (int step = 0; step < diffusionSteps; ++step) {
 			for (size_t i = 0; i < band.size(); ++i) {
 				ticker.tick();
 				const int v = band[i];
-				Mixture sum;
 				int degree = 0;
 				surface.forEachOutgoing(v, [&](int) { ++degree; });
 				for (const auto& [part, value] : mixture[v])
-					add(sum, part, value / 2);
+					sum.add(part, value / 2);
 				surface.forEachOutgoing(v, [&](int h) {
 					const int w = surface.target(h);
 					if (mixture[w].empty())
-						add(sum, label[w], 0.5 / degree);
+						sum.add(label[w], 0.5 / degree);
 					for (const auto& [part, value] : mixture[w])
-						add(sum, part, value / (2 * degree));
+						sum.add(part, value / (2 * degree));
 				});
-				next[i] = std::move(sum);
+				next[i] = sum.take();
 			}
 			for (size_t i = 0; i < band.size(); ++i)
 				mixture[band[i]] = std::move(next[i]);
