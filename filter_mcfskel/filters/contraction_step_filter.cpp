@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 #include "all_filters.h"
+#include "convergence.h"
 #include "filter_support.h"
 #if MCFSKEL_SHEETS
 #include "sheet_choice.h"
@@ -89,7 +90,7 @@ Results run(FilterRun& run)
 		share.emplace();
 	const mcf::Progress progress = run.progress.part(0.1, 0.95);
 	std::shared_ptr<const mcf::Stage> last = start.stage;
-	for (int i = 0; i < steps && !last->converged; ++i) {
+	for (int i = 0; i < steps && !last->converged && !last->isSpread(); ++i) {
 		last = std::make_shared<const mcf::Stage>(
 			mcf::step(*last, parameters, progress.part(double(i) / steps, double(i + 1) / steps)));
 		run.log(stageLine(mcf::figuresOf(*last)));
@@ -97,7 +98,8 @@ Results run(FilterRun& run)
 	}
 	share.reset();
 	if (int(stages.size()) < steps)
-		run.log(QString("The contraction has converged: %1 of %2 steps were made.")
+		run.log(QString("%1: %2 of %3 steps were made.")
+					.arg(last->converged ? "The contraction has converged" : surfaceSpreads)
 					.arg(stages.size())
 					.arg(steps));
 
@@ -111,6 +113,7 @@ Results run(FilterRun& run)
 			source, baseName(source) + "_solid", *contracted.mesh, run.progress.cancelOnly());
 		edit.writeNodes(source, *contracted.vertexOfSlot, last->node);
 		contracted = compactSurface(contracted.mesh);
+		contracted.hollow = start.surface.surface.hollow;
 		link = linkTo(*surface, contracted);
 	}
 	addStages(edit, source, stages, link, run.progress.part(0.95, 1));

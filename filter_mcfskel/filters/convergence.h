@@ -15,12 +15,22 @@
 
 namespace mcfskel {
 
+inline constexpr char surfaceSpreads[] =
+	"The surface does not contract but spreads, being inside out in large parts";
+
 /// Says in the log that a stage that becomes a curve has not converged, and what to do; nothing if it has.
 inline void logIfNotConverged(
 	const FilterRun& run, const vcg::tri::mcf::Stage& stage, const char* cure)
 {
 	if (stage.converged)
 		return;
+	if (stage.isSpread()) {
+		run.log(QString(
+			"Warning: %1: the curve may be off the middle. Apply Make Solid before, which resolves "
+			"where a surface crosses itself.")
+					.arg(surfaceSpreads));
+		return;
+	}
 	const double volume = std::max(vcg::tri::mcf::figuresOf(stage).volumeFraction, 0.0);
 	run.log(QString(
 		"Warning: the contraction has not converged after %1 iterations, %2 % of the volume "

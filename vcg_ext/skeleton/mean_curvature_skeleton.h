@@ -205,7 +205,8 @@ public:
 
 	/**
 	 * Makes one iteration of the contraction, with poles computed first if there are none yet.
-	 * @return whether there is more to do: the flow has neither converged nor reached max_iterations.
+	 * @return whether there is more to do: the flow has neither converged nor reached max_iterations, nor does it
+	 * spread the surface, as it does where large parts are inside out.
 	 */
 	bool Step()
 	{
@@ -429,7 +430,7 @@ private:
 		stage = mcf::startOfFlow(*contracted, *poles, held, parameters, progress, params.on_note);
 	}
 
-	bool IsDone() const { return stage->converged || stage->iteration >= parameters.maxIterations; }
+	bool IsDone() const { return mcf::isOver(*stage, parameters); }
 
 	template <class SkeletonMesh>
 	static void FillSkeleton(SkeletonMesh& skeleton, const mcf::CurveSkeleton& curve,

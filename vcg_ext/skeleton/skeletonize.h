@@ -186,7 +186,9 @@ inline Skeletonization skeletonizeOnce(const SurfaceInput& input, const Paramete
 	const Stage& stage = *result.stage;
 	if (!stage.converged)
 		note("The contraction has not converged after " + std::to_string(stage.iteration)
-			+ " iterations.");
+			+ (stage.isSpread()
+					? " iterations: the surface spreads, being inside out in large parts."
+					: " iterations."));
 	result.seconds.contraction = clock.end(Phase::Contraction);
 
 	if (stage.hasSheets())
@@ -322,8 +324,8 @@ inline Skeletonization skeletonizeThin(const SurfaceInput& input, const Paramete
 	constexpr int maxVerticesAsItIs = 100000;
 	Skeletonization result =
 		skeletonizeOnce(input, given, progress.part(0, once), observer, refinement);
-	const bool isStopped =
-		!result.stage->converged && given.maxIterations < Parameters().maxIterations;
+	const bool isStopped = !result.stage->converged && !result.stage->isSpread()
+		&& given.maxIterations < Parameters().maxIterations;
 	const bool isDoubtful = given.resample && given.refine && !result.sheets && input.held.empty()
 		&& result.refined < 1 && !isStopped && input.mesh->vertexCount() <= maxVerticesAsItIs;
 	if (!isDoubtful)

@@ -304,6 +304,25 @@ TEST(Flow, StopsAtTheCapAndSaysSo)
 	}
 }
 
+TEST(Flow, GivesUpWhatItSpreads)
+{
+	// A bowl of few facets whose walls pass through each other: in between it is inside out, and so are its balls.
+	std::vector<std::pair<double, double>> profile;
+	const auto wall = [&](double radius, int from, int to) {
+		for (int i = from; i != to; i += from < to ? 1 : -1)
+			profile.emplace_back(-radius * std::cos(0.2 * i), radius * std::sin(0.2 * i));
+	};
+	wall(1, 0, 14);
+	wall(0.995, 13, -1);
+	shapes::Soup bowl = shapes::revolved(profile, 14);
+	for (int i = 0; i < 3; ++i)
+		bowl = shapes::subdivided(bowl);
+	const Stage stage = contractToSkeleton(stageOf(bowl), Parameters());
+	EXPECT_TRUE(stage.isSpread());
+	EXPECT_FALSE(stage.converged);
+	EXPECT_LT(stage.iteration, Parameters().maxIterations / 4);
+}
+
 TEST(Flow, ASlowFlowIsNotTakenForAFinishedOne)
 {
 	// With a large w_H a step hardly moves anything: the area settles long before the volume is gone.

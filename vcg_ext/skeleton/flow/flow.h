@@ -118,6 +118,13 @@ inline Stage step(Stage stage, const Parameters& given, const Progress& progress
 	return stage;
 }
 
+/// Whether there is nothing more to do: the flow has converged, has made parameters.maxIterations, or spreads the
+/// surface, which will not contract then.
+inline bool isOver(const Stage& stage, const Parameters& parameters)
+{
+	return stage.converged || stage.isSpread() || stage.iteration >= parameters.maxIterations;
+}
+
 /// Callbacks invoked during the contraction. Unset ones cost nothing.
 struct StageObserver
 {
@@ -131,7 +138,7 @@ struct StageObserver
 };
 
 /**
- * Repeats step() until the flow has converged or parameters.maxIterations are made.
+ * Repeats step() until isOver().
  * @throws as step().
  */
 inline Stage contractToSkeleton(Stage stage, const Parameters& given,
@@ -147,9 +154,7 @@ inline Stage contractToSkeleton(Stage stage, const Parameters& given,
 	std::vector<int> ofFirst(stage.mesh.vertexSlots());
 	std::iota(ofFirst.begin(), ofFirst.end(), 0);
 	stage.node = ofFirst;
-	const auto goesOn = [&] {
-		return !stage.converged && stage.iteration < parameters.maxIterations;
-	};
+	const auto goesOn = [&] { return !isOver(stage, parameters); };
 	// Held vertices have places outside that those inside do not tell: each step finds them again.
 	const bool staysInside = stage.heldCount() == 0 && goesOn();
 	if (staysInside)
