@@ -248,9 +248,10 @@ inline std::vector<int> pieceOfFaces(const std::vector<int>& partner)
 	return lowest;
 }
 
-/// Whether a triangle runs into others with which it shares no vertex.
-inline bool crossesOthers(const TriangleTree& tree, const std::vector<Triangle>& triangles,
-	const std::vector<Point3d>& points, const Triangle& t)
+/// Whether a triangle runs into others with which it shares no vertex, of those that count: counts(face).
+template <class Counts>
+bool crossesOthers(const TriangleTree& tree, const std::vector<Triangle>& triangles,
+	const std::vector<Point3d>& points, const Triangle& t, const Counts& counts)
 {
 	Box3d box;
 	for (int v : t)
@@ -263,10 +264,17 @@ inline bool crossesOthers(const TriangleTree& tree, const std::vector<Triangle>&
 				return;
 		const auto at = [&](const Triangle& of, size_t k) { return points[size_t(of[k])]; };
 		crosses = crosses
-			|| vcg::NoDivTriTriIsect<double>(
-				at(t, 0), at(t, 1), at(t, 2), at(other, 0), at(other, 1), at(other, 2));
+			|| (counts(f)
+				&& vcg::NoDivTriTriIsect<double>(
+					at(t, 0), at(t, 1), at(t, 2), at(other, 0), at(other, 1), at(other, 2)));
 	});
 	return crosses;
+}
+
+inline bool crossesOthers(const TriangleTree& tree, const std::vector<Triangle>& triangles,
+	const std::vector<Point3d>& points, const Triangle& t)
+{
+	return crossesOthers(tree, triangles, points, t, [](int) { return true; });
 }
 
 } // namespace detail

@@ -81,6 +81,7 @@ struct SolidReport
 		add(mended.edgesParted, "edge parted", "edges parted");
 		add(mended.verticesParted, "vertex parted", "vertices parted");
 		add(mended.facesTurned, "face turned", "faces turned");
+		add(mended.gapsBridged, "gap bridged", "gaps bridged");
 		add(mended.holesClosed, "hole closed", "holes closed");
 		add(mended.piecesDropped + piecesDropped, "piece dropped", "pieces dropped");
 		add(handles, "small handle cut", "small handles cut");

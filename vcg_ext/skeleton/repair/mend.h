@@ -7,6 +7,7 @@
 #ifndef VCG_MCF_MEND_H
 #define VCG_MCF_MEND_H
 
+#include "bridge_gaps.h"
 #include "close_seams.h"
 #include "fill_holes.h"
 #include "part_surface.h"
@@ -40,6 +41,7 @@ struct MendReport
 	int verticesParted = 0;  ///< at which separate fans of faces met
 	int facesTurned = 0;     ///< against their neighbours
 	int piecesDropped = 0;   ///< specks, walls inside, and closed pieces without volume
+	int gapsBridged = 0;     ///< between the ends of torn limbs
 	int holesClosed = 0;
 	int holesLeft = 0; ///< too large, or not to be filled without crossing the surface
 	bool oneSided = false;
@@ -47,7 +49,7 @@ struct MendReport
 	bool isChanged() const
 	{
 		return facesDropped || verticesMerged || junctionsClosed || edgesParted || verticesParted
-			|| facesTurned || piecesDropped || holesClosed;
+			|| facesTurned || piecesDropped || gapsBridged || holesClosed;
 	}
 };
 
@@ -277,7 +279,7 @@ inline int dropInnerWalls(
 /**
  * Mends small defects, in this order: faces that are degenerate, not finite, or there twice; vertices that
  * coincide; seams (see closeSeams()); edges and vertices where the surface is no two-manifold (see
- * partSurface()); orientation; specks; small holes (see fillHoles()); open walls inside what is closed by then.
+ * partSurface()); orientation; specks; torn limbs (see bridgeGaps()); small holes (see fillHoles()); open walls inside what is closed by then.
  *
  * A surface that has none of these defects stays as it is. What cannot be mended is left, with `closed` false.
  * @param points    mesh units. @param triangles corners as indices into `points`.
@@ -361,8 +363,12 @@ inline MendedSurface mend(const std::vector<Point3d>& points,
 	std::vector<int> partner =
 		pairedHalfEdges(mended.points, faces, nullptr, progress.part(0.5, 0.55));
 	report.piecesDropped = dropSpecks(mended.points, faces, partner);
+	report.gapsBridged =
+		bridgeGaps(mended.points, faces, partner, GapLimits(), progress.part(0.55, 0.6));
+	if (report.gapsBridged > 0)
+		partner = pairedHalfEdges(mended.points, faces, nullptr, progress.cancelOnly());
 	const FilledHoles holes =
-		fillHoles(mended.points, faces, partner, limits, progress.part(0.55, 0.95));
+		fillHoles(mended.points, faces, partner, limits, progress.part(0.6, 0.95));
 	report.holesClosed = holes.closed;
 	report.holesLeft = holes.left;
 	constexpr int mostCuts = 3;

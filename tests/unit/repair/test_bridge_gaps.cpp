@@ -1,0 +1,167 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "shapes.h"
+
+#include <skeleton/mesh/components.h>
+#include <skeleton/repair/mend.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <random>
+
+using namespace vcg::tri::mcf;
+using vcg::Point3d;
+
+namespace {
+
+/// A soup without the faces whose middle is where it says.
+shapes::Soup without(shapes::Soup soup, const std::function<bool(const Point3d&)>& where)
+{
+	soup.triangles.erase(std::remove_if(soup.triangles.begin(), soup.triangles.end(),
+							 [&](const Triangle& t) {
+								 return where((soup.points[size_t(t[0])] + soup.points[size_t(t[1])]
+												  + soup.points[size_t(t[2])])
+									 / 3.0);
+							 }),
+		soup.triangles.end());
+	return soup;
+}
+
+struct Outcome
+{
+	int gaps = 0, pieces = 0, euler = 0;
+	double volume = 0;
+};
+
+Outcome mended(const shapes::Soup& soup)
+{
+	const MendedSurface surface = mend(soup.points, soup.triangles);
+	Outcome outcome;
+	outcome.gaps = surface.report.gapsBridged;
+	const auto mesh = SurfaceMesh::ifClosedManifold(surface.points, surface.triangles);
+	EXPECT_TRUE(mesh);
+	if (!mesh)
+		return outcome;
+	connectedComponents(*mesh, &outcome.pieces);
+	outcome.euler = mesh->vertexCount() - mesh->faceCount() / 2;
+	outcome.volume = mesh->volume();
+	return outcome;
+}
+
+double volumeOf(const shapes::Soup& soup)
+{
+	return soup.mesh().volume();
+}
+
+TEST(BridgeGaps, AMissingPieceOfALimb)
+{
+	const shapes::Soup whole = shapes::capsule(6, 0.2, 24);
+	for (double gap : {0.3, 1.0, 3.0}) {
+		const Outcome made =
+			mended(without(whole, [&](const Point3d& p) { return std::abs(p[0]) < gap / 2; }));
+		EXPECT_EQ(made.gaps, 1);
+		EXPECT_EQ(made.pieces, 1);
+		EXPECT_EQ(made.euler, 2);
+		EXPECT_NEAR(made.volume, volumeOf(whole), 0.05 * volumeOf(whole)) << gap;
+	}
+}
+
+TEST(BridgeGaps, RaggedEndsThatAreCutAtASlant)
+{
+	std::mt19937 random(7);
+	std::uniform_real_distribution<double> rag(-0.1, 0.1);
+	const shapes::Soup whole = shapes::capsule(6, 0.2, 32);
+	const Outcome made = mended(without(whole,
+		[&](const Point3d& p) { return std::abs(p[0] + 1.5 * p[1] + rag(random)) < 0.8; }));
+	EXPECT_EQ(made.gaps, 1);
+	EXPECT_EQ(made.pieces, 1);
+	EXPECT_NEAR(made.volume, volumeOf(whole), 0.1 * volumeOf(whole));
+}
+
+TEST(BridgeGaps, FollowsTheBend)
+{
+	// Three quarters of a ring, without 30 degrees in its middle: the tube goes on along the circle.
+	const double radius = 0.08;
+	const auto angle = [](const Point3d& p) { return std::atan2(p[1], p[0]); };
+	const shapes::Soup bow = without(shapes::torus(1, radius, 120, 16),
+		[&](const Point3d& p) { return angle(p) > 0 && angle(p) < M_PI / 2; });
+	const Outcome whole = mended(bow);
+	ASSERT_EQ(whole.gaps, 0);
+	const Outcome made = mended(
+		without(bow, [&](const Point3d& p) { return angle(p) > -2 && angle(p) < -2 + M_PI / 6; }));
+	EXPECT_EQ(made.gaps, 1);
+	EXPECT_EQ(made.pieces, 1);
+	EXPECT_EQ(made.euler, 2);
+	EXPECT_NEAR(made.volume, whole.volume, 0.03 * whole.volume);
+}
+
+TEST(BridgeGaps, ALimbTornOffABody)
+{
+	const shapes::Soup body = without(shapes::sphere(4, 1),
+		[](const Point3d& p) { return p[0] > 0 && std::hypot(p[1], p[2]) < 0.25; });
+	const shapes::Soup limb = without(shapes::moved(shapes::capsule(3, 0.2, 24), {3, 0, 0}),
+		[](const Point3d& p) { return p[0] < 1.6; });
+	const Outcome made = mended(shapes::joined({body, limb}));
+	EXPECT_EQ(made.gaps, 1);
+	EXPECT_EQ(made.pieces, 1);
+	EXPECT_EQ(made.euler, 2);
+}
+
+TEST(BridgeGaps, ARingIsClosedOverAShortGapOnly)
+{
+	const auto ring = [](double gap) {
+		return mended(without(shapes::torus(1, 0.2, 90, 24),
+			[&](const Point3d& p) { return p[0] > 0 && std::abs(std::atan2(p[1], p[0])) < gap / 2; }));
+	};
+	EXPECT_EQ(ring(0.3).euler, 0);
+	EXPECT_EQ(ring(0.3).gaps, 1);
+	EXPECT_EQ(ring(1.5).euler, 2);
+	EXPECT_EQ(ring(1.5).gaps, 0);
+}
+
+TEST(BridgeGaps, EndsThatDoNotLookAtEachOtherStayApart)
+{
+	const auto openAt = [](double side, const Point3d& at) {
+		return shapes::moved(without(shapes::capsule(3, 0.2, 24),
+								 [&](const Point3d& p) { return side * p[0] > 1.3; }),
+			at);
+	};
+	// Both open ends up; and away from each other; and past each other.
+	EXPECT_EQ(mended(shapes::joined({openAt(1, {0, 0, 0}), openAt(1, {0, 1, 0})})).gaps, 0);
+	EXPECT_EQ(mended(shapes::joined({openAt(-1, {0, 0, 0}), openAt(1, {4, 0, 0})})).gaps, 0);
+	EXPECT_EQ(mended(shapes::joined({openAt(1, {0, 0, 0}), openAt(-1, {4, 3, 0})})).gaps, 0);
+	// The same two, face to face.
+	EXPECT_EQ(mended(shapes::joined({openAt(1, {0, 0, 0}), openAt(-1, {4, 0, 0})})).gaps, 1);
+}
+
+TEST(BridgeGaps, NotThroughAWall)
+{
+	const shapes::Soup torn =
+		without(shapes::capsule(6, 0.2, 24), [](const Point3d& p) { return std::abs(p[0]) < 1; });
+	const shapes::Soup wall = shapes::moved(shapes::box(0.1, 2, 2), {-0.05, -1, -1});
+	const Outcome made = mended(shapes::joined({torn, wall}));
+	EXPECT_EQ(made.gaps, 0);
+	EXPECT_EQ(made.pieces, 3);
+}
+
+TEST(BridgeGaps, AHoleInASideIsNoEnd)
+{
+	// Two plates of which each has a hole opposite the other's: no limb is torn there.
+	const auto plate = [](double z, double inside) {
+		shapes::Soup box = shapes::moved(shapes::box(4, 4, 0.5), {-2, -2, z});
+		for (int i = 0; i < 5; ++i)
+			box = shapes::subdivided(box);
+		return without(box, [&](const Point3d& p) {
+			return std::abs(p[2] - inside) < 1e-9 && std::hypot(p[0], p[1]) < 0.4;
+		});
+	};
+	const Outcome made = mended(shapes::joined({plate(0, 0.5), plate(1, 1)}));
+	EXPECT_EQ(made.gaps, 0);
+	EXPECT_EQ(made.pieces, 2);
+}
+
+} // namespace
