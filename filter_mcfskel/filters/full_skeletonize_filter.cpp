@@ -72,7 +72,7 @@ Results run(FilterRun& run)
 	const SurfaceLayer& read = solid.surface;
 	logNotes(run, read);
 	mcf::SurfaceInput surfaceInput {read.mesh, selectionToHold(run, read)};
-	surfaceInput.hollow = solid.report.leftOut.hollow;
+	surfaceInput.hollow = read.hollow;
 	if (!parameters.resample && !solid.isRepaired())
 		surfaceInput.poles = readPoles(run.layer(), read, run.progress.cancelOnly());
 	if (surfaceInput.poles)
@@ -113,6 +113,7 @@ Results run(FilterRun& run)
 		surface = &edit.addSurface(input, name + (isResampled ? "_resampled" : "_solid"),
 			*result.surface, run.progress.cancelOnly());
 		contracted = compactSurface(result.surface);
+		contracted.hollow = read.hollow;
 	}
 	const SurfaceLink link = linkTo(*surface, contracted);
 	addStages(edit, input, *kept, link, run.progress.part(0.99, 1));

@@ -6,6 +6,8 @@
 
 #include <skeleton/solid.h>
 
+#include <optional>
+
 namespace mcfskel {
 
 namespace mcf = vcg::tri::mcf;
@@ -14,21 +16,26 @@ namespace {
 
 Results run(FilterRun& run)
 {
-	const SolidLayer made = readSolid(run.layer(), mcf::Repair::Auto, run.progress.part(0, 0.95));
+	const SolidLayer made = readSolid(run.layer(), mcf::Repair::Auto, run.progress.part(0, 0.9));
 	logNotes(run, made.surface);
 	const mcf::SolidReport& report = made.report;
 	if (report.outcome == mcf::SolidReport::Sound)
 		run.log("The surface bounds a solid as it is.");
-	const mcf::SurfaceMesh& mesh = *made.surface.mesh;
+	int cavities = 0;
+	const std::optional<mcf::SurfaceMesh> hollow = mcf::withCavitiesInward(
+		*made.surface.mesh, made.surface.turned, cavities, run.progress.part(0.9, 0.95));
+	const mcf::SurfaceMesh& mesh = hollow ? *hollow : *made.surface.mesh;
 
 	DocumentEdit edit(run.document);
 	MeshModel& layer = edit.addSurface(
 		run.layer(), baseName(run.layer()) + "_solid", mesh, run.progress.part(0.95, 1));
-	edit.attachSurface(layer, compactSurface(made.surface.mesh));
+	if (!hollow)
+		edit.attachSurface(layer, compactSurface(made.surface.mesh));
 	Results results = repairResults(report);
 	results.merge(Results {
 		{"vertices", mesh.vertexCount()},
 		{"faces", mesh.faceCount()},
+		{"gaps_bridged", report.mended.gapsBridged},
 		{"holes_closed", report.mended.holesClosed},
 		{"edges_parted", report.mended.edgesParted},
 		{"vertices_parted", report.mended.verticesParted},

@@ -9,7 +9,9 @@
 #include <skeleton/solid.h>
 
 #include <algorithm>
+#include <memory>
 #include <optional>
+#include <utility>
 
 namespace mcfskel {
 
@@ -17,20 +19,29 @@ namespace mcf = vcg::tri::mcf;
 
 namespace {
 
+/// The surface with its cavities, be they in it or known from the mesh that it was made of; null if it has none.
+std::shared_ptr<const mcf::SurfaceMesh> hollowOf(
+	const SurfaceLayer& surface, const mcf::Progress& progress)
+{
+	if (surface.hollow)
+		return surface.hollow;
+	int cavities = 0;
+	std::optional<mcf::SurfaceMesh> own =
+		mcf::withCavitiesInward(*surface.mesh, surface.turned, cavities, progress);
+	return own ? std::make_shared<const mcf::SurfaceMesh>(*std::move(own)) : nullptr;
+}
+
 Results run(FilterRun& run)
 {
 	const CurveLayer curve = skeletonOn(run, run.layer());
 	const SkeletonSurface surface = requireSurface(run, curve, run.progress.part(0, 0.1));
-	int cavities = 0;
-	const std::optional<mcf::SurfaceMesh> hollow = mcf::withCavitiesInward(
-		*surface.surface.mesh, surface.surface.turned, cavities, run.progress.part(0.1, 0.2));
+	const std::shared_ptr<const mcf::SurfaceMesh> hollow =
+		hollowOf(surface.surface, run.progress.part(0.1, 0.2));
 	const mcf::SkeletonMeasures m = mcf::skeletonMeasures(
 		curve.skeleton, hollow ? *hollow : *surface.surface.mesh, {}, run.progress.part(0.2, 1));
 	const auto& distance = m.nodeMedialDistance;
-	if (cavities > 0)
-		run.log(
-			QString("The surface has %1, which count as outside.")
-				.arg(cavities == 1 ? QString("a cavity") : QString("%1 cavities").arg(cavities)));
+	if (hollow)
+		run.log("The surface has cavities, which count as outside.");
 	Results results = curveResults(curve.skeleton);
 	results.merge(Results {
 		{"inside_fraction", m.insideFraction},

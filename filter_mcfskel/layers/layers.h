@@ -40,6 +40,8 @@ struct SurfaceLayer
 	std::vector<std::string> notes;
 	/// For each connected component whether it was given inside out; empty if all or none of them were.
 	std::vector<char> turned = {};
+	/// The surface with the cavities that are not in `mesh`, see mcf::LeftOutPieces::hollow; null if there are none.
+	std::shared_ptr<const vcg::tri::mcf::SurfaceMesh> hollow = nullptr;
 };
 
 /// Which layer a stage or skeleton comes from.

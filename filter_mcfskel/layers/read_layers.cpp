@@ -177,14 +177,17 @@ SolidLayer readSolid(
 		if (same.isRepaired())
 			same.surface = {std::make_shared<const mcf::SurfaceMesh>(std::move(pieces.mesh)),
 				std::make_shared<const std::vector<int>>(std::move(pieces.vertexOfInput)),
-				std::move(pieces.notes)};
+				std::move(pieces.notes), {}, known->hollow};
 		return same;
 	}
 	const LayerTriangles read = readTriangles(layer, progress.part(0, 0.2));
 	mcf::SolidSurface solid =
 		mcf::solidSurface(read.points, read.triangles, choices, progress.part(0.2, 1));
-	return {surfaceLayer(std::move(solid.surface), read.pointOfSlot, progress.cancelOnly()),
+	SolidLayer made {
+		surfaceLayer(std::move(solid.surface), read.pointOfSlot, progress.cancelOnly()),
 		solid.report};
+	made.surface.hollow = solid.report.leftOut.hollow;
+	return made;
 }
 
 std::vector<char> readSelection(

@@ -154,6 +154,26 @@ def test_no_curve_in_a_cavity():
     # The measures take it as outside.
     measured = layers.apply_filter("compute_skeleton_measures_mcf", surface=0)
     assert 0.3 < measured["inside_fraction"] < 0.7
+    # So they do on the surface that was contracted, and that has no cavity.
+    for resample in (False, True):
+        layers = document(hollow)
+        layers.apply_filter(FULL, resample=resample)
+        assert 0.3 < layers.apply_filter("compute_skeleton_measures_mcf")["inside_fraction"] < 0.7
+
+
+def test_a_solid_keeps_its_cavity():
+    vertices, faces = arrays("capsule")
+    layers = document((np.vstack([vertices, vertices * 0.4]),
+                       np.vstack([faces, faces[:, ::-1] + len(vertices)])))
+    layers.apply_filter(SOLID)
+    assert np.array_equal(layers.current_mesh().face_matrix(), layers.mesh(0).face_matrix())
+    results = layers.apply_filter(FULL, resample=False)
+    assert (results["components"], results["pieces_left_out"]) == (1, 1)
+
+
+def test_without_repair_a_cavity_is_a_body():
+    vertices, faces = arrays("capsule")
+    hollow = np.vstack([vertices, vertices * 0.4]), np.vstack([faces, faces[:, ::-1] + len(vertices)])
     layers = document(hollow)
     assert layers.apply_filter(FULL, repair="off", resample=False)["components"] == 2
 
