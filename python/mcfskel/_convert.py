@@ -26,8 +26,8 @@ def needed(package: str, purpose: str) -> Any:
     try:
         return importlib.import_module(package)
     except ImportError as error:
-        raise SkeletonError(f"{purpose} needs the package {package}: pip install {package} "
-                            f"({error}).") from None
+        name = package.partition(".")[0]  # pip's, not the module's
+        raise SkeletonError(f"{purpose} needs the package {name}: pip install {name} ({error}).") from None
 
 
 def sheet_edges(skeleton: Skeleton) -> np.ndarray:

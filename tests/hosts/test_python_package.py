@@ -536,6 +536,23 @@ def test_errors_are_one_sentence_with_the_cure(run, tmp_path):
     assert answer[-1] > 0, "after all these errors the next mesh is done"
 
 
+def test_a_package_that_is_missing_is_named_as_pip_knows_it(run):
+    answer = run("""
+        import importlib, mcfskel
+        skeleton = mcfskel.skeletonize(MESHES + "/torus.off", target_length="3%")
+        def none(name):
+            raise ImportError(f"No module named {name!r}")
+        importlib.import_module = none
+        answer = []
+        for action in [skeleton.plot, skeleton.to_navis]:
+            try:
+                action()
+            except mcfskel.SkeletonError as error:
+                answer.append(str(error))
+    """)
+    assert ["pip install matplotlib (" in answer[0], "pip install navis (" in answer[1]] == [True, True]
+
+
 def test_voxels_and_points_go_through_the_same_door(run):
     """A torus as voxels, in a file, and as points with normals, as arrays and in a file: each one its circle."""
     answer = run("""
