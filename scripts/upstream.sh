@@ -60,6 +60,7 @@ build_patch() {
 	say "building MeshLab's library and the plugin, $3 precision"
 	quietly cmake -S "$tree" -B "$binaries" -G Ninja -DCMAKE_BUILD_TYPE=Release \
 		-DMESHLAB_PLUGINS=meshlabplugins/filter_mcfskel -DMESHLAB_BUILD_ONLY_LIBRARIES=ON \
+		-DMESHLAB_ALLOW_DOWNLOAD_SOURCE_LIB3MF=OFF \
 		-DMESHLAB_BUILD_WITH_DOUBLE_SCALAR=$double || die "could not configure MeshLab"
 	quietly ninja -C "$binaries" -j "$JOBS" filter_mcfskel || die "could not build the plugin in MeshLab"
 	echo "$binaries/src/distrib/plugins/libfilter_mcfskel.so"
