@@ -58,10 +58,11 @@ Results run(FilterRun& run)
 	CurveLayer curve = readCurve(run.layer(), sourcesOf(run));
 	SkeletonContext context;
 	if (needsSurface(file)) {
-		const SkeletonSurface surface = requireSurface(run, curve, run.progress.part(0, 0.4));
-		curve = skeletonOf(run, std::move(curve), surface, run.progress.part(0.4, 0.9));
+		const SkeletonSurface surface = requireSurface(run, curve, run.progress.part(0, 0.05));
+		curve = skeletonOf(run, std::move(curve), surface, run.progress.part(0.05, 0.2));
 		context.surface.position = surface.surface.mesh->position;
 		context.surface.faces = surface.surface.mesh->triangles(run.progress.cancelOnly());
+		context.progress = run.progress.part(0.2, 1);
 	}
 	else
 		context.surfaceFingerprint = takeSources(run, curve);

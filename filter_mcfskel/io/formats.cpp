@@ -64,7 +64,8 @@ QStringList writeVtp(std::ostream& out, const mcf::CurveSkeleton& skeleton, cons
 QStringList writeGlb(
 	std::ostream& out, const mcf::CurveSkeleton& skeleton, const SkeletonContext& context)
 {
-	mcf::writeGlb(out, skeleton, context.surface, context.boneTolerance, context.surfaceName);
+	mcf::writeGlb(out, skeleton, context.surface, context.boneTolerance, context.surfaceName,
+		context.progress);
 	return {};
 }
 

@@ -39,6 +39,8 @@ struct SkeletonContext
 	double diagonal = 0;
 	/// How far the bones of an armature may be from the curve, mesh units; 0: the default.
 	double boneTolerance = 0;
+	/// Of what takes long; silent unless set.
+	vcg::tri::mcf::Progress progress;
 };
 
 struct SkeletonFormat
@@ -71,7 +73,7 @@ constexpr int writtenElements = vcg::tri::io::Mask::IOM_VERTCOORD
  * @param skeleton its correspondence counts the vertices of the surface's layer, or of `context.surface`
  *                 where the format needs that.
  * @return warnings, a sentence each.
- * @throws FileError, InvalidInput
+ * @throws FileError, InvalidInput, Cancelled
  */
 QStringList writeSkeleton(const QString& file, const vcg::tri::mcf::CurveSkeleton& skeleton,
 	const SkeletonContext& context);

@@ -174,3 +174,28 @@ TEST(Glb, AnotherSurfaceIsRefused)
 		InvalidInput);
 	EXPECT_EQ(out.str(), "");
 }
+
+TEST(Glb, CanBeCancelledAtEveryReportAndThenWritesNothing)
+{
+	CurveSkeleton s = bentStemWithFork(2);
+	const SkinnedSurface surface {
+		{Point3d(0, 0, 0), Point3d(1, 0, 0), Point3d(0, 1, 0)}, {{0, 1, 2}}};
+	s.node = {0, 60, -1};
+	int reports = 0, last = 0, allowed = 1 << 30;
+	std::ostringstream out;
+	const auto write = [&] {
+		reports = 0;
+		writeGlb(out, s, surface, 0, "surface", Progress([&](int percent, const char*) {
+			last = percent;
+			return ++reports <= allowed;
+		}));
+	};
+	write();
+	EXPECT_GT(last, 80);
+	out.str("");
+	const int count = reports;
+	EXPECT_GT(count, 5);
+	for (allowed = 0; allowed < count; ++allowed)
+		EXPECT_THROW(write(), Cancelled);
+	EXPECT_EQ(out.str(), "");
+}

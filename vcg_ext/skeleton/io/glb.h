@@ -37,10 +37,11 @@ namespace vcg::tri::mcf {
  * @param surface   as many vertices as skeleton.node; a vertex of no node takes the nearest node's weights.
  * @param tolerance see makeArmature(); 0: one percent of the surface's bounding box diagonal.
  * @throws InvalidInput: see requireWritable(); the correspondence is not known or of another surface, the
- *         surface has no faces, or there are more than 65535 joints.
+ *         surface has no faces, or there are more than 65535 joints. Cancelled, before anything is written.
  */
 inline void writeGlb(std::ostream& out, const CurveSkeleton& skeleton,
-	const SkinnedSurface& surface, double tolerance = 0, const std::string& name = "surface")
+	const SkinnedSurface& surface, double tolerance = 0, const std::string& name = "surface",
+	const Progress& progress = Progress())
 {
 	requireWritable(skeleton);
 	if (skeleton.position.empty() || skeleton.node.size() != surface.position.size()
@@ -81,7 +82,7 @@ inline void writeGlb(std::ostream& out, const CurveSkeleton& skeleton,
 	constexpr int arrayBuffer = 34962, elementBuffer = 34963;
 
 	const size_t n = surface.position.size();
-	const std::vector<VertexShares> shares = skinWeights(surface, skeleton, armature);
+	const std::vector<VertexShares> shares = skinWeights(surface, skeleton, armature, progress);
 	std::vector<float> positions, weights(4 * n, 0.0f);
 	std::vector<std::uint16_t> joints(4 * n, 0);
 	std::array<float, 3> low, high;

@@ -10,9 +10,11 @@
 #include "armature.h"
 
 #include <skeleton/core/errors.h>
+#include <skeleton/core/progress.h>
+#include <skeleton/core/ticker.h>
 #include <skeleton/input/coincident_points.h>
+#include <skeleton/solver/local_ldlt.h>
 
-#include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <vcg/space/point3.h>
 
@@ -39,6 +41,9 @@ struct VertexShares
 };
 
 namespace detail {
+
+/// A share below this, a hundredth of the least one that fourOfFive() keeps, is taken for 0.
+constexpr double leastShare = 1e-4;
 
 /// The system of skinWeights(), (L + D) w = D p: an M-matrix whose rows add up to D.
 struct SkinSystem
@@ -138,38 +143,40 @@ inline VertexShares fourOfFive(std::array<double, 5> weight, const std::array<in
  * the same weights. Weights are at least 0 and add up to 1; the four largest stay.
  * @param skeleton its `node` is for each vertex of the surface its node; -1: the nearest one.
  * @pre the skeleton has nodes, and `armature` is its own.
- * Complexity: O(F log F) and, for each bone, about the square root of its region's vertices times their number.
+ * @throws SolverError; Cancelled
+ * Complexity: about O(F^1.5) for the factor and, for each bone, O(V + its region's part of the factor).
  */
-inline std::vector<VertexShares> skinWeights(
-	const SkinnedSurface& surface, const CurveSkeleton& skeleton, const Armature& armature)
+inline std::vector<VertexShares> skinWeights(const SkinnedSurface& surface,
+	const CurveSkeleton& skeleton, const Armature& armature, const Progress& progress = Progress())
 {
+	const char* const what = "Skin weights";
 	const size_t n = surface.position.size();
-	const std::vector<int> at = detail::firstCoincident(surface.position, Progress(), "");
+	const std::vector<int> at =
+		detail::firstCoincident(surface.position, progress.part(0, 0.03), what);
 	std::vector<int> node(n);
 	std::vector<double> reach(n);
 	double longest = 0;
-	for (size_t v = 0; v < n; ++v) {
-		if (at[v] != int(v))
-			continue;
+	detail::reportedLoop(int(n), progress.part(0.03, 0.1), what, [&](int i) {
+		const size_t v = size_t(i);
+		if (at[v] != i)
+			return;
 		const Point3d& p = surface.position[v];
 		node[v] = skeleton.node[v];
 		if (node[v] < 0)
-			for (size_t i = 0; i < skeleton.position.size(); ++i)
+			for (size_t k = 0; k < skeleton.position.size(); ++k)
 				if (node[v] < 0
-					|| SquaredDistance(p, skeleton.position[i])
+					|| SquaredDistance(p, skeleton.position[k])
 						< SquaredDistance(p, skeleton.position[size_t(node[v])]))
-					node[v] = int(i);
+					node[v] = int(k);
 		reach[v] = Distance(p, skeleton.position[size_t(node[v])]);
 		if (std::isfinite(reach[v]))
 			longest = std::max(longest, reach[v]);
-	}
+	});
 	for (double& r : reach)
 		r = std::isfinite(r) && longest > 0 ? std::max(r, 1e-6 * longest) : 1;
 	const detail::SkinSystem system = detail::skinSystem(surface, at, reach);
-	const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(system.matrix);
-	if (factor.info() != Eigen::Success)
-		throw SolverError("The weights of the armature could not be computed.");
-
+	progress.report(0.15, what);
+	LocalLdlt solver(system.matrix, progress.part(0.15, 0.8), what);
 	std::vector<std::vector<int>> drawn(armature.bones.size()); // the vertices that a bone draws
 	for (size_t v = 0; v < n; ++v)
 		if (at[v] == int(v))
@@ -177,22 +184,24 @@ inline std::vector<VertexShares> skinWeights(
 				drawn[size_t(bone)].push_back(int(v));
 	std::vector<std::array<double, 5>> largest(n, {0, 0, 0, 0, 0});
 	std::vector<std::array<int, 5>> bones(n, {0, 0, 0, 0, 0});
+	const Progress bonesProgress = progress.part(0.8, 1);
 	for (size_t b = 0; b < armature.bones.size(); ++b) {
-		Eigen::VectorXd right = Eigen::VectorXd::Zero(Eigen::Index(n));
+		std::vector<std::pair<int, double>> right;
 		for (int v : drawn[b])
 			for (const auto& [bone, weight] : armature.weights[size_t(node[size_t(v)])])
 				if (bone == int(b))
-					right[v] = system.pull[size_t(v)] * weight;
-		const Eigen::VectorXd ofBone = factor.solve(right);
-		for (size_t v = 0; v < n; ++v) {
-			double weight = ofBone[Eigen::Index(v)];
+					right.push_back({v, system.pull[size_t(v)] * weight});
+		const double all = double(armature.bones.size());
+		const Progress ofBone = bonesProgress.part(double(b) / all, double(b + 1) / all);
+		solver.solve(right, detail::leastShare, ofBone, what, [&](int vertex, double weight) {
+			const size_t v = size_t(vertex);
 			int bone = int(b);
 			for (size_t k = 0; k < 5; ++k)
 				if (weight > largest[v][k]) {
 					std::swap(weight, largest[v][k]);
 					std::swap(bone, bones[v][k]);
 				}
-		}
+		});
 	}
 	std::vector<VertexShares> shares;
 	shares.reserve(n);
