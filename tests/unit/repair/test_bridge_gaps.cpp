@@ -75,8 +75,8 @@ TEST(BridgeGaps, RaggedEndsThatAreCutAtASlant)
 	std::mt19937 random(7);
 	std::uniform_real_distribution<double> rag(-0.1, 0.1);
 	const shapes::Soup whole = shapes::capsule(6, 0.2, 32);
-	const Outcome made = mended(without(whole,
-		[&](const Point3d& p) { return std::abs(p[0] + 1.5 * p[1] + rag(random)) < 0.8; }));
+	const Outcome made = mended(without(
+		whole, [&](const Point3d& p) { return std::abs(p[0] + 1.5 * p[1] + rag(random)) < 0.8; }));
 	EXPECT_EQ(made.gaps, 1);
 	EXPECT_EQ(made.pieces, 1);
 	EXPECT_NEAR(made.volume, volumeOf(whole), 0.1 * volumeOf(whole));
@@ -114,8 +114,9 @@ TEST(BridgeGaps, ALimbTornOffABody)
 TEST(BridgeGaps, ARingIsClosedOverAShortGapOnly)
 {
 	const auto ring = [](double gap) {
-		return mended(without(shapes::torus(1, 0.2, 90, 24),
-			[&](const Point3d& p) { return p[0] > 0 && std::abs(std::atan2(p[1], p[0])) < gap / 2; }));
+		return mended(without(shapes::torus(1, 0.2, 90, 24), [&](const Point3d& p) {
+			return p[0] > 0 && std::abs(std::atan2(p[1], p[0])) < gap / 2;
+		}));
 	};
 	EXPECT_EQ(ring(0.3).euler, 0);
 	EXPECT_EQ(ring(0.3).gaps, 1);

@@ -61,8 +61,9 @@ struct LimbEnd
 };
 
 /// The axis of the tube that ends at a loop of half-edges: what the normals of the last faces are square to; unit length.
-inline Point3d axisBehind(const std::vector<Point3d>& points, const std::vector<Triangle>& triangles,
-	const std::vector<int>& partner, const std::vector<int>& loop, const LimbEnd& end)
+inline Point3d axisBehind(const std::vector<Point3d>& points,
+	const std::vector<Triangle>& triangles, const std::vector<int>& partner,
+	const std::vector<int>& loop, const LimbEnd& end)
 {
 	constexpr double reach = 4; // radii from the middle of the border
 	Eigen::Matrix3d square = Eigen::Matrix3d::Zero();
@@ -209,8 +210,8 @@ inline std::vector<Triangle> tubeBetween(
 		for (int i = 0; i < sides; ++i) {
 			const double angle = 2 * M_PI * i / sides;
 			ring.corner.push_back(int(points.size()));
-			points.push_back(ring.centre
-				+ (side * std::cos(angle) + other * std::sin(angle)) * ring.radius);
+			points.push_back(
+				ring.centre + (side * std::cos(angle) + other * std::sin(angle)) * ring.radius);
 		}
 		LimbEnd arriving = ring;
 		std::reverse(arriving.corner.begin(), arriving.corner.end());
@@ -252,9 +253,8 @@ inline std::vector<std::tuple<double, int, int>> facingEnds(
 		if (!a.isCutThrough)
 			continue;
 		const double reach = limits.apart * a.radius * (1 + limits.wider) / 2;
-		for (size_t k = at + 1; k < byPlace.size()
-			 && ends[size_t(byPlace[k])].centre[0] - a.centre[0] <= reach;
-			 ++k)
+		for (size_t k = at + 1;
+			 k < byPlace.size() && ends[size_t(byPlace[k])].centre[0] - a.centre[0] <= reach; ++k)
 			look(byPlace[at], byPlace[k]);
 		for (size_t k = at; k-- > 0 && a.centre[0] - ends[size_t(byPlace[k])].centre[0] <= reach;)
 			look(byPlace[at], byPlace[k]);
@@ -317,11 +317,13 @@ inline int bridgeGaps(std::vector<Point3d>& points, std::vector<Triangle>& trian
 			if (isCorner[size_t(t[k])] && isCorner[size_t(t[(k + 1) % 3])])
 				edges.insert(std::minmax(t[k], t[(k + 1) % 3]));
 	// A ragged border may stick into the tube that starts at it.
-	const auto crossesElsewhere = [&](const Triangle& t, const detail::LimbEnd& a, const detail::LimbEnd& b) {
+	const auto crossesElsewhere = [&](const Triangle& t, const detail::LimbEnd& a,
+									  const detail::LimbEnd& b) {
 		constexpr double near = 3; // radii
 		return detail::crossesOthers(tree, given, points, t, [&](int f) {
 			const Point3d& p = points[size_t(given[size_t(f)][0])];
-			return (p - a.centre).Norm() > near * a.radius && (p - b.centre).Norm() > near * b.radius;
+			return (p - a.centre).Norm() > near * a.radius
+				&& (p - b.centre).Norm() > near * b.radius;
 		});
 	};
 	MergeForest pieces(int(piece.size()));
@@ -342,8 +344,7 @@ inline int bridgeGaps(std::vector<Point3d>& points, std::vector<Triangle>& trian
 			&& (b.centre - a.centre).Norm() > limits.inOnePiece * (a.radius + b.radius) / 2)
 			continue;
 		const std::set<int> ofA(a.corner.begin(), a.corner.end());
-		if (std::any_of(
-				b.corner.begin(), b.corner.end(), [&](int v) { return ofA.count(v) > 0; }))
+		if (std::any_of(b.corner.begin(), b.corner.end(), [&](int v) { return ofA.count(v) > 0; }))
 			continue;
 		const size_t before = points.size();
 		const std::vector<Triangle> tube = detail::tubeBetween(points, a, b);
