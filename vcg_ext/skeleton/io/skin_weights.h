@@ -13,8 +13,8 @@
 #include <skeleton/core/progress.h>
 #include <skeleton/core/ticker.h>
 #include <skeleton/input/coincident_points.h>
-#include <skeleton/solver/local_ldlt.h>
 
+#include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <vcg/space/point3.h>
 
@@ -41,9 +41,6 @@ struct VertexShares
 };
 
 namespace detail {
-
-/// A share below this, a hundredth of the least one that fourOfFive() keeps, is taken for 0.
-constexpr double leastShare = 1e-4;
 
 /// The system of skinWeights(), (L + D) w = D p: an M-matrix whose rows add up to D.
 struct SkinSystem
@@ -144,7 +141,8 @@ inline VertexShares fourOfFive(std::array<double, 5> weight, const std::array<in
  * @param skeleton its `node` is for each vertex of the surface its node; -1: the nearest one.
  * @pre the skeleton has nodes, and `armature` is its own.
  * @throws SolverError; Cancelled
- * Complexity: about O(F^1.5) for the factor and, for each bone, O(V + its region's part of the factor).
+ * Complexity: O(F log F) and, for each bone, about the square root of its region's vertices times their number. The
+ * factorisation, the longer part, cannot be cancelled.
  */
 inline std::vector<VertexShares> skinWeights(const SkinnedSurface& surface,
 	const CurveSkeleton& skeleton, const Armature& armature, const Progress& progress = Progress())
@@ -176,7 +174,10 @@ inline std::vector<VertexShares> skinWeights(const SkinnedSurface& surface,
 		r = std::isfinite(r) && longest > 0 ? std::max(r, 1e-6 * longest) : 1;
 	const detail::SkinSystem system = detail::skinSystem(surface, at, reach);
 	progress.report(0.15, what);
-	LocalLdlt solver(system.matrix, progress.part(0.15, 0.8), what);
+	const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(system.matrix);
+	if (factor.info() != Eigen::Success)
+		throw SolverError("The weights of the armature could not be computed.");
+	progress.report(0.8, what);
 	std::vector<std::vector<int>> drawn(armature.bones.size()); // the vertices that a bone draws
 	for (size_t v = 0; v < n; ++v)
 		if (at[v] == int(v))
@@ -184,24 +185,24 @@ inline std::vector<VertexShares> skinWeights(const SkinnedSurface& surface,
 				drawn[size_t(bone)].push_back(int(v));
 	std::vector<std::array<double, 5>> largest(n, {0, 0, 0, 0, 0});
 	std::vector<std::array<int, 5>> bones(n, {0, 0, 0, 0, 0});
-	const Progress bonesProgress = progress.part(0.8, 1);
+	const double all = double(armature.bones.size());
 	for (size_t b = 0; b < armature.bones.size(); ++b) {
-		std::vector<std::pair<int, double>> right;
+		progress.report(0.8 + 0.2 * double(b) / all, what);
+		Eigen::VectorXd right = Eigen::VectorXd::Zero(Eigen::Index(n));
 		for (int v : drawn[b])
 			for (const auto& [bone, weight] : armature.weights[size_t(node[size_t(v)])])
 				if (bone == int(b))
-					right.push_back({v, system.pull[size_t(v)] * weight});
-		const double all = double(armature.bones.size());
-		const Progress ofBone = bonesProgress.part(double(b) / all, double(b + 1) / all);
-		solver.solve(right, detail::leastShare, ofBone, what, [&](int vertex, double weight) {
-			const size_t v = size_t(vertex);
+					right[v] = system.pull[size_t(v)] * weight;
+		const Eigen::VectorXd ofBone = factor.solve(right);
+		for (size_t v = 0; v < n; ++v) {
+			double weight = ofBone[Eigen::Index(v)];
 			int bone = int(b);
 			for (size_t k = 0; k < 5; ++k)
 				if (weight > largest[v][k]) {
 					std::swap(weight, largest[v][k]);
 					std::swap(bone, bones[v][k]);
 				}
-		});
+		}
 	}
 	std::vector<VertexShares> shares;
 	shares.reserve(n);
