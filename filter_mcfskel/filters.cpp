@@ -112,7 +112,8 @@ QString cureInMeshLab(vcg::tri::mcf::Defect defect)
 	case Defect::OpenSheet:
 		return " 'Uniform Mesh Resampling' with 'Absolute Distance' and an offset above 50 % gives it one.";
 	case Defect::Other:
-	case Defect::Empty: break;
+	case Defect::Empty:
+	case Defect::Flat: break;
 	}
 	return "";
 }

@@ -83,7 +83,7 @@ class TestRefusals:
         (sharing_a_vertex, ["two-manifold", "1 vertex", "Repair non Manifold Vertices"]),
         (not_a_number, ["1 ", "finite", "NaN"]),
         (of_size_zero, ["no volume"]),
-        (flat, ["no volume"]),
+        (flat, ["no volume", "is flat"]),
     ])
     def test_bad_surface(self, name, options, mesh, words):
         text = refused(document(mesh()), name, **options)
@@ -99,7 +99,7 @@ class TestRefusals:
     @pytest.mark.parametrize("mesh, words", [
         (lambda: (np.eye(3), [[0, 1, 2]]), ["open sheet"]),
         (of_size_zero, ["no volume"]),
-        (flat, ["no volume"]),
+        (flat, ["no volume", "is flat"]),
     ])
     def test_what_cannot_be_repaired(self, name, mesh, words):
         text = refused(document(mesh()), name)

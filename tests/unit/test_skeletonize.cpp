@@ -377,7 +377,7 @@ TEST(Skeletonize, RefusesBadInput)
 	EXPECT_EQ(defect(shapes::tetrahedraSharingVertex()), Defect::NonManifoldVertices);
 	EXPECT_EQ(
 		defect(shapes::transformed(soup, [](const Point3d& p) { return Point3d(p[0], p[1], 0); })),
-		Defect::NoVolume);
+		Defect::Flat);
 	EXPECT_EQ(defect(shapes::transformed(
 				  soup, [](const Point3d& p) { return Point3d(p[0] / 0.0, p[1], p[2]); })),
 		Defect::NotFinite);

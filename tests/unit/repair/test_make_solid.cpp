@@ -237,7 +237,7 @@ TEST(MakeSolid, RefusesWhatHasNoFacesOrVolume)
 	EXPECT_EQ(defectOf({{{0, 0, 0}, {1, 0, 0}}, {}}), Defect::NoFaces);
 	EXPECT_EQ(defectOf(shapes::transformed(
 				  shapes::sphere(), [](const Point3d& p) { return Point3d(p[0], p[1], 0); })),
-		Defect::NoVolume);
+		Defect::Flat);
 }
 
 TEST(MakeSolid, KeepsWhatHasVolumeOfWhatIsPartlyFlat)

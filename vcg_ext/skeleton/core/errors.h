@@ -30,6 +30,7 @@ enum class Defect {
 	OneSided,            ///< not orientable; there may be border edges, too
 	BorderEdges,         ///< not watertight
 	NoVolume,            ///< a connected component is flat
+	Flat,                ///< all of it is
 	OpenSheet            ///< bounds nothing, however its borders are closed
 };
 

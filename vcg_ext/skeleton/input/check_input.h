@@ -233,6 +233,11 @@ inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
 			flat.push_back(middle[c]);
 		insideOut += volume[c] < 0;
 	}
+	if (int(flat.size()) == components)
+		throw InvalidInput(
+			"There is no inside for a skeleton to lie in: the mesh is flat, all of it encloses no volume. Give it a "
+			"thickness.",
+			Defect::Flat);
 	if (!flat.empty())
 		throw InvalidInput("There is no inside for a skeleton to lie in: of "
 				+ std::to_string(components) + " connected component" + (components == 1 ? "" : "s")

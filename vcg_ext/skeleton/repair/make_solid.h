@@ -436,7 +436,8 @@ private:
 		case Defect::NonManifoldVertices:
 		case Defect::OneSided:
 		case Defect::BorderEdges:
-		case Defect::NoVolume: return true;
+		case Defect::NoVolume:
+		case Defect::Flat: return true;
 		case Defect::Other:
 		case Defect::Empty:
 		case Defect::NoFaces:
@@ -631,7 +632,7 @@ private:
 
 	[[noreturn]] static void refuse(const std::optional<InvalidInput>& error)
 	{
-		if (error && error->defect() == Defect::NoVolume)
+		if (error && (error->defect() == Defect::NoVolume || error->defect() == Defect::Flat))
 			throw InvalidInput(*error);
 		throw InvalidInput(
 			"The surface is an open sheet: it bounds no solid that a skeleton could lie in. Give it a "
