@@ -117,7 +117,7 @@ inline LimbEnd limbEnd(const std::vector<Point3d>& points, const std::vector<Tri
 		const Point3d &p = points[size_t(t[size_t(h) % 3])],
 					  &q = points[size_t(t[size_t(Fans::next(h)) % 3])],
 					  &apex = points[size_t(t[size_t(Fans::next(Fans::next(h))) % 3])];
-		const Point3d edge = q - p, outOfFace = edge ^ (edge ^ (apex - p));
+		const Point3d edge = q - p, normal = edge ^ (apex - p), outOfFace = edge ^ normal;
 		if (const double norm = outOfFace.Norm(); norm > 0)
 			onwards += outOfFace * (edge.Norm() / norm);
 	}
