@@ -82,11 +82,12 @@ struct Stage : VertexStates
 
 	double areaFraction() const { return sum(area) / sum(initialArea); }
 	/// Whether the surface is spread instead of contracted: where large parts of it are inside out, it is drawn to
-	/// balls outside. What is not may grow in its first steps, and is smaller than at the start soon after.
+	/// balls outside. What is not may grow in its first steps, and is no larger than at the start soon after.
 	bool isSpread() const
 	{
 		constexpr int firstSteps = 20;
-		return iteration >= firstSteps && areaFraction() > 1;
+		constexpr double grown = 1.1;
+		return iteration >= firstSteps && areaFraction() > grown;
 	}
 	/// In [0, 1]: what the flow has turned inside out encloses nothing.
 	double volumeFraction() const
