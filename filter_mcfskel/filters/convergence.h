@@ -26,8 +26,8 @@ inline void logIfNotConverged(
 		return;
 	if (stage.isSpread()) {
 		run.log(QString(
-			"Warning: %1: the curve may be off the middle. Apply Make Solid before, which resolves "
-			"where a surface crosses itself.")
+			"Warning: %1: the curve may be off the middle. Apply Make Solid first: it resolves "
+			"self-intersections.")
 					.arg(surfaceSpreads));
 		return;
 	}

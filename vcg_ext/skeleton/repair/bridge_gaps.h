@@ -33,7 +33,7 @@ struct GapLimits
 	double apart = 60, inOnePiece = 3;
 	/// And in diagonals of the smaller piece.
 	double ofPiece = 3;
-	/// How much they may look past each other, degrees.
+	/// Largest angle between the heading of an end and the direction to the other end, degrees.
 	double aside = 60;
 	/// How much wider one may be than the other.
 	double wider = 3;
@@ -286,7 +286,6 @@ inline int bridgeGaps(std::vector<Point3d>& points, std::vector<Triangle>& trian
 		for (int v : triangles[f])
 			box[size_t(piece[f])].Add(points[size_t(v)]);
 	std::vector<detail::LimbEnd> ends;
-	bool any = false;
 	for (const std::vector<int>& loop : detail::holeLoops(points, triangles, partner)) {
 		if (loop.size() < 3 || int(loop.size()) > limits.edges)
 			continue;
@@ -295,13 +294,10 @@ inline int bridgeGaps(std::vector<Point3d>& points, std::vector<Triangle>& trian
 		end.pieceDiagonal = box[size_t(end.piece)].Diag();
 		const bool isOnce =
 			std::set<int>(end.corner.begin(), end.corner.end()).size() == end.corner.size();
-		any = any || (isOnce && end.isCutThrough);
 		if (isOnce)
 			ends.push_back(std::move(end));
 	}
 	progress.report(0.2, "Bridging gaps");
-	if (!any)
-		return 0;
 	const std::vector<std::tuple<double, int, int>> facing = detail::facingEnds(ends, limits);
 	if (facing.empty())
 		return 0;
@@ -311,11 +307,7 @@ inline int bridgeGaps(std::vector<Point3d>& points, std::vector<Triangle>& trian
 	for (const detail::LimbEnd& end : ends)
 		for (int v : end.corner)
 			isCorner[size_t(v)] = 1;
-	std::set<std::pair<int, int>> edges; // between corners
-	for (const Triangle& t : triangles)
-		for (size_t k = 0; k < 3; ++k)
-			if (isCorner[size_t(t[k])] && isCorner[size_t(t[(k + 1) % 3])])
-				edges.insert(std::minmax(t[k], t[(k + 1) % 3]));
+	const std::set<std::pair<int, int>> edges = detail::edgesBetween(triangles, isCorner);
 	// A ragged border may stick into the tube that starts at it.
 	const auto crossesElsewhere = [&](const Triangle& t, const detail::LimbEnd& a,
 									  const detail::LimbEnd& b) {
@@ -327,7 +319,6 @@ inline int bridgeGaps(std::vector<Point3d>& points, std::vector<Triangle>& trian
 		});
 	};
 	MergeForest pieces(int(piece.size()));
-	std::vector<char> isTaken(ends.size(), 0);
 	std::set<int> corners; // of the ends that are taken
 	int bridged = 0;
 	for (const auto& [apart, i, k] : facing) {
@@ -337,7 +328,7 @@ inline int bridgeGaps(std::vector<Point3d>& points, std::vector<Triangle>& trian
 			return std::none_of(
 				end.corner.begin(), end.corner.end(), [&](int v) { return corners.count(v) > 0; });
 		};
-		if (isTaken[size_t(i)] || isTaken[size_t(k)] || !isFree(a) || !isFree(b))
+		if (!isFree(a) || !isFree(b))
 			continue;
 		// A second tube between two pieces would close a ring.
 		if (pieces.find(a.piece) == pieces.find(b.piece)
@@ -359,7 +350,6 @@ inline int bridgeGaps(std::vector<Point3d>& points, std::vector<Triangle>& trian
 			continue;
 		}
 		triangles.insert(triangles.end(), tube.begin(), tube.end());
-		isTaken[size_t(i)] = isTaken[size_t(k)] = 1;
 		pieces.join(a.piece, b.piece);
 		corners.insert(a.corner.begin(), a.corner.end());
 		corners.insert(b.corner.begin(), b.corner.end());

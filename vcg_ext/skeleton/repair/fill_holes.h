@@ -235,6 +235,18 @@ inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& point
 	return loops;
 }
 
+/// The edges whose two vertices are marked.
+inline std::set<std::pair<int, int>> edgesBetween(
+	const std::vector<Triangle>& triangles, const std::vector<char>& marked)
+{
+	std::set<std::pair<int, int>> edges;
+	for (const Triangle& t : triangles)
+		for (size_t k = 0; k < 3; ++k)
+			if (marked[size_t(t[k])] && marked[size_t(t[(k + 1) % 3])])
+				edges.insert(std::minmax(t[k], t[(k + 1) % 3]));
+	return edges;
+}
+
 /// For each face the lowest one of its piece of surface.
 inline std::vector<int> pieceOfFaces(const std::vector<int>& partner)
 {
@@ -307,11 +319,7 @@ inline FilledHoles fillHoles(const std::vector<Point3d>& points, std::vector<Tri
 	for (int h = 0; h < int(partner.size()); ++h)
 		if (partner[size_t(h)] < 0)
 			onBorder[size_t(triangles[size_t(h) / 3][size_t(h) % 3])] = 1;
-	std::set<std::pair<int, int>> edges; // between border vertices
-	for (const Triangle& t : triangles)
-		for (size_t k = 0; k < 3; ++k)
-			if (onBorder[size_t(t[k])] && onBorder[size_t(t[(k + 1) % 3])])
-				edges.insert(std::minmax(t[k], t[(k + 1) % 3]));
+	std::set<std::pair<int, int>> edges = detail::edgesBetween(triangles, onBorder);
 	const std::vector<Triangle> given = triangles;
 	const TriangleTree tree(points, given, progress.part(0, 0.3));
 	const double mostTurn = 1 - std::cos(limits.turn * M_PI / 180);

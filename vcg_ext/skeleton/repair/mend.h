@@ -279,7 +279,8 @@ inline int dropInnerWalls(
 /**
  * Mends small defects, in this order: faces that are degenerate, not finite, or there twice; vertices that
  * coincide; seams (see closeSeams()); edges and vertices where the surface is no two-manifold (see
- * partSurface()); orientation; specks; torn limbs (see bridgeGaps()); small holes (see fillHoles()); open walls inside what is closed by then.
+ * partSurface()); orientation; specks; torn limbs (see bridgeGaps()); small holes (see fillHoles()); open walls
+ * inside what is closed by then.
  *
  * A surface that has none of these defects stays as it is. What cannot be mended is left, with `closed` false.
  * @param points    mesh units. @param triangles corners as indices into `points`.
