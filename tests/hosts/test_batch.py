@@ -60,8 +60,8 @@ def test_a_bad_mesh_costs_the_others_nothing(folder, environment):
     rows = table(folder)
     assert {name: row["status"] for name, row in rows.items()} == {
         "torus": "ok", "capsule": "ok", "animal450": "ok", "flat": "failed"}
-    assert "Remove Isolated" in rows["flat"]["error"]
-    assert "Remove Isolated" in done.stdout and "torus.off" in done.stdout
+    assert "the mesh is flat" in rows["flat"]["error"]
+    assert "the mesh is flat" in done.stdout and "torus.off" in done.stdout
     assert "%" not in done.stderr and "it/s" not in done.stderr, "no progress bar but on a terminal"
     for name in ["torus", "capsule", "animal450"]:
         graph = json.loads((folder.parent / "out" / f"{name}.off.json").read_text())
@@ -256,4 +256,4 @@ def test_on_a_cluster_that_loses_a_worker(folder, environment, cluster, tmp_path
     rows = table(folder)
     assert len(rows) == 8
     assert {name for name, row in rows.items() if row["status"] != "ok"} == {"flat"}, output
-    assert "Remove Isolated" in rows["flat"]["error"]
+    assert "the mesh is flat" in rows["flat"]["error"]

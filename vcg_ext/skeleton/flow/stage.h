@@ -82,12 +82,11 @@ struct Stage : VertexStates
 
 	double areaFraction() const { return sum(area) / sum(initialArea); }
 	/// Whether the surface is spread instead of contracted: where large parts of it are inside out, it is drawn to
-	/// balls outside. What is not may grow in its first steps, and is no larger than at the start soon after.
+	/// balls outside. A surface that does contract may grow in its first steps, seldom in more than 50.
 	bool isSpread() const
 	{
-		constexpr int firstSteps = 20;
-		constexpr double grown = 1.1;
-		return iteration >= firstSteps && areaFraction() > grown;
+		constexpr int firstSteps = 100;
+		return iteration >= firstSteps && areaFraction() > 1;
 	}
 	/// In [0, 1]: what the flow has turned inside out encloses nothing.
 	double volumeFraction() const
