@@ -44,7 +44,7 @@ say "pages"
 # Links between the pages, and to programs and headers, stay what they are in the tree.
 git ls-files -z -- '*.md' docs examples vcg_ext filter_mcfskel/CMakeLists.txt meshes/README.md |
 	xargs -0 cp --parents -t "$pages"
+mv "$out/reference/html" "$pages/reference"
 quietly "$python" -m mkdocs build --strict --config-file docs/mkdocs.yml || die "MkDocs: see above"
-mv "$out/reference/html" "$out/site/reference"
 rm -rf "$pages" "$out/reference"
 echo "$out/site/index.html"

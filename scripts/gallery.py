@@ -13,8 +13,10 @@ from PIL import Image
 from picture import draw
 
 ROOT = Path(__file__).resolve().parents[1]
-SHAPES = ["animal", "hand", "tree", "head", "knot", "letter_p", "plate3", "twin_ears", "letter_g", "horn"]
+SHAPES = ["animal", "hand", "tree", "embrace", "twin_ears", "knot", "plate3", "torus_capsule", "head",
+          "letter_g", "letter_p", "horn"]
 FRAME = (360, 270)  # pixels of each picture
+LINE_WIDTH = 2.2  # of the skeletons, times that of large pictures
 COLOURS = 96  # of a palette, which keeps the files small
 
 
@@ -49,7 +51,8 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         for shape in options.shapes:
             drawn, path = Path(folder) / "picture.png", options.folder / f"{shape}.png"
-            draw(*skeletonized(shape), drawn, colour="branch", pixels=2 * FRAME[0])
+            draw(*skeletonized(shape), drawn, colour="branch", pixels=2 * FRAME[0],
+                 line_width=LINE_WIDTH)
             framed(Image.open(drawn).convert("RGB")).quantize(COLOURS).save(path, optimize=True)
             print(path)
 

@@ -174,8 +174,8 @@ def branch_numbers(count: int, edges: np.ndarray) -> np.ndarray:
 
 def draw(vertices: np.ndarray, faces: np.ndarray, nodes: np.ndarray, edges: np.ndarray,
          radius: np.ndarray, path: Path, colour: str = "radius", up: str = "auto",
-         turn: float = 25, tilt: float = 12, pixels: int = 1200) -> None:
-    """Writes the picture, a PNG file; see main() for the options."""
+         turn: float = 25, tilt: float = 12, pixels: int = 1200, line_width: float = 1) -> None:
+    """Writes the picture, a PNG file; see main() for the options. `line_width`: times the usual one."""
     import matplotlib
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
@@ -198,7 +198,7 @@ def draw(vertices: np.ndarray, faces: np.ndarray, nodes: np.ndarray, edges: np.n
     order = np.argsort(at[edges, 2].mean(axis=1), kind="stable")  # far edges first
     edges = edges[order]
     segments = at[edges][:, :, :2]
-    thick = 4.2 * pixels / 1200
+    thick = 4.2 * line_width * pixels / 1200
     # Each edge with its own outline, so that a near branch visibly passes over a far one.
     outline = LineCollection(segments, colors="#1b2430", linewidths=thick + 2.2, capstyle="round")
     line = LineCollection(segments, linewidths=thick, capstyle="round")
@@ -208,7 +208,8 @@ def draw(vertices: np.ndarray, faces: np.ndarray, nodes: np.ndarray, edges: np.n
         line.set_clim(0, max(float(radius.max(initial=0)), 1e-300))
     else:
         branch = branch_numbers(len(nodes), edges)
-        line.set_color(plt.get_cmap("tab20")(branch % 20))
+        dark_first = np.array([*range(0, 20, 2), *range(1, 20, 2)])
+        line.set_color(plt.get_cmap("tab20")(dark_first[branch % 20]))
     axes.add_collection(outline)
     axes.add_collection(line)
     degree = np.bincount(edges.ravel(), minlength=len(nodes))
