@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import ctypes
 import os
+import re
 import threading
 from collections.abc import Callable
 from typing import Any, Union
@@ -49,6 +50,34 @@ def filter_options(filter_name: str, options: dict[str, Any],
             for name, value in options.items() if value is not None}
 
 
+def check_choices(layers: pymeshlab.MeshSet, name: str, options: dict[str, Any]) -> None:
+    """Checks choices by their names, which pymeshlab does only once the filter runs.
+
+    Args:
+        layers: A document that the filter refuses after that, such as one without faces.
+
+    Raises:
+        SkeletonError: There is no such choice; the text names those there are.
+    """
+    for option, value in options.items():
+        if isinstance(value, str):
+            try:
+                layers.apply_filter(name, **{option: value})
+            except Exception as error:
+                if text := _no_choice(reason(error), {option: value}):
+                    raise SkeletonError(text) from None
+
+
+def _no_choice(text: str, options: dict[str, Any]) -> str | None:
+    """pymeshlab's error of a choice that does not exist, with the option's name; None if it is another."""
+    found = re.match(r"Enum '(.*)' not found\. Possible values are (.*)", text)
+    if found is None:
+        return None
+    name = next((name for name, value in options.items() if value == found[1]), "")
+    choices = ", ".join(re.findall(r"'[^']*'", found[2]))
+    return f"{name}={found[1]!r} is none of {choices}."
+
+
 def _option(name: str, value: Any, default: Any) -> Any:
     if isinstance(value, np.generic) or (isinstance(value, np.ndarray) and value.ndim == 0):
         value = value.item()
@@ -63,7 +92,7 @@ def _option(name: str, value: Any, default: Any) -> Any:
             return bool(value)
     elif isinstance(default, int):
         if isinstance(value, str):
-            return value  # a choice by its name; the filter knows which there are
+            return value  # a choice by its name; see check_choices()
         if isinstance(value, (int, float)) and value == int(value) and not isinstance(value, bool):
             if abs(value) > INT_MAX:
                 raise SkeletonError(f"{name}={value!r} is too large.")
@@ -123,6 +152,8 @@ def open_mesh(path: str) -> pymeshlab.MeshSet:
         text = str(error)
         if text.startswith("Unknown format"):
             text = "its name does not end like a mesh's: .off, .ply, .obj, .stl, .glb, .gltf, .dae, ..."
+        else:  # what comes before says again which file it is
+            text = text.rpartition("Error details: ")[2]
         raise SkeletonError(f"'{path}' cannot be read: {text}") from None
     finally:
         os.chdir(folder)  # where a failed reading in pymeshlab leaves it is the file's folder
@@ -138,6 +169,8 @@ def _guarded(action: Callable[[], Any], options: dict[str, Any]) -> Any:
         raise
     except Exception as error:  # pymeshlab has several kinds, RuntimeError among them
         text = reason(error)
+        if choice := _no_choice(text, options):
+            raise SkeletonError(choice) from None
         named = [name for name, value in options.items() if isinstance(value, str)
                  and f"'{value}'" in text and name not in text]
         raise SkeletonError(", ".join(named) + ": " + text if named else text) from None

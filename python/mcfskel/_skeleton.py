@@ -16,7 +16,7 @@ import numpy.typing as npt
 import pymeshlab
 
 from . import _branches, _convert, _files, _measures, _picture, _plot
-from ._run import (INT_MAX, Length, SkeletonError, SkeletonWarning, apply, filter_options,
+from ._run import (INT_MAX, Length, SkeletonError, SkeletonWarning, apply, check_choices, filter_options,
                    open_mesh)
 from ._volumes import VOLUME_FILES, point_triangles, read_volume, volume_of, voxel_surface
 
@@ -265,14 +265,15 @@ def skeletonize(vertices: Any, faces: npt.ArrayLike | None = None, *,
 
 
 def check_options(**options: Any) -> None:
-    """Checks options of ``skeletonize()`` before there is a mesh: their names and kinds.
+    """Checks options of ``skeletonize()`` before there is a mesh: their names, kinds and choices.
 
     Raises:
         SkeletonError: One does not exist, or its value is of the wrong kind; the text names it.
     """
     layers = pymeshlab.MeshSet()
     layers.add_mesh(pymeshlab.Mesh(np.zeros((1, 3))), "none")  # defaults are those of some layer
-    filter_options("skeletonize()", options, layers.filter_parameter_values(FILTER))
+    values = filter_options("skeletonize()", options, layers.filter_parameter_values(FILTER))
+    check_choices(layers, FILTER, values)
 
 
 def load(path: str | os.PathLike[str]) -> Skeleton:

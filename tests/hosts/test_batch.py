@@ -105,6 +105,7 @@ def test_subfolders_and_names_that_meet(folder, environment):
 @pytest.mark.parametrize("arguments, words", [
     (["--option", "foo=1"], "There is no option foo"),
     (["--option", "w_l=thin"], "w_l='thin' is no number"),
+    (["--option", "repair=all"], "repair='all' is none of 'auto', 'mend', 'off'"),
     (["--option", "w_l"], "expected NAME=VALUE"),
     (["--formats", "xyz"], "'vtp'"),
 ])

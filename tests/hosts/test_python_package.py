@@ -478,7 +478,7 @@ ERRORS = {
     "mesh, resample='no'": "resample='no' is no truth value",
     "mesh, max_iterations=2.5": "max_iterations=2.5 is no whole number",
     "mesh, max_iterations=2**40": "max_iterations=1099511627776 is too large",
-    "mesh, pole_method='x'": "pole_method: Enum 'x' not found",
+    "mesh, pole_method='x'": "pole_method='x' is none of 'voronoi', 'balls'.",
     "mesh, w_m=-1": "w_m",
     "mesh.vertices[:, :2], mesh.faces": "vertices must have the shape (n, 3)",
     "mesh.vertices, mesh.faces + 1": "not one of the",
@@ -489,7 +489,8 @@ ERRORS = {
     "5": "vertices and faces",
     "'none.off'": "There is no file 'none.off'",
     "'.'": "is a folder",
-    "'text.off'": "'text.off' cannot be read",
+    "'text.off'": "'text.off' cannot be read: Invalid file",
+    "'text.ply'": "'text.ply' cannot be read: Header not found",
     "'text.xyzw'": "does not end like a mesh's: .off, .ply",
     "'mesh.off', mesh.faces": "faces must not be given",
 }
@@ -512,7 +513,8 @@ def test_errors_are_one_sentence_with_the_cure(run, tmp_path):
     for name, (content, _) in FILES.items():
         if content is not None:
             (tmp_path / name).write_text(content)
-    (tmp_path / "text.off").write_text("not a mesh")
+    for name in ["text.off", "text.ply"]:
+        (tmp_path / name).write_text("not a mesh")
     (tmp_path / "text.xyzw").write_text("not a mesh")
     calls = [f"mcfskel.skeletonize({arguments})" for arguments in ERRORS]
     calls += [f"mcfskel.load({name!r})" for name in FILES]
