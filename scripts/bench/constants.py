@@ -204,8 +204,13 @@ def table(constants: list[Constant], changes: dict[str, tuple[list[str], list[st
         less, more = changes[name]
         meaning = constant.meaning.replace("|", "\\|")
         lines.append(f"| `{name}` | {constant.value} | {meaning} | {shown(less)} | {shown(more)} |")
-    lines += ["", f"No tip and no cycle of any shape hangs on these {len(quiet)}: "
-              + ", ".join(f"`{name}` {by_name[name].value}" for name in sorted(quiet)) + "."]
+    lines += ["", f"No tip and no cycle of any shape hangs on these {len(quiet)}:", "", "| header | constants |",
+              "|---|---|"]
+    of_header: dict[str, list[str]] = {}
+    for name in sorted(quiet):
+        header, _, constant = name.partition(":")
+        of_header.setdefault(header, []).append(f"`{constant}` {by_name[name].value}")
+    lines += [f"| `{header}` | {', '.join(of_header[header])} |" for header in of_header]
     return "\n".join(lines)
 
 
