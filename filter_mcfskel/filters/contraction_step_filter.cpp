@@ -90,7 +90,7 @@ Results run(FilterRun& run)
 		share.emplace();
 	const mcf::Progress progress = run.progress.part(0.1, 0.95);
 	std::shared_ptr<const mcf::Stage> last = start.stage;
-	for (int i = 0; i < steps && !last->converged && !last->isSpread(); ++i) {
+	for (int i = 0; i < steps && !last->isDone(); ++i) {
 		last = std::make_shared<const mcf::Stage>(
 			mcf::step(*last, parameters, progress.part(double(i) / steps, double(i + 1) / steps)));
 		run.log(stageLine(mcf::figuresOf(*last)));
@@ -112,8 +112,7 @@ Results run(FilterRun& run)
 		surface = &edit.addSurface(
 			source, baseName(source) + "_solid", *contracted.mesh, run.progress.cancelOnly());
 		edit.writeNodes(source, *contracted.vertexOfSlot, last->node);
-		contracted = compactSurface(contracted.mesh);
-		contracted.hollow = start.surface.surface.hollow;
+		contracted = compactSurface(contracted.mesh, contracted.hollow);
 		link = linkTo(*surface, contracted);
 	}
 	addStages(edit, source, stages, link, run.progress.part(0.95, 1));

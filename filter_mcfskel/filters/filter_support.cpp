@@ -273,11 +273,12 @@ mcf::NoteCallback noteLog(const FilterRun& run)
 	return [&run](const std::string& note) { run.log(QString::fromStdString(note)); };
 }
 
-SurfaceLayer compactSurface(std::shared_ptr<const mcf::SurfaceMesh> mesh)
+SurfaceLayer compactSurface(
+	std::shared_ptr<const mcf::SurfaceMesh> mesh, std::shared_ptr<const mcf::SurfaceMesh> hollow)
 {
 	auto identity = std::make_shared<std::vector<int>>(size_t(mesh->vertexSlots()));
 	std::iota(identity->begin(), identity->end(), 0);
-	return {std::move(mesh), identity, {}};
+	return {std::move(mesh), identity, {}, {}, std::move(hollow)};
 }
 
 PoledSurface surfaceWithPoles(

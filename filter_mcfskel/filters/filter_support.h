@@ -81,8 +81,9 @@ void logNotes(const FilterRun& run, const SurfaceLayer& surface);
 /// Writes the library's notes into the log; valid as long as the run.
 vcg::tri::mcf::NoteCallback noteLog(const FilterRun& run);
 
-/// What a layer made from a surface will be.
-SurfaceLayer compactSurface(std::shared_ptr<const vcg::tri::mcf::SurfaceMesh> mesh);
+/// What a layer made from a surface will be. @param hollow see SurfaceLayer.
+SurfaceLayer compactSurface(std::shared_ptr<const vcg::tri::mcf::SurfaceMesh> mesh,
+	std::shared_ptr<const vcg::tri::mcf::SurfaceMesh> hollow);
 
 /// A surface together with its poles.
 struct PoledSurface

@@ -112,8 +112,7 @@ Results run(FilterRun& run)
 	if (!isInput) {
 		surface = &edit.addSurface(input, name + (isResampled ? "_resampled" : "_solid"),
 			*result.surface, run.progress.cancelOnly());
-		contracted = compactSurface(result.surface);
-		contracted.hollow = read.hollow;
+		contracted = compactSurface(result.surface, read.hollow);
 	}
 	const SurfaceLink link = linkTo(*surface, contracted);
 	addStages(edit, input, *kept, link, run.progress.part(0.99, 1));

@@ -30,7 +30,7 @@ Results run(FilterRun& run)
 	MeshModel& layer = edit.addSurface(
 		run.layer(), baseName(run.layer()) + "_solid", mesh, run.progress.part(0.95, 1));
 	if (!hollow)
-		edit.attachSurface(layer, compactSurface(made.surface.mesh));
+		edit.attachSurface(layer, compactSurface(made.surface.mesh, nullptr));
 	Results results = repairResults(report);
 	results.merge(Results {
 		{"vertices", mesh.vertexCount()},

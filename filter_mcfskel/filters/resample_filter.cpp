@@ -27,8 +27,8 @@ Results run(FilterRun& run)
 	logNotes(run, surface);
 	mcf::ResampledSurface made =
 		mcf::resampledSurface(*surface.mesh, parameters, run.progress.part(0.1, 1), noteLog(run));
-	const SurfaceLayer resampled =
-		compactSurface(std::make_shared<const mcf::SurfaceMesh>(std::move(made.mesh)));
+	const SurfaceLayer resampled = compactSurface(
+		std::make_shared<const mcf::SurfaceMesh>(std::move(made.mesh)), surface.hollow);
 	const mcf::SurfaceMesh& mesh = *resampled.mesh;
 
 	DocumentEdit edit(run.document);

@@ -324,8 +324,8 @@ inline Skeletonization skeletonizeThin(const SurfaceInput& input, const Paramete
 	constexpr int maxVerticesAsItIs = 100000;
 	Skeletonization result =
 		skeletonizeOnce(input, given, progress.part(0, once), observer, refinement);
-	const bool isStopped = !result.stage->converged && !result.stage->isSpread()
-		&& given.maxIterations < Parameters().maxIterations;
+	const bool isStopped =
+		!result.stage->isDone() && given.maxIterations < Parameters().maxIterations;
 	const bool isDoubtful = given.resample && given.refine && !result.sheets && input.held.empty()
 		&& result.refined < 1 && !isStopped && input.mesh->vertexCount() <= maxVerticesAsItIs;
 	if (!isDoubtful)

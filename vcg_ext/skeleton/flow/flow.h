@@ -122,7 +122,7 @@ inline Stage step(Stage stage, const Parameters& given, const Progress& progress
 /// surface, which will not contract then.
 inline bool isOver(const Stage& stage, const Parameters& parameters)
 {
-	return stage.converged || stage.isSpread() || stage.iteration >= parameters.maxIterations;
+	return stage.isDone() || stage.iteration >= parameters.maxIterations;
 }
 
 /// Callbacks invoked during the contraction. Unset ones cost nothing.

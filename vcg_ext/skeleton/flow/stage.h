@@ -88,6 +88,8 @@ struct Stage : VertexStates
 		constexpr int firstSteps = 100;
 		return iteration >= firstSteps && areaFraction() > 1;
 	}
+	/// Whether more steps lead nowhere.
+	bool isDone() const { return converged || isSpread(); }
 	/// In [0, 1]: what the flow has turned inside out encloses nothing.
 	double volumeFraction() const
 	{
