@@ -64,6 +64,9 @@ TEST(Stage, FractionsAreOfTheWhole)
 	EXPECT_DOUBLE_EQ(stage.areaFraction(), 0.25);
 	EXPECT_DOUBLE_EQ(stage.volumeFraction(), 0.25);
 	EXPECT_DOUBLE_EQ(stage.fixedFraction(), 0.25);
+	stage.volume = -0.001; // limbs that have contracted turn inside out
+	EXPECT_EQ(stage.volumeFraction(), 0);
+	EXPECT_EQ(figuresOf(stage).volumeFraction, 0);
 }
 
 TEST(Stage, RadiusIsTheMeanDistanceToTheMergedSurface)
