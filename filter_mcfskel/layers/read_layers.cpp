@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 
@@ -132,8 +133,13 @@ LayerTriangles readTriangles(const MeshModel& layer, const mcf::Progress& progre
 		if (f.IsD())
 			return;
 		mcf::Triangle triangle;
-		for (int k = 0; k < 3; ++k)
-			triangle[size_t(k)] = read.pointOfSlot[vcg::tri::Index(mesh, f.cV(k))];
+		for (int k = 0; k < 3; ++k) {
+			const size_t slot = vcg::tri::Index(mesh, f.cV(k));
+			// The host takes a number that no vertex has from a file as it is.
+			triangle[size_t(k)] = slot < read.pointOfSlot.size()
+				? read.pointOfSlot[slot]
+				: int(std::min<size_t>(slot, std::numeric_limits<int>::max()));
+		}
 		read.triangles.push_back(triangle);
 	});
 	return read;

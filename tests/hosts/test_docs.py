@@ -13,7 +13,7 @@ from typing import NamedTuple
 import pymeshlab
 import pytest
 
-from conftest import ROOT
+from conftest import FULL, ROOT
 
 README = (ROOT / "README.md").read_text()
 EXAMPLES = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
@@ -91,6 +91,14 @@ def test_every_filter_is_shown():
         for section in re.split(r"^## ", page.read_text(), flags=re.MULTILINE)[1:]:
             heading = section.splitlines()[0]
             assert "_mcf`" not in heading or "![" in section, heading
+
+
+@pytest.mark.parametrize("words", ["centerline", "centreline", "medial axis", "curve skeleton",
+                                   "thinning", "skeletonize"])
+def test_the_search_finds_it(words: str, capfd: pytest.CaptureFixture[str]):
+    pymeshlab.search(words)
+    found = re.findall(r"#(\w+)$", "\n".join(capfd.readouterr()), re.MULTILINE)
+    assert FULL in found
 
 
 def test_every_parameter_is_explained(capfd: pytest.CaptureFixture[str]):
