@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+#include "../host/scene.h"
 #include "../io/files.h"
 #include "../io/layer_files.h"
 #include "all_filters.h"
@@ -14,6 +15,8 @@
 #include <QSet>
 #include <QXmlStreamWriter>
 
+#include <algorithm>
+#include <optional>
 #include <ostream>
 
 namespace mcfskel {
@@ -79,8 +82,8 @@ void writeLayer(const SavedLayer& saved, const QDir& place, const mcf::Progress&
 		writeMeshFile(file, *saved.layer, progress);
 }
 
-/// The project as MeshLab writes it, without what it says of the view.
-QByteArray projectText(const std::vector<SavedLayer>& layers)
+/// The project as MeshLab writes it, without what it says of the camera.
+QByteArray projectText(const MeshDocument& document, const std::vector<SavedLayer>& layers)
 {
 	QByteArray text;
 	QXmlStreamWriter xml(&text);
@@ -89,6 +92,12 @@ QByteArray projectText(const std::vector<SavedLayer>& layers)
 	xml.writeDTD("<!DOCTYPE MeshLabDocument>");
 	xml.writeStartElement("MeshLabProject");
 	xml.writeStartElement("MeshGroup");
+	std::vector<std::optional<host::ProjectLook>> looks;
+	for (const SavedLayer& saved : layers)
+		looks.push_back(host::projectLook(document, *saved.layer));
+	// MeshLab takes them for those of all layers, or for none.
+	const bool all = std::all_of(looks.begin(), looks.end(), [](const auto& look) { return look; });
+	auto look = looks.begin();
 	for (const SavedLayer& saved : layers) {
 		xml.writeStartElement("MLMesh");
 		xml.writeAttribute("label", saved.layer->label());
@@ -102,6 +111,14 @@ QByteArray projectText(const std::vector<SavedLayer>& layers)
 			matrix += "\n";
 		}
 		xml.writeTextElement("MLMatrix44", matrix);
+		if (all) {
+			xml.writeStartElement("RenderingOption");
+			for (const auto& [name, value] : (*look)->attributes)
+				xml.writeAttribute(name, value);
+			xml.writeCharacters((*look)->text);
+			xml.writeEndElement();
+		}
+		++look;
 		xml.writeEndElement();
 	}
 	xml.writeEndElement();
@@ -121,7 +138,7 @@ Results run(FilterRun& run)
 	std::vector<SavedLayer> layers = layersToSave(run, folder);
 	if (host::rasterCount(run.document) > 0)
 		run.log("The raster layers are not saved.");
-	const QByteArray text = projectText(layers);
+	const QByteArray text = projectText(run.document, layers);
 	if (!place.exists() || !place.mkpath(folder))
 		throw FileError("Cannot make the folder '" + place.filePath(folder).toStdString() + "'.");
 	for (size_t i = 0; i < layers.size(); ++i)
@@ -133,6 +150,7 @@ Results run(FilterRun& run)
 		const QString label = saved.layer->label();
 		saved.layer->setFileName(place.filePath(saved.path));
 		saved.layer->setLabel(label);
+		saved.layer->setMeshModified(false);
 	}
 	run.log(QString("Wrote '%1' and the folder '%2'.").arg(project, folder));
 	return {{"layers", int(layers.size())}};

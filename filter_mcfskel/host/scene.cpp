@@ -153,4 +153,27 @@ void setLooks(MeshDocument& document, const std::vector<std::pair<int, Look>>& l
 	});
 }
 
+std::optional<ProjectLook> projectLook(const MeshDocument& document, MeshModel& layer)
+{
+	MLSceneGLSharedDataContext* const scene = sceneOf(document);
+	if (!scene)
+		return std::nullopt;
+	const Data data = currentLook(*scene, layer);
+	MLPerViewGLOptions options;
+	if (!data.get(options))
+		return std::nullopt;
+	std::string text;
+	data.serialize(text);
+	const auto colour = [](const vcg::Color4b& c) {
+		return QString("%1 %2 %3 %4").arg(c[0]).arg(c[1]).arg(c[2]).arg(c[3]);
+	};
+	return ProjectLook {QString::fromStdString(text),
+		{{"boxColor", colour(options._perbbox_fixed_color)},
+			{"pointColor", colour(options._perpoint_fixed_color)},
+			{"wireColor", colour(options._perwire_fixed_color)},
+			{"solidColor", colour(options._persolid_fixed_color)},
+			{"pointSize", QString::number(options._perpoint_pointsize)},
+			{"wireWidth", QString::number(options._perwire_wirewidth)}}};
+}
+
 } // namespace mcfskel::host

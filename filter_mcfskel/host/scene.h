@@ -9,6 +9,9 @@
 
 #include "host_api.h"
 
+#include <QString>
+
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -32,6 +35,17 @@ constexpr int maxEdgedVertices = 2'500;
  * looks of its own.
  */
 void setLooks(MeshDocument& document, const std::vector<std::pair<int, Look>>& looks);
+
+/// How a layer is drawn, as MeshLab's project files say it: the text of an element RenderingOption, and its
+/// attributes by their names.
+struct ProjectLook
+{
+	QString text;
+	std::vector<std::pair<QString, QString>> attributes;
+};
+
+/// How a layer is drawn now; nothing where the document has no window.
+std::optional<ProjectLook> projectLook(const MeshDocument& document, MeshModel& layer);
 
 } // namespace mcfskel::host
 

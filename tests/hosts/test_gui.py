@@ -177,6 +177,20 @@ def test_from_the_search_to_the_skeleton(window: Window) -> None:
     assert outline_pixels(picture).sum() < 20 and skeleton_pixels(picture).sum() > 300
 
 
+@pytest.mark.parametrize("window", ["y_tube"], indirect=True)
+def test_a_project_is_seen_as_it_was_saved(window: Window, host: Path, tmp_path: Path) -> None:
+    window.open_filter(PREFIX + "Full Skeletonize")
+    apply(window, "Full Skeletonize")
+    lines = [skeleton_pixels(viewport(window)).sum()]
+    window.open_filter(PREFIX + "Save Project")
+    window.fill(PREFIX + "Save Project", "File", str(tmp_path / "y.mlp"))
+    apply(window, "Save Project")
+    with Window(host / "bin" / "meshlab", tmp_path / "y.mlp", data=host / "data") as again:
+        assert names(again.layers()) == names(window.layers())
+        lines.append(skeleton_pixels(viewport(again)).sum())
+    assert lines[1] > 0.8 * lines[0] > 200, "its colours are seen, and no surface hides it"
+
+
 @pytest.mark.parametrize("window", ["capsule"], indirect=True)
 def test_four_steps_and_the_curve(window: Window) -> None:
     before = viewport(window)
