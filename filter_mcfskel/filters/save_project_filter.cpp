@@ -150,7 +150,6 @@ Results run(FilterRun& run)
 		const QString label = saved.layer->label();
 		saved.layer->setFileName(place.filePath(saved.path));
 		saved.layer->setLabel(label);
-		saved.layer->setMeshModified(false);
 	}
 	run.log(QString("Wrote '%1' and the folder '%2'.").arg(project, folder));
 	return {{"layers", int(layers.size())}};
