@@ -8,6 +8,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <random>
+#include <set>
 #include <vector>
 
 using namespace vcg::tri::mcf;
@@ -223,6 +227,87 @@ TEST(Prune, RefusesParametersOutOfRange)
 	p = {};
 	p.leastRadius = NAN;
 	EXPECT_THROW(prune(s, p), InvalidParameter);
+}
+
+/// A tree of nodes on a grid, so that many branches are as long as others.
+CurveSkeleton gridTree(unsigned seed, int nodes)
+{
+	std::mt19937 random(seed);
+	CurveSkeleton s;
+	std::set<std::array<int, 2>> taken;
+	std::vector<std::array<int, 2>> cell {{0, 0}};
+	taken.insert(cell[0]);
+	while (int(cell.size()) < nodes) {
+		const int from = int(random() % cell.size());
+		std::array<int, 2> next = cell[from];
+		next[random() % 2] += random() % 2 ? 1 : -1;
+		if (!taken.insert(next).second)
+			continue;
+		s.edges.push_back({from, int(cell.size())});
+		cell.push_back(next);
+	}
+	for (const std::array<int, 2>& c : cell) {
+		s.position.push_back({double(c[0]), double(c[1]), 0});
+		s.radius.push_back(0.1 * double(1 + random() % 5));
+	}
+	std::sort(s.edges.begin(), s.edges.end());
+	return tracked(s);
+}
+
+/// withoutTerminalBranches() as it is defined: all branches are measured, the least goes, and again.
+template <class Measure>
+CurveSkeleton oneAtATime(CurveSkeleton s, double least, const Measure& measure)
+{
+	for (;;) {
+		const std::vector<std::vector<int>> neighbours = s.neighbours();
+		double worst = least;
+		Branch doomed;
+		for (Branch& branch : skeletonBranches(s)) {
+			if ((neighbours[branch.first()].size() == 1) == (neighbours[branch.last()].size() == 1))
+				continue;
+			if (neighbours[branch.first()].size() == 1)
+				std::reverse(branch.nodes.begin(), branch.nodes.end());
+			if (const double value = measure(s, branch); value < worst) {
+				worst = value;
+				doomed = branch;
+			}
+		}
+		if (doomed.nodes.empty())
+			return s;
+		s = mergeNodes(s, detail::mergingTarget(s.position.size(), doomed, doomed.first()));
+	}
+}
+
+TEST(Prune, TheLeastOneGoesFirstAndWhatGetsLongerIsMeasuredAgain)
+{
+	const auto expectSame = [](const CurveSkeleton& a, const CurveSkeleton& b) {
+		EXPECT_EQ(a.position, b.position);
+		EXPECT_EQ(a.radius, b.radius);
+		EXPECT_EQ(a.edges, b.edges);
+		EXPECT_EQ(a.node, b.node);
+	};
+	for (unsigned seed = 1; seed <= 40; ++seed) {
+		SCOPED_TRACE(seed);
+		CurveSkeleton s = gridTree(seed, 120);
+		if (seed % 2) // cycles
+			for (int i = 0; i < 3; ++i)
+				addEdge(s, 3 + i, 77 + 9 * i);
+		std::sort(s.edges.begin(), s.edges.end());
+		s.edges.erase(std::unique(s.edges.begin(), s.edges.end()), s.edges.end());
+		for (double least : {1.5, 3.5, 100.})
+			expectSame(withoutTerminalBranches(s, least, branchLength),
+				oneAtATime(s, least, branchLength));
+		expectSame(withoutTerminalBranches(s, 0.9, terminalProminence),
+			oneAtATime(s, 0.9, terminalProminence));
+		// Of branches that hang on how many there are: all but three.
+		const auto few = [](const CurveSkeleton& now, const Branch& b, const std::set<int>& tips) {
+			return tips.size() > 3 ? branchLength(now, b) : 1000;
+		};
+		expectSame(withoutTerminalBranches(s, 1000, few),
+			oneAtATime(s, 1000, [](const CurveSkeleton& now, const Branch& b) {
+				return statistics(now).terminals > 3 ? branchLength(now, b) : 1000;
+			}));
+	}
 }
 
 TEST(Prune, CanBeCancelled)

@@ -57,7 +57,7 @@ inline CurveSkeleton withoutSpurs(CurveSkeleton skeleton, const Stage& stage,
 		skeleton.radius[v] = std::sqrt(squared);
 	}
 	return withoutTerminalBranches(
-		std::move(skeleton), least, [](const CurveSkeleton& s, const Branch& branch) {
+		skeleton, least, [](const CurveSkeleton& s, const Branch& branch) {
 			const bool isHeld = std::any_of(branch.nodes.begin(), branch.nodes.end(),
 				[&](int v) { return std::isinf(s.radius[v]); });
 			return isHeld ? infinity : terminalProminence(s, branch);

@@ -18,7 +18,10 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 #include <string>
+#include <tuple>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -48,41 +51,143 @@ inline bool closesTriangle(const std::vector<std::vector<int>>& neighbours, cons
 
 } // namespace detail
 
+namespace detail {
+
+/// The terminal branches of a skeleton while one after the other is removed.
+class TerminalBranches
+{
+public:
+	explicit TerminalBranches(const CurveSkeleton& skeleton) :
+			neighbours(skeleton.neighbours()), target(neighbours.size())
+	{
+		std::iota(target.begin(), target.end(), 0);
+		for (int v = 0; v < int(neighbours.size()); ++v)
+			if (neighbours[v].size() == 1)
+				tips.insert(v);
+	}
+
+	const std::set<int>& allTips() const { return tips; }
+
+	/// From its junction to a tip; no nodes if the component is a chain. Complexity: linear in the branch.
+	Branch upTo(int tip) const
+	{
+		Branch branch = walk(tip, neighbours[tip][0]);
+		if (tips.count(branch.last()))
+			return {};
+		std::reverse(branch.nodes.begin(), branch.nodes.end());
+		return branch;
+	}
+
+	/// Removes a branch; returns the tips whose branches become longer by that, at most two.
+	std::vector<int> remove(const Branch& fromJunction)
+	{
+		const int junction = fromJunction.first();
+		for (size_t i = 1; i < fromJunction.nodes.size(); ++i)
+			target[fromJunction.nodes[i]] = junction;
+		tips.erase(fromJunction.last());
+		std::vector<int>& others = neighbours[junction];
+		others.erase(std::find(others.begin(), others.end(), fromJunction.nodes[1]));
+		std::vector<int> longer;
+		if (others.size() == 2)
+			for (int w : others)
+				if (const int end = walk(junction, w).last(); tips.count(end))
+					longer.push_back(end);
+		return longer;
+	}
+
+	/// For each node the one that it has gone into, itself if it is left.
+	std::vector<int> targets() const
+	{
+		std::vector<int> into = target;
+		for (int& v : into)
+			while (v != target[v])
+				v = target[v];
+		return into;
+	}
+
+private:
+	std::vector<std::vector<int>> neighbours;
+	std::vector<int> target;
+	std::set<int> tips;
+
+	/// To the next node that is a tip or junction, or back to the first one.
+	Branch walk(int from, int to) const
+	{
+		Branch branch {{from, to}};
+		while (neighbours[to].size() == 2 && to != branch.first()) {
+			const int next = neighbours[to][0] == from ? neighbours[to][1] : neighbours[to][0];
+			from = to;
+			to = next;
+			branch.nodes.push_back(to);
+		}
+		return branch;
+	}
+};
+
+} // namespace detail
+
 /**
  * Removes the terminal branches for which measure(skeleton, branch) is below `least`, the least
  * first and one at a time, since a branch that loses its junction becomes part of a longer one. The
- * branch is handed over from its junction to its tip. What had merged into it goes to the junction.
+ * branch is handed over from its junction to its tip, with the skeleton as it was given. What had merged into it
+ * goes to the junction. A measure that takes a third argument gets the tips that are left, a std::set<int>; with
+ * fewer of them it must not fall.
  *
  * A component that is a single chain keeps it. No cycle is touched: every edge of a terminal branch
  * is a bridge.
- * @throws Cancelled. Complexity: O(removed branches * (V + E log E + surface vertices)).
+ * @throws Cancelled. Complexity: O(V + E log E + surface vertices), and for each terminal branch, and again
+ * where one becomes longer, its measure, its length and the logarithm of their number.
  */
 template <class Measure>
-CurveSkeleton withoutTerminalBranches(CurveSkeleton skeleton, double least, const Measure& measure,
-	const Progress& progress = Progress())
+CurveSkeleton withoutTerminalBranches(const CurveSkeleton& skeleton, double least,
+	const Measure& measure, const Progress& progress = Progress())
 {
-	for (;;) {
+	using Tips = std::set<int>;
+	constexpr bool hangsOnTips =
+		std::is_invocable_v<Measure, const CurveSkeleton&, const Branch&, const Tips&>;
+	detail::TerminalBranches branches(skeleton);
+	// By measure; of like ones the first as skeletonBranches() has them.
+	using Entry = std::tuple<double, int, int, int>;
+	std::set<Entry> below;
+	std::map<int, Entry> ofTip;
+	const auto look = [&](int tip) {
 		progress.report(0, "Pruning the skeleton");
-		const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
-		const auto degree = [&](int v) { return neighbours[v].size(); };
-		double worst = least;
-		Branch doomed;
-		for (Branch& branch : skeletonBranches(skeleton)) {
-			if ((degree(branch.first()) == 1) == (degree(branch.last()) == 1))
-				continue;
-			if (degree(branch.first()) == 1)
-				std::reverse(branch.nodes.begin(), branch.nodes.end());
-			const double value = measure(skeleton, branch);
-			if (value < worst) {
-				worst = value;
-				doomed = std::move(branch);
-			}
+		if (const auto old = ofTip.find(tip); old != ofTip.end()) {
+			below.erase(old->second);
+			ofTip.erase(old);
 		}
-		if (doomed.nodes.empty())
-			return skeleton;
-		skeleton = mergeNodes(
-			skeleton, detail::mergingTarget(skeleton.position.size(), doomed, doomed.first()));
+		const Branch branch = branches.upTo(tip);
+		if (branch.nodes.empty())
+			return;
+		double value = 0;
+		if constexpr (hangsOnTips)
+			value = measure(skeleton, branch, branches.allTips());
+		else
+			value = measure(skeleton, branch);
+		if (!(value < least))
+			return;
+		const bool fromTip = branch.last() < branch.first();
+		const int next = fromTip ? branch.nodes[branch.nodes.size() - 2] : branch.nodes[1];
+		const Entry entry(value, std::min(branch.first(), branch.last()), next, tip);
+		below.insert(entry);
+		ofTip.emplace(tip, entry);
+	};
+	for (int tip : branches.allTips())
+		look(tip);
+	while (!below.empty()) {
+		const Entry worst = *below.begin();
+		const int tip = std::get<3>(worst);
+		if constexpr (hangsOnTips) {
+			look(tip); // there may be fewer tips now
+			if (below.empty() || *below.begin() != worst)
+				continue;
+		}
+		below.erase(worst);
+		ofTip.erase(tip);
+		for (int longer : branches.remove(branches.upTo(tip)))
+			look(longer);
 	}
+	return mergeNodes(skeleton, branches.targets());
 }
 
 /**
@@ -90,7 +195,7 @@ CurveSkeleton withoutTerminalBranches(CurveSkeleton skeleton, double least, cons
  * `least`, the least first: `larger` is the junction with the larger radius, which stays in its
  * place, and `detour` what the branch is longer than the straight line between both. Branches that
  * close a cycle are kept.
- * @throws Cancelled. Complexity: as withoutTerminalBranches().
+ * @throws Cancelled. Complexity: O(merged junctions * (V + E log E + surface vertices)).
  */
 template <class Measure>
 CurveSkeleton withMergedJunctions(CurveSkeleton skeleton, double least, const Measure& measure,
@@ -189,25 +294,25 @@ inline double meanTerminalRadius(const CurveSkeleton& skeleton, const Branch& fr
  * @return nodes of `skeleton` that are left, in their order, in their places, with their radii and their
  *         significance; `node` leads to where what was removed hung.
  * @throws InvalidParameter, Cancelled.
- * Complexity: O(removed branches * (V + E log E + surface vertices)).
+ * Complexity: as withoutTerminalBranches() and withMergedJunctions().
  * Source: ours.
  */
 inline CurveSkeleton prune(const CurveSkeleton& skeleton, const PruneParameters& parameters,
 	const Progress& progress = Progress())
 {
 	parameters.check();
-	const auto withoutSpurs = [&](CurveSkeleton s, double from, double to) {
-		return parameters.spurProminence > 0 ? withoutTerminalBranches(std::move(s),
-				   parameters.spurProminence, terminalProminence, progress.part(from, to))
+	const auto withoutSpurs = [&](const CurveSkeleton& s, double from, double to) {
+		return parameters.spurProminence > 0 ? withoutTerminalBranches(
+				   s, parameters.spurProminence, terminalProminence, progress.part(from, to))
 											 : s;
 	};
 	CurveSkeleton pruned = withoutSpurs(skeleton, 0, 0.2);
 	const NestedBranches nested = nestedBranches(pruned, progress.cancelOnly());
 	pruned = significantPart(std::move(pruned), nested, 1 - parameters.detail);
 	pruned = withoutTerminalBranches(
-		std::move(pruned), parameters.shortestBranch, branchLength, progress.part(0.2, 0.4));
+		pruned, parameters.shortestBranch, branchLength, progress.part(0.2, 0.4));
 	pruned = withoutTerminalBranches(
-		std::move(pruned), parameters.leastRadius, meanTerminalRadius, progress.part(0.4, 0.6));
+		pruned, parameters.leastRadius, meanTerminalRadius, progress.part(0.4, 0.6));
 	if (parameters.mergeJunctions) {
 		pruned = withMergedJunctions(
 			std::move(pruned), 1,
@@ -216,7 +321,7 @@ inline CurveSkeleton prune(const CurveSkeleton& skeleton, const PruneParameters&
 				return length / std::max(s.radius[larger], 1e-300);
 			},
 			progress.part(0.6, 0.8));
-		pruned = withoutSpurs(std::move(pruned), 0.8, 1);
+		pruned = withoutSpurs(pruned, 0.8, 1);
 	}
 	pruned.significance = nestedBranches(pruned, progress.cancelOnly()).significance;
 	progress.report(1, "Pruning the skeleton");

@@ -20,6 +20,7 @@
 #include <functional>
 #include <limits>
 #include <queue>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -87,13 +88,14 @@ constexpr double lobeHeight = 5;
  * ear does, is a limb and keeps its branch.
  * @pre the radius of junctions and tips is their distance from the surface.
  */
-inline CurveSkeleton withoutStubsInPlates(CurveSkeleton skeleton, const ClosestSurface& surface)
+inline CurveSkeleton withoutStubsInPlates(
+	const CurveSkeleton& skeleton, const ClosestSurface& surface)
 {
 	constexpr double mostlyFlat = 0.65, asThin = 0.5;
-	return withoutTerminalBranches(
-		std::move(skeleton), 0, [&](const CurveSkeleton& s, const Branch& fromJunction) {
+	return withoutTerminalBranches(skeleton, 0,
+		[&](const CurveSkeleton& s, const Branch& fromJunction, const std::set<int>& tips) {
 			const double radius = s.radius[fromJunction.first()];
-			const double lobes = statistics(s).terminals > 1 ? 2 : 1;
+			const double lobes = tips.size() > 1 ? 2 : 1;
 			const double excess = branchLength(s, fromJunction) - lobes * lobeHeight * radius;
 			if (excess >= 0 || s.radius[fromJunction.last()] < asThin * radius)
 				return 0.0;

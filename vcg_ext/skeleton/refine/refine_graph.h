@@ -18,6 +18,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -92,9 +93,9 @@ inline bool isEdgeInside(CurveSkeleton& skeleton, const ClosestSurface& surface,
  * junction. A component that is a single chain keeps it.
  * @pre the radius of junctions and tips is their distance from the surface.
  */
-inline CurveSkeleton withoutSpurs(CurveSkeleton skeleton, double least)
+inline CurveSkeleton withoutSpurs(const CurveSkeleton& skeleton, double least)
 {
-	return withoutTerminalBranches(std::move(skeleton), least, terminalProminence);
+	return withoutTerminalBranches(skeleton, least, terminalProminence);
 }
 
 /**
@@ -103,18 +104,13 @@ inline CurveSkeleton withoutSpurs(CurveSkeleton skeleton, double least)
  * tips of different limbs, or of a limb that forks, are farther apart than that.
  * @pre the radius of tips is their distance from the surface.
  */
-inline CurveSkeleton withoutTwinTips(CurveSkeleton skeleton)
+inline CurveSkeleton withoutTwinTips(const CurveSkeleton& skeleton)
 {
-	return withoutTerminalBranches(
-		std::move(skeleton), 0, [](const CurveSkeleton& s, const Branch& fromJunction) {
+	return withoutTerminalBranches(skeleton, 0,
+		[](const CurveSkeleton& s, const Branch& fromJunction, const std::set<int>& tips) {
 			const int tip = fromJunction.last();
-			std::vector<int> degree(s.position.size(), 0);
-			for (const auto& [a, b] : s.edges) {
-				++degree[a];
-				++degree[b];
-			}
-			for (int other = 0; other < int(degree.size()); ++other)
-				if (other != tip && degree[other] == 1
+			for (int other : tips)
+				if (other != tip
 					&& Distance(s.position[tip], s.position[other])
 						< 2 * std::min(s.radius[tip], s.radius[other]))
 					return -branchLength(s, fromJunction);
@@ -200,10 +196,10 @@ inline double distinctness(
  * into corners and edges of the surface, of which a shape has many and a skeleton none.
  */
 inline CurveSkeleton withoutCornerBranches(
-	CurveSkeleton skeleton, KnownClearances& clearances, double least)
+	const CurveSkeleton& skeleton, KnownClearances& clearances, double least)
 {
 	return withoutTerminalBranches(
-		std::move(skeleton), least, [&](const CurveSkeleton& s, const Branch& branch) {
+		skeleton, least, [&](const CurveSkeleton& s, const Branch& branch) {
 			return distinctness(s, clearances, branch);
 		});
 }
