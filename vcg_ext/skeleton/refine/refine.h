@@ -151,11 +151,11 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 	KnownClearances clearances(surface);
 	const auto tidy = [&](double spurProminence, double tipDistinctness) {
 		measureBranchEnds(skeleton, clearances);
-		skeleton = withoutSpurs(std::move(skeleton), spurProminence);
+		skeleton = withoutSpurs(skeleton, spurProminence);
 		if (spurProminence > 0)
-			skeleton = withoutTwinTips(std::move(skeleton));
+			skeleton = withoutTwinTips(skeleton);
 		if (tipDistinctness > 0) {
-			skeleton = withoutCornerBranches(std::move(skeleton), clearances, tipDistinctness);
+			skeleton = withoutCornerBranches(skeleton, clearances, tipDistinctness);
 			skeleton = withoutCornerEnds(skeleton, clearances, tipDistinctness);
 		}
 		skeleton = withWholeJunctions(std::move(skeleton), parameters.junctionProminence);
@@ -171,7 +171,7 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 	const auto grow = [&] {
 		if (parameters.spurProminence > 0) {
 			measureBranchEnds(skeleton, clearances);
-			skeleton = withoutStubsInPlates(std::move(skeleton), surface);
+			skeleton = withoutStubsInPlates(skeleton, surface);
 		}
 		growFeatures(skeleton, component, surface, clearances, features,
 			progress.part(double(done) / total, double(done + 1) / total));
