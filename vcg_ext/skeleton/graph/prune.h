@@ -71,7 +71,7 @@ public:
 	/// From its junction to a tip; no nodes if the component is a chain. Complexity: linear in the branch.
 	Branch upTo(int tip) const
 	{
-		Branch branch = walk(tip, neighbours[tip][0]);
+		Branch branch = branchAlong(neighbours, tip, neighbours[tip][0]);
 		if (tips.count(branch.last()))
 			return {};
 		std::reverse(branch.nodes.begin(), branch.nodes.end());
@@ -90,7 +90,7 @@ public:
 		std::vector<int> longer;
 		if (others.size() == 2)
 			for (int w : others)
-				if (const int end = walk(junction, w).last(); tips.count(end))
+				if (const int end = branchAlong(neighbours, junction, w).last(); tips.count(end))
 					longer.push_back(end);
 		return longer;
 	}
@@ -109,19 +109,6 @@ private:
 	std::vector<std::vector<int>> neighbours;
 	std::vector<int> target;
 	std::set<int> tips;
-
-	/// To the next node that is a tip or junction, or back to the first one.
-	Branch walk(int from, int to) const
-	{
-		Branch branch {{from, to}};
-		while (neighbours[to].size() == 2 && to != branch.first()) {
-			const int next = neighbours[to][0] == from ? neighbours[to][1] : neighbours[to][0];
-			from = to;
-			to = next;
-			branch.nodes.push_back(to);
-		}
-		return branch;
-	}
 };
 
 } // namespace detail
@@ -143,14 +130,14 @@ CurveSkeleton withoutTerminalBranches(const CurveSkeleton& skeleton, double leas
 	const Measure& measure, const Progress& progress = Progress())
 {
 	using Tips = std::set<int>;
-	constexpr bool hangsOnTips =
+	constexpr bool dependsOnTips =
 		std::is_invocable_v<Measure, const CurveSkeleton&, const Branch&, const Tips&>;
 	detail::TerminalBranches branches(skeleton);
-	// By measure; of like ones the first as skeletonBranches() has them.
+	// Measure, then two nodes that break ties in the order of skeletonBranches(), and the tip.
 	using Entry = std::tuple<double, int, int, int>;
 	std::set<Entry> below;
 	std::map<int, Entry> ofTip;
-	const auto look = [&](int tip) {
+	const auto measureAgain = [&](int tip) {
 		progress.report(0, "Pruning the skeleton");
 		if (const auto old = ofTip.find(tip); old != ofTip.end()) {
 			below.erase(old->second);
@@ -160,7 +147,7 @@ CurveSkeleton withoutTerminalBranches(const CurveSkeleton& skeleton, double leas
 		if (branch.nodes.empty())
 			return;
 		double value = 0;
-		if constexpr (hangsOnTips)
+		if constexpr (dependsOnTips)
 			value = measure(skeleton, branch, branches.allTips());
 		else
 			value = measure(skeleton, branch);
@@ -173,19 +160,19 @@ CurveSkeleton withoutTerminalBranches(const CurveSkeleton& skeleton, double leas
 		ofTip.emplace(tip, entry);
 	};
 	for (int tip : branches.allTips())
-		look(tip);
+		measureAgain(tip);
 	while (!below.empty()) {
 		const Entry worst = *below.begin();
 		const int tip = std::get<3>(worst);
-		if constexpr (hangsOnTips) {
-			look(tip); // there may be fewer tips now
+		if constexpr (dependsOnTips) {
+			measureAgain(tip); // there may be fewer tips now
 			if (below.empty() || *below.begin() != worst)
 				continue;
 		}
 		below.erase(worst);
 		ofTip.erase(tip);
 		for (int longer : branches.remove(branches.upTo(tip)))
-			look(longer);
+			measureAgain(longer);
 	}
 	return mergeNodes(skeleton, branches.targets());
 }

@@ -26,6 +26,20 @@ struct Branch
 	bool isClosed() const { return first() == last(); }
 };
 
+/// The branch that starts with two neighbouring nodes: to the next node of degree other than 2, or back to the first.
+/// Complexity: linear in the branch.
+inline Branch branchAlong(const std::vector<std::vector<int>>& neighbours, int from, int to)
+{
+	Branch branch {{from, to}};
+	while (neighbours[to].size() == 2 && to != branch.first()) {
+		const int next = neighbours[to][0] == from ? neighbours[to][1] : neighbours[to][0];
+		from = to;
+		to = next;
+		branch.nodes.push_back(to);
+	}
+	return branch;
+}
+
 /**
  * The branches of a skeleton: those that start at nodes of degree other than 2, ascending, then the
  * free cycles. Every edge is in exactly one; an isolated node is in none.
@@ -38,14 +52,9 @@ inline std::vector<Branch> skeletonBranches(const CurveSkeleton& skeleton)
 	std::vector<Branch> branches;
 	std::vector<char> walked(n, 0); // inner nodes
 	const auto walk = [&](int from, int to) {
-		Branch branch {{from, to}};
-		while (neighbours[to].size() == 2 && to != branch.first()) {
-			walked[to] = 1;
-			const int next = neighbours[to][0] == from ? neighbours[to][1] : neighbours[to][0];
-			from = to;
-			to = next;
-			branch.nodes.push_back(to);
-		}
+		Branch branch = branchAlong(neighbours, from, to);
+		for (size_t i = 1; i + 1 < branch.nodes.size(); ++i)
+			walked[branch.nodes[i]] = 1;
 		return branch;
 	};
 	for (int v = 0; v < n; ++v) {
