@@ -183,6 +183,20 @@ TEST(Skeletonize, DenoisesUnlessToldNotTo)
 	EXPECT_EQ(run(clean, parameters).noise.isNoisy(), false);
 }
 
+TEST(Skeletonize, NoiseAsLargeAsTheEdgesLeavesTheShape)
+{
+	// Nearly all triangles cross others, and the balls between them are small all over.
+	const shapes::Soup ring = shapes::torus(1, 0.3, 240, 72); // edges of 0.026
+	for (const double noise : {0.015, 0.03, 0.05}) {
+		const Skeletonization result = run(shapes::jittered(ring, noise), Parameters());
+		EXPECT_LT(result.surface->vertexCount(), 60000) << noise;
+		const SkeletonStatistics found = statistics(result.curve);
+		EXPECT_EQ(found.components, 1) << noise;
+		EXPECT_EQ(found.cycles, 1) << noise;
+		EXPECT_EQ(found.terminals, 0) << noise;
+	}
+}
+
 TEST(Skeletonize, KeepsSheetsWhereAskedTo)
 {
 	Parameters parameters = coarse();

@@ -101,6 +101,24 @@ TEST(SizingField, AShapeOfOneScaleHasNone)
 	EXPECT_TRUE(fieldOf(torus, 0.02).empty());
 }
 
+TEST(SizingField, NoiseIsNotThin)
+{
+	// The balls between the spikes are as small as those of a thin tube, on a ball that is nowhere thin.
+	const shapes::Soup ball = shapes::sphere(6);
+	for (const double noise : {0.01, 0.02, 0.05})
+		EXPECT_TRUE(fieldOf(shapes::jittered(ball, noise).mesh(), 0.02).empty()) << noise;
+}
+
+TEST(SizingField, AThinTubeIsThinInNoiseThatIsLessThanItsRadius)
+{
+	const SurfaceMesh mesh = shapes::jittered(bottle(), 0.1 * thinRadius).mesh();
+	const SizingField field = fieldOf(mesh, 0.1);
+	ASSERT_FALSE(field.empty());
+	for (int v = 0; v < mesh.vertexSlots(); ++v)
+		if (mesh.position[v][0] > 0.7 && mesh.position[v][0] < 1.9)
+			EXPECT_LT(field[v], 1.2 * relative * thinRadius);
+}
+
 TEST(SizingField, ScalesWithTheShape)
 {
 	const SizingField one = fieldOf(bottle().mesh(), 0.1);

@@ -368,7 +368,8 @@ inline void addTo(RefineReport& report, Defect defect)
 
 /**
  * What of a refined curve has left the surface is brought back, see detail::CurveIntoSolid: a few edges that
- * cut a bend of a twig are no reason to give up all that is refined elsewhere. Not where they are more than a tenth.
+ * cut a bend of a twig are no reason to give up all that is refined elsewhere. Not where they are more than a tenth,
+ * or a thousand.
  * @return a curve that is outside nowhere by more than the rounding; nothing if that is not possible.
  * @throws Cancelled
  */
@@ -394,11 +395,12 @@ inline std::optional<CurveSkeleton> broughtBack(
 	for (const auto& [a, b] : curve.edges)
 		edges.push_back({a, b});
 	constexpr double mostOutside = 0.1; // of the edges: more is no slip, but another curve
+	constexpr double mostEdges = 1000;  // which take ten seconds
 	const auto isOutside = [&](const std::array<int, 2>& edge) {
 		return !solid.segmentIsInside(place[edge[0]], place[edge[1]], detail::outsideTolerance);
 	};
 	if (double(std::count_if(edges.begin(), edges.end(), isOutside))
-		> mostOutside * double(edges.size()))
+		> std::min(mostOutside * double(edges.size()), mostEdges))
 		return std::nullopt;
 	CurveSkeleton inside = curve;
 	// Exactly if possible: ways along the surface itself are within the rounding only.
