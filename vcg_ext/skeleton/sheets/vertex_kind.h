@@ -70,8 +70,8 @@ public:
 	};
 
 	Point3d origin;
-	/// A power of two of the size of an epsilon, by which lengths are divided: their squares stay within the
-	/// range of single precision, and no digit changes.
+	/// A power of two of the size of an epsilon, or of the rounding of the box where that is longer, by which lengths
+	/// are divided: their squares stay within the range of single precision, and no digit changes.
 	double unit;
 	std::vector<Piece> pieces;
 	std::vector<Cell> cells;
@@ -82,14 +82,14 @@ public:
 	 * Each triangle is halved at its longest edge until none is longer than longestPiece, or 16 times;
 	 * less often where that would give millions of pieces, as with an epsilon far below the edges.
 	 * @param faces    of the component.
-	 * @param middle   of its box.
+	 * @param box      of its vertices.
 	 * @param epsilon  mesh units.
 	 * @throws Cancelled
 	 */
-	PiecesByCell(const SurfaceMesh& mesh, const std::vector<int>& faces, const Point3d& middle,
+	PiecesByCell(const SurfaceMesh& mesh, const std::vector<int>& faces, const Box3d& box,
 		const CellGrid& grid, double epsilon, const Progress& progress) :
-			origin(middle),
-			unit(epsilon > 0 ? std::exp2(std::ilogb(epsilon)) : 1)
+			origin(box.Center()),
+			unit(unitOf(epsilon, box))
 	{
 		const double longest = longestPiece * epsilon;
 		const int halvings = mostHalvings(mesh, faces, longest, progress.part(0, 0.05));
@@ -131,6 +131,13 @@ public:
 	}
 
 private:
+	static double unitOf(double epsilon, const Box3d& box)
+	{
+		constexpr double rounding = 1e-15; // of the box's diagonal
+		const double size = std::max(epsilon, rounding * box.Diag());
+		return size > 0 ? std::exp2(std::ilogb(size)) : 1;
+	}
+
 	/// How often a triangle may be halved: two halvings halve its longest edge.
 	static int mostHalvings(const SurfaceMesh& mesh, const std::vector<int>& faces, double longest,
 		const Progress& progress)
@@ -459,7 +466,7 @@ inline std::vector<VertexKind> vertexKinds(
 			count, [&](int i) { return mesh.position[own[size_t(i)]]; }, grid, part.part(0, 0.1),
 			detail::tellingKinds);
 		const detail::PiecesByCell surface(
-			mesh, faces[size_t(c)], box.Center(), grid, epsilon, part.part(0.1, 0.4));
+			mesh, faces[size_t(c)], box, grid, epsilon, part.part(0.1, 0.4));
 		const auto cells = [&](int begin, int end) {
 			detail::CellsAround around(surface.cells, sorted.cell[begin]);
 			std::vector<int> near, closed;
