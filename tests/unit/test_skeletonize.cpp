@@ -197,6 +197,21 @@ TEST(Skeletonize, NoiseAsLargeAsTheEdgesLeavesTheShape)
 	}
 }
 
+TEST(Skeletonize, NoiseOfThinPartsGrowsNoTips)
+{
+	// A ring three thousandths of its size thick, with noise of up to half of that.
+	const double radius = 0.01;
+	const shapes::Soup ring = shapes::torus(1, radius, 800, 10);
+	for (const double noise : {0.1, 0.3, 0.5}) {
+		const Skeletonization result = run(shapes::jittered(ring, noise * radius), Parameters());
+		const SkeletonStatistics found = statistics(result.curve);
+		EXPECT_EQ(found.components, 1) << noise;
+		EXPECT_EQ(found.cycles, 1) << noise;
+		EXPECT_EQ(found.terminals, 0) << noise;
+		EXPECT_TRUE(result.refined) << noise;
+	}
+}
+
 TEST(Skeletonize, KeepsSheetsWhereAskedTo)
 {
 	Parameters parameters = coarse();

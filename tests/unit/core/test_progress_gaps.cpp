@@ -118,7 +118,8 @@ TEST(ProgressGaps, ResamplingReportsAsItsInputGrows)
 	const int wanted = mesh.vertexCount() / mostVerticesBetweenReports;
 	EXPECT_GE(reportsOf([&](const Progress& p) { MeasuredSurface(mesh, p); }), wanted);
 	const MeasuredSurface surface(mesh);
-	EXPECT_GE(reportsOf([&](const Progress& p) { smoothed(surface, {2}, p); }), 2 * wanted);
+	const std::vector<int> twice(mesh.position.size(), 2);
+	EXPECT_GE(reportsOf([&](const Progress& p) { smoothed(surface, twice, p); }), 2 * wanted);
 	SurfaceMesh coarse;
 	const int reports =
 		reportsOf([&](const Progress& p) { coarse = resample(surface, {0.3}, 1, p); });

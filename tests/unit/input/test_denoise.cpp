@@ -9,7 +9,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
+#include <vector>
 
 namespace {
 
@@ -114,6 +116,29 @@ TEST(Noise, MoreNoiseIsSmoothedMore)
 	EXPECT_GT(many, few);
 }
 
+TEST(Noise, OfThinPartsIsMeasuredByTheirThickness)
+{
+	// Of a ring, one half of which counts as thin. The diagonal does not matter to it, the thickness does.
+	const double minor = 0.01;
+	const SurfaceMesh clean = meshOf(shapes::torus(1, minor, 800, 10));
+	std::vector<double> thickness;
+	for (const vcg::Point3d& p : clean.position)
+		thickness.push_back(p[0] > 0 ? minor : std::numeric_limits<double>::infinity());
+	EXPECT_FALSE(measureNoise(clean, Progress(), thickness).isNoisy());
+	for (const double part : {0.1, 0.3}) {
+		const SurfaceMesh rough = noisy(clean, part * minor);
+		const NoiseReport report = measureNoise(rough, Progress(), thickness);
+		EXPECT_NEAR(report.ofThickness, part, 0.25 * part);
+		EXPECT_GT(report.roundsWhereThin[0], 0);
+		EXPECT_LT(report.level, 3e-4 + part * minor / clean.bounds().Diag());
+		const std::vector<int> rounds =
+			report.ofVertices(MeasuredSurface(rough).component(), thickness);
+		for (size_t v = 0; v < rounds.size(); ++v)
+			EXPECT_EQ(
+				rounds[v], (thickness[v] == minor ? report.roundsWhereThin : report.rounds)[0]);
+	}
+}
+
 TEST(Noise, OnlyTheNoisyComponentIsSmoothed)
 {
 	const SurfaceMesh clean = meshOf(shapes::sphere(5));
@@ -125,7 +150,8 @@ TEST(Noise, OnlyTheNoisyComponentIsSmoothed)
 	ASSERT_EQ(report.rounds.size(), 2u);
 	EXPECT_EQ(report.rounds[0], 0);
 	EXPECT_GT(report.rounds[1], 0);
-	const SurfaceMesh calm = smoothed(mesh, report.rounds);
+	const MeasuredSurface surface(mesh);
+	const SurfaceMesh calm = smoothed(surface, report.ofVertices(surface.component(), {}));
 	for (size_t v = 0; v < clean.position.size(); ++v)
 		EXPECT_EQ(calm.position[v], mesh.position[v]);
 }
@@ -134,7 +160,7 @@ TEST(Noise, SmoothingRemovesNoiseAndKeepsTheVolume)
 {
 	const SurfaceMesh clean = meshOf(shapes::sphere(5));
 	const SurfaceMesh rough = noisy(clean, 0.01);
-	const SurfaceMesh calm = smoothed(rough, {40});
+	const SurfaceMesh calm = smoothed(rough, std::vector<int>(rough.position.size(), 40));
 	EXPECT_LT(roughness(calm), 0.4 * roughness(rough));
 	EXPECT_NEAR(calm.volume(), clean.volume(), 0.01 * clean.volume());
 	EXPECT_EQ(calm.triangles(), rough.triangles());
@@ -144,7 +170,7 @@ TEST(Noise, SmoothingCanBeCancelled)
 {
 	const SurfaceMesh mesh = meshOf(shapes::sphere(2));
 	const Progress stop([](int, const char*) { return false; });
-	EXPECT_THROW(smoothed(mesh, {10}, stop), Cancelled);
+	EXPECT_THROW(smoothed(mesh, std::vector<int>(mesh.position.size(), 10), stop), Cancelled);
 }
 
 } // namespace

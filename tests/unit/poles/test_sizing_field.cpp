@@ -210,7 +210,7 @@ TEST(SizingField, AMeshBeyondTheBudgetResolvesWhatItCanAndSaysWhatItDoesNot)
 	std::string said;
 	const auto fieldOfNeck = [&](const SurfaceMesh& mesh) {
 		said.clear();
-		return fieldOfResampling(MeasuredSurface(mesh), length, Parameters(), Progress(),
+		return fieldOfResampling(MeasuredSurface(mesh), length, Parameters(), nullptr, Progress(),
 			[&](const std::string& text) { said += text + "\n"; });
 	};
 	constexpr int sides = 5; // few vertices, and thirty edges for each

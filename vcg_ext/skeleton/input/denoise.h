@@ -112,6 +112,8 @@ struct NoiseLevel
 	double deviation = 0;
 	/// How much like noise it is: about 1 if it is nothing else, less if it is facets.
 	double whiteness = 0;
+	/// The deviation as a part of the local thickness, where that is given.
+	double relative = 0;
 };
 
 namespace detail {
@@ -166,12 +168,14 @@ private:
  * The whiteness is the correlation, as a fraction of the one of noise, divided by the
  * square root of the ratio of tails.
  * @pre mesh is compact.
- * @param still 1 for vertices that are not asked, see measureNoise(); may be empty.
+ * @param isAsked   0 for vertices that are not asked; empty: all are.
+ * @param thickness of each vertex, mesh units; empty: NoiseLevel::relative is not measured.
  * Of a large component some 12000 vertices are looked at, spread evenly over its numbering.
  * @throws Cancelled. Complexity: O(V).
  */
 inline std::vector<NoiseLevel> noiseLevel(const MeasuredSurface& surface,
-	const Progress& progress = Progress(), const std::vector<char>& still = {})
+	const Progress& progress = Progress(), const std::vector<char>& isAsked = {},
+	const std::vector<double>& thickness = {})
 {
 	constexpr int enough = 12000, normalRounds = 3;
 	const SurfaceMesh& mesh = surface.mesh();
@@ -201,7 +205,7 @@ inline std::vector<NoiseLevel> noiseLevel(const MeasuredSurface& surface,
 	detail::reportedLoop(
 		mesh.vertexSlots(), progress.part(0.8, 0.95), detail::measuringNoise, [&](int v) {
 			const int c = surface.component()[v];
-			if (seen[c]++ % (1 + size[c] / enough) != 0 || (!still.empty() && still[v]))
+			if (seen[c]++ % (1 + size[c] / enough) != 0 || (!isAsked.empty() && !isAsked[v]))
 				return;
 			if (!(normal[v].Norm() > 0))
 				return;
@@ -216,6 +220,12 @@ inline std::vector<NoiseLevel> noiseLevel(const MeasuredSurface& surface,
 		std::vector<double>& d = deviations[c];
 		if (d.empty())
 			continue;
+		if (!thickness.empty()) {
+			std::vector<double> relative;
+			for (size_t i = 0; i < d.size(); ++i)
+				relative.push_back(d[i] / thickness[asked[c][i]]);
+			level[c].relative = detail::quantile(relative, 0.5) / half;
+		}
 		level[c].deviation = detail::quantile(d, 0.5) / half;
 		const double tails = detail::quantile(d, 0.9) / ninth,
 					 core = detail::quantile(d, 0.25) / quarter;
@@ -237,13 +247,12 @@ inline std::vector<NoiseLevel> noiseLevel(const MeasuredSurface& surface,
  * A copy of the surface with its noise smoothed away and its volume kept: rounds of Taubin's
  * filter, v <- v + lambda (M v - v), then the same with mu < -lambda (Taubin 1995; lambda 0.5,
  * pass band 0.1).
- * @param rounds for each component, in the order of connectedComponents(); 0 leaves it alone.
- * @param still  1 for vertices that stay where they are; may be empty.
+ * @param rounds for each vertex slot; 0 leaves it where it is.
  * @pre mesh is compact.
  * @throws Cancelled. Complexity: O(V) a round.
  */
 inline SurfaceMesh smoothed(const MeasuredSurface& surface, const std::vector<int>& rounds,
-	const Progress& progress = Progress(), const std::vector<char>& still = {})
+	const Progress& progress = Progress())
 {
 	constexpr double lambda = 0.5, passBand = 0.1;
 	constexpr double mu = 1 / (passBand - 1 / lambda);
@@ -256,7 +265,7 @@ inline SurfaceMesh smoothed(const MeasuredSurface& surface, const std::vector<in
 		const std::vector<Point3d> mean = rings.of(mesh.position, ofHalf.part(0, 0.8));
 		const double factor = half % 2 == 0 ? lambda : mu;
 		detail::reportedLoop(mesh.vertexSlots(), ofHalf.part(0.8, 1), what, [&](int v) {
-			if (half / 2 < rounds[surface.component()[v]] && (still.empty() || !still[v]))
+			if (half / 2 < rounds[v])
 				mesh.position[v] += (mean[v] - mesh.position[v]) * factor;
 		});
 	}
@@ -268,11 +277,30 @@ struct NoiseReport
 {
 	/// Standard deviation of the noisiest component, fraction of its diagonal.
 	double level = 0;
-	/// Rounds of smoothed() for each component.
-	std::vector<int> rounds;
+	/// That of the thin parts of the noisiest one, fraction of the local thickness; 0 if nothing is thin.
+	double ofThickness = 0;
+	/// Rounds of smoothed() for each component, where it is not thin and where it is.
+	std::vector<int> rounds, roundsWhereThin;
 
 	int mostRounds() const { return *std::max_element(rounds.begin(), rounds.end()); }
-	bool isNoisy() const { return mostRounds() > 0; }
+	int mostRoundsWhereThin() const
+	{
+		return *std::max_element(roundsWhereThin.begin(), roundsWhereThin.end());
+	}
+	bool isNoisy() const { return mostRounds() > 0 || mostRoundsWhereThin() > 0; }
+
+	/// Rounds of each vertex. @param thickness as in measureNoise().
+	std::vector<int> ofVertices(
+		const std::vector<int>& component, const std::vector<double>& thickness) const
+	{
+		std::vector<int> ofVertex;
+		ofVertex.reserve(component.size());
+		for (size_t v = 0; v < component.size(); ++v) {
+			const bool isThin = !thickness.empty() && std::isfinite(thickness[v]);
+			ofVertex.push_back((isThin ? roundsWhereThin : rounds)[component[v]]);
+		}
+		return ofVertex;
+	}
 };
 
 /**
@@ -282,18 +310,32 @@ struct NoiseReport
  * than 3 % of the diagonal, noise cannot be told from shape, and nothing is done; nor where the whiteness,
  * see noiseLevel(), is below 0.6: clean surfaces whose facets deviate that much have up to 0.5, those with
  * noise of 0.5 % of the diagonal 0.72 to 1.
- * @param still 1 for vertices that are not asked: those of parts so thin that their facets would count
- *              as noise; may be empty.
+ *
+ * Parts that are thin are not asked then, and judged by themselves, since neither their facets nor what noise does to them depends on
+ * the diagonal: none below 5 % of the local thickness (clean trees show up to 2.5 %, with a whiteness of at most 0.1),
+ * then 10 rounds, 40 above 15 %.
+ * @param thickness local thickness of each vertex, mesh units, infinite where the shape is not thin; empty: nowhere.
  * @pre mesh is compact. @throws Cancelled. Complexity: O(V).
  */
 inline NoiseReport measureNoise(const MeasuredSurface& surface,
-	const Progress& progress = Progress(), const std::vector<char>& still = {})
+	const Progress& progress = Progress(), const std::vector<double>& thickness = {})
 {
 	constexpr double least = 3e-4, leastOfEdge = 0.05, strong = 1.5e-3;
+	constexpr double leastOfThickness = 0.05, strongOfThickness = 0.15;
 	constexpr double coarsestEdge = 0.03, leastWhiteness = 0.6;
 	constexpr int fewRounds = 10, manyRounds = 40;
 	const SurfaceMesh& mesh = surface.mesh();
-	const std::vector<NoiseLevel> noise = noiseLevel(surface, progress.part(0, 0.9), still);
+	std::vector<char> isThin, isThick;
+	for (double own : thickness) {
+		isThin.push_back(std::isfinite(own));
+		isThick.push_back(!std::isfinite(own));
+	}
+	const std::vector<NoiseLevel> all = noiseLevel(surface, progress.part(0, 0.4));
+	std::vector<NoiseLevel> whereThick = all, whereThin(all.size());
+	if (!thickness.empty()) {
+		whereThick = noiseLevel(surface, progress.part(0.4, 0.65), isThick);
+		whereThin = noiseLevel(surface, progress.part(0.65, 0.9), isThin, thickness);
+	}
 	const int components = surface.components();
 	std::vector<double> edgeSum(components, 0);
 	std::vector<int> edgeCount(components, 0);
@@ -308,11 +350,25 @@ inline NoiseReport measureNoise(const MeasuredSurface& surface,
 	NoiseReport report;
 	for (int c = 0; c < components; ++c) {
 		const double edge = edgeSum[c] / edgeCount[c] / surface.diagonal(c);
-		const double level = edge > coarsestEdge ? 0 : noise[c].deviation / surface.diagonal(c);
-		const bool clean =
-			level < least || level < leastOfEdge * edge || noise[c].whiteness < leastWhiteness;
-		report.level = std::max(report.level, level);
+		const auto isClean = [&](const NoiseLevel& noise) {
+			const double level = noise.deviation / surface.diagonal(c);
+			return edge > coarsestEdge || level < least || level < leastOfEdge * edge
+				|| noise.whiteness < leastWhiteness;
+		};
+		const double level =
+			edge > coarsestEdge ? 0 : whereThick[c].deviation / surface.diagonal(c);
+		// Both: what is left where most is thin are the few vertices of its thickest part.
+		const bool clean = isClean(all[c]) || isClean(whereThick[c]);
+		const double relative = whereThin[c].relative;
+		const bool cleanWhereThin =
+			relative < leastOfThickness || whereThin[c].whiteness < leastWhiteness;
+		report.level =
+			std::max({report.level, level, whereThin[c].deviation / surface.diagonal(c)});
+		report.ofThickness = std::max(report.ofThickness, relative);
 		report.rounds.push_back(clean ? 0 : level < strong ? fewRounds : manyRounds);
+		report.roundsWhereThin.push_back(cleanWhereThin ? 0
+				: relative < strongOfThickness          ? fewRounds
+														: manyRounds);
 	}
 	return report;
 }

@@ -24,6 +24,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -38,21 +39,19 @@ struct ResampledSurface
 	bool isTooThin = false;
 };
 
-/// Of the vertices of a surface those where it is so thin that the sizing field, see sizingField(), is below
-/// the neutral length: 1. Empty if there are none. @throws Cancelled. Complexity: as medialPoles().
-inline std::vector<char> thinParts(const MeasuredSurface& surface, const Parameters& parameters,
-	const Progress& progress = Progress())
+/// The local thickness at each vertex of a surface, mesh units; infinite where the sizing field, see sizingField(), is
+/// not below the neutral length. Empty if it is that nowhere. @param poles of all vertices. @throws Cancelled.
+inline std::vector<double> localThickness(const MeasuredSurface& surface, const PoleSet& poles,
+	const Parameters& parameters, const Progress& progress = Progress())
 {
 	std::vector<double> bound;
 	for (double diagonal : surface.diagonals())
 		bound.push_back(neutralLength * diagonal);
-	const SizingField field =
-		sizingField(surface, medialPoles(surface.mesh(), PoleMethod::Balls, progress.part(0, 0.8)),
-			parameters.relativeLength, bound, progress.part(0.8, 1));
-	std::vector<char> thin;
-	for (double length : field)
-		thin.push_back(std::isfinite(length));
-	return thin;
+	std::vector<double> thickness =
+		sizingField(surface, poles, parameters.relativeLength, bound, progress);
+	for (double& length : thickness)
+		length /= parameters.relativeLength;
+	return thickness;
 }
 
 /// A mesh that follows the local thickness has at most this many vertices, or as many as its surface needs anyway,
@@ -90,19 +89,24 @@ inline double resolvedPart(const SurfaceMesh& mesh, const SizingField& field,
  * where most of what is thin would not be resolved then, as with plates, which no number of vertices serves. It is
  * said what loses.
  * @param length of each component, see defaultTargetLength().
+ * @param poles  of all vertices, where they are known already; null: they are computed.
  * @throws Cancelled. Complexity: as medialPoles().
  */
 inline std::optional<SizingField> fieldOfResampling(const MeasuredSurface& surface,
-	const std::vector<double>& length, const Parameters& parameters,
+	const std::vector<double>& length, const Parameters& parameters, const PoleSet* poles,
 	const Progress& progress = Progress(), const NoteCallback& onNote = {})
 {
 	const double resolved = maxVerticesOfVertex * surface.mesh().vertexCount();
 	const double anyway = expectedVertices(surface, length, SizingField());
 	if (anyway > resolved)
 		return std::nullopt;
+	PoleSet found;
+	if (!poles) {
+		found = medialPoles(surface.mesh(), PoleMethod::Balls, progress.part(0, 0.8));
+		poles = &found;
+	}
 	SizingField field =
-		sizingField(surface, medialPoles(surface.mesh(), PoleMethod::Balls, progress.part(0, 0.8)),
-			parameters.relativeLength, length, progress.part(0.8, 1));
+		sizingField(surface, *poles, parameters.relativeLength, length, progress.part(0.8, 1));
 	if (field.empty())
 		return field;
 	double expected = expectedVertices(surface, length, field);
@@ -144,10 +148,25 @@ inline std::optional<SizingField> fieldOfResampling(const MeasuredSurface& surfa
 	return field;
 }
 
+/// Says what was found of noise, and what is done about it.
+inline void tellNoise(const NoiseReport& noise, bool isSmoothed, const NoteCallback& onNote)
+{
+	const auto tell = [&](int rounds, const char* what, double level, const char* of) {
+		if (onNote && rounds > 0)
+			onNote(std::string(what) + " noise of " + detail::number(100 * level, 2) + " % of " + of
+				+ ": "
+				+ (isSmoothed ? "smoothing it in " + std::to_string(rounds) + " rounds."
+							  : "it may show in the skeleton; 'denoise' would smooth it."));
+	};
+	tell(noise.mostRounds(), "The surface has", noise.level, "its diagonal");
+	tell(noise.mostRoundsWhereThin(), "The thin parts of the surface have", noise.ofThickness,
+		"the local thickness");
+}
+
 /**
  * Smooths the noise of a surface where there is any, if parameters.denoise is set, and resamples it,
  * with the edge length of defaultTargetLength() or, with parameters.adaptive, less where the shape is thin,
- * see sizingField(). What is thin is not smoothed: its facets cannot be told from noise.
+ * see sizingField().
  * @param mesh   closed two-manifold, compact.
  * @param given  see sharedAmong() for more than 50 components.
  * @param onNote receives what was found and done; may be empty.
@@ -160,37 +179,34 @@ inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Paramete
 	const MeasuredSurface surface(mesh, progress.part(0, 0.05));
 	const Parameters parameters = sharedAmong(given, surface.diagonals());
 	ResampledSurface result;
-	result.noise = measureNoise(surface, progress.part(0.05, 0.1));
-	std::vector<char> still; // what the noise is not to be measured and smoothed on
-	if (parameters.adaptive && result.noise.isNoisy()) {
-		still = thinParts(surface, parameters, progress.part(0.1, 0.15));
-		if (!still.empty())
-			result.noise = measureNoise(surface, progress.cancelOnly(), still);
+	PoleSet poles;
+	std::vector<double> thickness;
+	if (parameters.adaptive) {
+		poles = medialPoles(mesh, PoleMethod::Balls, progress.part(0.05, 0.15));
+		thickness = localThickness(surface, poles, parameters, progress.part(0.15, 0.2));
 	}
-	const bool isNoisy = result.noise.isNoisy();
-	const bool smooth = parameters.denoise && isNoisy;
-	if (onNote && isNoisy)
-		onNote("The surface has noise of " + detail::number(100 * result.noise.level, 2)
-			+ " % of its diagonal: "
-			+ (smooth ? "smoothing it in " + std::to_string(result.noise.mostRounds()) + " rounds."
-					  : "it may show in the skeleton; 'denoise' would smooth it."));
-	const auto resampled = [&](const MeasuredSurface& calm) {
-		const double from = smooth ? 0.35 : 0.15;
+	result.noise = measureNoise(surface, progress.part(0.2, 0.25), thickness);
+	const bool smooth = parameters.denoise && result.noise.isNoisy();
+	tellNoise(result.noise, smooth, onNote);
+	const auto resampled = [&](const MeasuredSurface& calm, const PoleSet* own) {
+		const double from = smooth ? 0.35 : 0.25;
 		const std::vector<double> length = defaultTargetLength(calm, parameters);
 		std::optional<SizingField> field = SizingField();
 		if (parameters.adaptive && parameters.resampleIterations > 0)
 			field = fieldOfResampling(
-				calm, length, parameters, progress.part(from, from + 0.15), onNote);
+				calm, length, parameters, own, progress.part(from, from + 0.15), onNote);
 		result.isTooThin = !field;
 		return resample(calm, length, parameters.resampleIterations, progress.part(from + 0.15, 1),
 			field ? *field : SizingField());
 	};
 	if (smooth)
 		result.mesh =
-			resampled({smoothed(surface, result.noise.rounds, progress.part(0.15, 0.3), still),
-				progress.part(0.3, 0.35)});
+			resampled({smoothed(surface, result.noise.ofVertices(surface.component(), thickness),
+						   progress.part(0.25, 0.3)),
+						  progress.part(0.3, 0.35)},
+				nullptr);
 	else
-		result.mesh = resampled(surface);
+		result.mesh = resampled(surface, parameters.adaptive ? &poles : nullptr);
 	if (onNote)
 		onNote(detail::sentence(6, "Resampled to ", result.mesh.vertexCount(),
 			" vertices, mean edge length ", meanEdgeLength(result.mesh), " mesh units",
