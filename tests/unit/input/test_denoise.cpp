@@ -46,22 +46,27 @@ double roughness(const SurfaceMesh& mesh)
 	return std::sqrt(sum / double(mesh.position.size()));
 }
 
+NoiseLevel levelOf(const SurfaceMesh& mesh)
+{
+	return NoiseMeasure(mesh).levels()[0];
+}
+
 TEST(Noise, LevelIsTheDeviationThatWasAdded)
 {
 	const SurfaceMesh clean = meshOf(shapes::sphere(5));
 	for (double sigma : {0.003, 0.01})
-		EXPECT_NEAR(noiseLevel(noisy(clean, sigma))[0].deviation, sigma, 0.1 * sigma);
+		EXPECT_NEAR(levelOf(noisy(clean, sigma)).deviation, sigma, 0.1 * sigma);
 }
 
 TEST(Noise, LevelScalesWithTheMesh)
 {
 	const SurfaceMesh mesh = noisy(meshOf(shapes::sphere(4)), 0.01);
-	const double level = noiseLevel(mesh)[0].deviation;
+	const double level = levelOf(mesh).deviation;
 	for (double scale : {1e-6, 1e6}) {
 		SurfaceMesh other = mesh;
 		for (vcg::Point3d& p : other.position)
 			p = p * scale + vcg::Point3d(1, 2, 3) * scale;
-		EXPECT_NEAR(noiseLevel(other)[0].deviation / scale, level, 1e-6 * level);
+		EXPECT_NEAR(levelOf(other).deviation / scale, level, 1e-6 * level);
 	}
 }
 
@@ -93,7 +98,7 @@ TEST(Noise, NeighboursTellNoiseFromFacets)
 		}));
 	// Facets deviate by more than a twentieth of an edge, as noise would.
 	const double edge = 2 * M_PI / around, diagonal = coarse.bounds().Diag();
-	const NoiseLevel ofFacets = noiseLevel(coarse)[0];
+	const NoiseLevel ofFacets = levelOf(coarse);
 	EXPECT_GT(ofFacets.deviation, 0.05 * edge);
 	EXPECT_GT(ofFacets.deviation, 3e-4 * diagonal);
 	EXPECT_LT(ofFacets.whiteness, 0.4);
@@ -102,7 +107,7 @@ TEST(Noise, NeighboursTellNoiseFromFacets)
 
 	// On a shape of many edges across, noise of half an edge is seen as such.
 	const SurfaceMesh rough = noisy(meshOf(shapes::sphere(5)), 0.5 * 0.035);
-	EXPECT_GT(noiseLevel(rough)[0].whiteness, 0.8);
+	EXPECT_GT(levelOf(rough).whiteness, 0.8);
 	EXPECT_TRUE(measureNoise(rough).isNoisy());
 }
 

@@ -167,43 +167,47 @@ private:
  * and small within flat parts, so that the tails of their distribution are heavier than a normal one's.
  * The whiteness is the correlation, as a fraction of the one of noise, divided by the
  * square root of the ratio of tails.
- * @pre mesh is compact.
- * @param isAsked   0 for vertices that are not asked; empty: all are.
- * @param thickness of each vertex, mesh units; empty: NoiseLevel::relative is not measured.
- * Of a large component some 12000 vertices are looked at, spread evenly over its numbering.
- * @throws Cancelled. Complexity: O(V).
  */
-inline std::vector<NoiseLevel> noiseLevel(const MeasuredSurface& surface,
-	const Progress& progress = Progress(), const std::vector<char>& isAsked = {},
-	const std::vector<double>& thickness = {})
+class NoiseMeasure
 {
-	constexpr int enough = 12000, normalRounds = 3;
-	const SurfaceMesh& mesh = surface.mesh();
-	const detail::RingMeans rings(mesh, progress.part(0, 0.1), detail::measuringNoise);
-	std::vector<Point3d> normal = mesh.vertexNormals(progress.part(0.1, 0.2));
-	for (int round = 0; round < normalRounds; ++round)
-		normal = rings.of(normal, progress.part(0.2 + 0.1 * round, 0.3 + 0.1 * round));
-	// (I - M)^2 v of all vertices: neighbours of those that are looked at are asked, too.
-	std::vector<Point3d> offset = mesh.position;
-	for (int power = 0; power < 2; ++power) {
-		const Progress part = progress.part(0.5 + 0.15 * power, 0.65 + 0.15 * power);
-		const std::vector<Point3d> mean = rings.of(offset, part.part(0, 0.8));
-		detail::reportedLoop(mesh.vertexSlots(), part.part(0.8, 1), detail::measuringNoise,
-			[&](int v) { offset[v] -= mean[v]; });
+public:
+	/// @param surface kept by reference. @pre its mesh is compact. @throws Cancelled. Complexity: O(V).
+	explicit NoiseMeasure(const MeasuredSurface& surface, const Progress& progress = Progress()) :
+			surface(surface), mesh(surface.mesh()),
+			rings(mesh, progress.part(0, 0.2), detail::measuringNoise),
+			normal(mesh.vertexNormals(progress.part(0.2, 0.3))), offset(mesh.position)
+	{
+		constexpr int normalRounds = 3;
+		for (int round = 0; round < normalRounds; ++round)
+			normal = rings.of(normal, progress.part(0.3 + 0.1 * round, 0.4 + 0.1 * round));
+		// Of all vertices: neighbours of those that are looked at are asked, too.
+		for (int power = 0; power < 2; ++power) {
+			const Progress part = progress.part(0.6 + 0.2 * power, 0.8 + 0.2 * power);
+			const std::vector<Point3d> mean = rings.of(offset, part.part(0, 0.8));
+			detail::reportedLoop(mesh.vertexSlots(), part.part(0.8, 1), detail::measuringNoise,
+				[&](int v) { offset[v] -= mean[v]; });
+		}
 	}
-	const auto alongNormal = [&](int v) {
-		const double length = normal[v].Norm();
-		return length > 0 ? offset[v] * normal[v] / length : 0;
-	};
-	detail::BilaplacianRows rows(mesh, rings, progress.cancelOnly());
-	const int components = surface.components();
-	std::vector<int> size(components, 0), seen(components, 0);
-	for (int c : surface.component())
-		++size[c];
-	std::vector<std::vector<double>> deviations(components);
-	std::vector<std::vector<int>> asked(components);
-	detail::reportedLoop(
-		mesh.vertexSlots(), progress.part(0.8, 0.95), detail::measuringNoise, [&](int v) {
+
+	/**
+	 * Of each component, or of some of its vertices.
+	 * Of a large component some 12000 vertices are looked at, spread evenly over its numbering.
+	 * @param isAsked   0 for vertices that are not asked; empty: all are.
+	 * @param thickness of each vertex, mesh units; empty: NoiseLevel::relative is not measured.
+	 * @throws Cancelled. Complexity: O(V).
+	 */
+	std::vector<NoiseLevel> levels(const Progress& progress = Progress(),
+		const std::vector<char>& isAsked = {}, const std::vector<double>& thickness = {}) const
+	{
+		constexpr int enough = 12000;
+		detail::BilaplacianRows rows(mesh, rings, progress.cancelOnly());
+		const int components = surface.components();
+		std::vector<int> size(components, 0), seen(components, 0);
+		for (int c : surface.component())
+			++size[c];
+		std::vector<std::vector<double>> deviations(components);
+		std::vector<std::vector<int>> asked(components);
+		detail::reportedLoop(mesh.vertexSlots(), progress, detail::measuringNoise, [&](int v) {
 			const int c = surface.component()[v];
 			if (seen[c]++ % (1 + size[c] / enough) != 0 || (!isAsked.empty() && !isAsked[v]))
 				return;
@@ -212,36 +216,49 @@ inline std::vector<NoiseLevel> noiseLevel(const MeasuredSurface& surface,
 			deviations[c].push_back(std::abs(alongNormal(v)) / rows.norm(v));
 			asked[c].push_back(v);
 		});
-	// Of a normal distribution, in standard deviations.
-	constexpr double quarter = 0.31864, half = 1 / 1.4826, ninth = 1.64485;
-	constexpr double outlier = 2.5; // medians
-	std::vector<NoiseLevel> level(components);
-	for (int c = 0; c < components; ++c) {
-		std::vector<double>& d = deviations[c];
-		if (d.empty())
-			continue;
-		if (!thickness.empty()) {
-			std::vector<double> relative;
-			for (size_t i = 0; i < d.size(); ++i)
-				relative.push_back(d[i] / thickness[asked[c][i]]);
-			level[c].relative = detail::quantile(relative, 0.5) / half;
+		// Of a normal distribution, in standard deviations.
+		constexpr double quarter = 0.31864, half = 1 / 1.4826, ninth = 1.64485;
+		constexpr double outlier = 2.5; // medians
+		std::vector<NoiseLevel> level(components);
+		for (int c = 0; c < components; ++c) {
+			std::vector<double>& d = deviations[c];
+			if (d.empty())
+				continue;
+			if (!thickness.empty()) {
+				std::vector<double> relative;
+				for (size_t i = 0; i < d.size(); ++i)
+					relative.push_back(d[i] / thickness[asked[c][i]]);
+				level[c].relative = detail::quantile(relative, 0.5) / half;
+			}
+			level[c].deviation = detail::quantile(d, 0.5) / half;
+			const double tails = detail::quantile(d, 0.9) / ninth,
+						 core = detail::quantile(d, 0.25) / quarter;
+			if (!(core > 0))
+				continue; // flat, with creases
+			std::vector<double> offsets;
+			for (int v : asked[c])
+				offsets.push_back(std::abs(alongNormal(v)));
+			detail::NeighbourCorrelation correlation(outlier * detail::quantile(offsets, 0.5));
+			for (int v : asked[c])
+				mesh.forEachOutgoing(v,
+					[&](int h) { correlation.add(alongNormal(v), alongNormal(mesh.target(h))); });
+			level[c].whiteness = correlation.ofWhite() / std::sqrt(std::max(tails / core, 1.0));
 		}
-		level[c].deviation = detail::quantile(d, 0.5) / half;
-		const double tails = detail::quantile(d, 0.9) / ninth,
-					 core = detail::quantile(d, 0.25) / quarter;
-		if (!(core > 0))
-			continue; // flat, with creases
-		std::vector<double> offsets;
-		for (int v : asked[c])
-			offsets.push_back(std::abs(alongNormal(v)));
-		detail::NeighbourCorrelation correlation(outlier * detail::quantile(offsets, 0.5));
-		for (int v : asked[c])
-			mesh.forEachOutgoing(
-				v, [&](int h) { correlation.add(alongNormal(v), alongNormal(mesh.target(h))); });
-		level[c].whiteness = correlation.ofWhite() / std::sqrt(std::max(tails / core, 1.0));
+		return level;
 	}
-	return level;
-}
+
+private:
+	const MeasuredSurface& surface;
+	const SurfaceMesh& mesh;
+	detail::RingMeans rings;
+	std::vector<Point3d> normal, offset; ///< of each vertex; the latter is (I - M)^2 v
+
+	double alongNormal(int v) const
+	{
+		const double length = normal[v].Norm();
+		return length > 0 ? offset[v] * normal[v] / length : 0;
+	}
+};
 
 /**
  * A copy of the surface with its noise smoothed away and its volume kept: rounds of Taubin's
@@ -308,12 +325,12 @@ struct NoiseReport
  * mean edge (clean surfaces show up to 0.04 % or 4 %), 10 rounds up to 0.15 %, 40 above. So treated,
  * models with 0.1 to 0.5 % of noise give the clean model's branches. Where the mean edge is longer
  * than 3 % of the diagonal, noise cannot be told from shape, and nothing is done; nor where the whiteness,
- * see noiseLevel(), is below 0.6: clean surfaces whose facets deviate that much have up to 0.5, those with
+ * see NoiseMeasure, is below 0.6: clean surfaces whose facets deviate that much have up to 0.5, those with
  * noise of 0.5 % of the diagonal 0.72 to 1.
  *
- * Parts that are thin are not asked then, and judged by themselves, since neither their facets nor what noise does to them depends on
- * the diagonal: none below 5 % of the local thickness (clean trees show up to 2.5 %, with a whiteness of at most 0.1),
- * then 10 rounds, 40 above 15 %.
+ * Thin parts are left out of that and judged by themselves, since neither their facets nor what noise does to them
+ * depends on the diagonal: none below 5 % of the local thickness (clean trees show up to 2.5 %, with a whiteness of at
+ * most 0.1), then 10 rounds, 40 above 15 %.
  * @param thickness local thickness of each vertex, mesh units, infinite where the shape is not thin; empty: nowhere.
  * @pre mesh is compact. @throws Cancelled. Complexity: O(V).
  */
@@ -330,11 +347,12 @@ inline NoiseReport measureNoise(const MeasuredSurface& surface,
 		isThin.push_back(std::isfinite(own));
 		isThick.push_back(!std::isfinite(own));
 	}
-	const std::vector<NoiseLevel> all = noiseLevel(surface, progress.part(0, 0.4));
+	const NoiseMeasure noise(surface, progress.part(0, 0.7));
+	const std::vector<NoiseLevel> all = noise.levels(progress.part(0.7, 0.8));
 	std::vector<NoiseLevel> whereThick = all, whereThin(all.size());
 	if (!thickness.empty()) {
-		whereThick = noiseLevel(surface, progress.part(0.4, 0.65), isThick);
-		whereThin = noiseLevel(surface, progress.part(0.65, 0.9), isThin, thickness);
+		whereThick = noise.levels(progress.part(0.8, 0.85), isThick);
+		whereThin = noise.levels(progress.part(0.85, 0.9), isThin, thickness);
 	}
 	const int components = surface.components();
 	std::vector<double> edgeSum(components, 0);
@@ -350,10 +368,10 @@ inline NoiseReport measureNoise(const MeasuredSurface& surface,
 	NoiseReport report;
 	for (int c = 0; c < components; ++c) {
 		const double edge = edgeSum[c] / edgeCount[c] / surface.diagonal(c);
-		const auto isClean = [&](const NoiseLevel& noise) {
-			const double level = noise.deviation / surface.diagonal(c);
+		const auto isClean = [&](const NoiseLevel& own) {
+			const double level = own.deviation / surface.diagonal(c);
 			return edge > coarsestEdge || level < least || level < leastOfEdge * edge
-				|| noise.whiteness < leastWhiteness;
+				|| own.whiteness < leastWhiteness;
 		};
 		const double level =
 			edge > coarsestEdge ? 0 : whereThick[c].deviation / surface.diagonal(c);

@@ -211,7 +211,7 @@ public:
 																					  : -1;
 	}
 
-	/// Whether the surface looks the other way at the one vertex than at the other.
+	/// Whether the normals of two vertices point away from each other, by more than a right angle.
 	bool areBackToBack(int v, int w) const { return normal[v] * normal[w] < 0; }
 
 private:
@@ -222,7 +222,7 @@ private:
 	PointTree tree;
 };
 
-/// For each component, how many of its seeds have the surface across turned away, as a part of all.
+/// For each component, the part of its seeds whose normal and that of the vertex across are opposite.
 /// @param across  of each seed, see OppositeSides::of().
 template <class Seeds>
 std::vector<double> partBackToBack(const Seeds& seeds, const std::vector<int>& across,
@@ -248,8 +248,8 @@ std::vector<double> partBackToBack(const Seeds& seeds, const std::vector<int>& a
  * edges, corners and bumps of the surface hold do not count, see detail::isThin() and
  * detail::OppositeSides, unless the shape is as thin next to them. A component is left alone that is nowhere
  * thinner than its lengths would be anyway, the smaller of `bound` and neutralLength of its diagonal, and so is one
- * whose balls are small from noise: there the surface across looks any way, not away as in a tube or a plate. The
- * field is at least shortestLength of the diagonal.
+ * whose balls are small from noise: across a tube or a plate the normals are opposite, across noise they are
+ * random. The field is at least shortestLength of the diagonal.
  *
  * @param poles          of all vertices.
  * @param relativeLength longest edge in local thicknesses, > 0. An even mesh has 2 pi / relativeLength
@@ -264,7 +264,7 @@ inline SizingField sizingField(const MeasuredSurface& surface, const PoleSet& po
 {
 	constexpr double infinity = std::numeric_limits<double>::infinity();
 	constexpr double leastBackToBack =
-		2.0 / 3; // 0.88 and more on clean shapes, 0.2 to 0.5 in noise
+		2.0 / 3; // clean shapes have 0.88 and more, noise 0.6 and less
 	const SurfaceMesh& mesh = surface.mesh();
 	const std::vector<int>& component = surface.component();
 	using Entry = std::pair<double, int>; // length, vertex
