@@ -65,14 +65,18 @@ def test_the_embedding_centres_what_the_contraction_has_moved():
 
 
 def test_a_capsule_becomes_one_line_on_its_axis():
-    skeleton, _, volumes = atc08(*CAPSULE)
+    points, triangles = CAPSULE
+    # Uneven by 0.3 %: of rings that are exactly alike, the rounding of one processor's linear algebra or the other's
+    # would decide which vertices are left.
+    uneven = points + np.random.default_rng(0).normal(size=points.shape) * 0.003
+    skeleton, _, volumes = atc08(uneven, triangles)
     curve = Curve(skeleton.points, skeleton.edges)
     assert (curve.components, curve.cycles) == (1, 0)
     assert sorted(curve.degree)[:3] == [1, 1, 2] and curve.degree.max() == 2
     off, along = np.hypot(*skeleton.points[:, :2].T), np.abs(skeleton.points[:, 2])
     assert off[along < 3.0].max(initial=0.0) < 0.01
-    # Within the caps rounding, which differs from one processor's linear algebra to the other's, decides which
-    # vertices of a ring are left: there the line is not centred, but inside.
+    # Within the caps, where one vertex of a ring is left, the line is not centred, but inside.
+    assert off.max() < 0.15
     assert np.hypot(off, np.maximum(along - 3.0, 0.0)).max() < 1.0
     assert np.ptp(skeleton.points[:, 2]) > 5.0
     assert volumes[-1] < 1e-6
