@@ -3,6 +3,7 @@
 
 // Refinement of hand-made curves in shapes whose axes are known.
 
+#include "curves.h"
 #include "mesh_checks.h"
 #include "read_off.h"
 #include "shapes.h"
@@ -410,6 +411,71 @@ TEST(Refine, KeepsAShortPointedFeatureOfALargeBody)
 	EXPECT_GE(farthest(tips(s), 0), 1.5) << "within about a radius of the end";
 }
 
+TEST(Refine, ALowKnobIsDistinctThoughTheWayThereLeadsThroughItsBody)
+{
+	// On a ball of radius 1, which ends in x = end.
+	using Radius = std::function<double(double)>;
+	const auto distinctnessOfEnd = [](const Radius& onBall, double end, double tip) {
+		std::vector<std::pair<double, double>> profile;
+		for (int i = 0; i <= 400; ++i) {
+			const double x = -1 + (end + 1) * i / 400;
+			const double ball = std::sqrt(std::max(0.0, 1 - x * x));
+			profile.emplace_back(x, i % 400 == 0 ? 0 : std::max(ball, onBall(x)));
+		}
+		const SurfaceMesh mesh = shapes::revolved(profile, 64).mesh();
+		std::vector<int> all(mesh.vertexSlots());
+		std::iota(all.begin(), all.end(), 0);
+		const ClosestSurface surface(mesh, all, 1, Progress());
+		refining::KnownClearances clearances(surface);
+		const CurveSkeleton s = CurveMaker().line({0, 0, 0}, {tip, 0, 0}, 50).in(mesh);
+		std::vector<int> nodes(s.position.size());
+		std::iota(nodes.begin(), nodes.end(), 0);
+		return refining::distinctness(s, clearances, Branch {nodes});
+	};
+	constexpr double knob = 0.17, tip = 1.13;
+	const auto withKnob = [](double x) {
+		return x < 0 ? 0
+					 : std::sqrt(std::max(0.0, knob * knob - std::pow(std::max(0.0, x - tip), 2)));
+	};
+	EXPECT_GE(distinctnessOfEnd(withKnob, tip + knob, tip), 0.7)
+		<< "less than its radius sticks out";
+	const double apex = 1.6, sine = 1 / apex;
+	const auto withCone = [&](double x) {
+		return x < sine ? 0 : (apex - x) * sine / std::sqrt(1 - sine * sine);
+	};
+	EXPECT_NEAR(distinctnessOfEnd(withCone, apex, 1.5), 1 - sine, 0.03);
+}
+
+TEST(Refine, AStubThatIsAsThickAsItsJunctionIsNoBranch)
+{
+	const auto tipsLeft = [](double length, double radius) {
+		CurveSkeleton s;
+		const int junction = curves::addNode(s, {0, 0, 0}, 1);
+		for (double x : {-6.0, 6.0})
+			curves::addEdge(s, junction, curves::addNode(s, {x, 0, 0}, 1));
+		curves::addEdge(s, junction, curves::addNode(s, {0, length, 0}, radius));
+		return tips(refining::withoutStubs(curves::tracked(s))).size();
+	};
+	EXPECT_EQ(tipsLeft(0.4, 1), 2u) << "as a heel has it";
+	EXPECT_EQ(tipsLeft(0.7, 0.6), 2u);
+	EXPECT_EQ(tipsLeft(1.2, 0.3), 3u) << "a limb sticks out by its length";
+}
+
+TEST(Refine, GivesAHeadItsFiveLimbs)
+{
+	// The skull itself gets no branch, in whatever direction the flow's last remains point.
+	const SurfaceMesh head = shapes::fromFile("head").mesh();
+	for (double length : {0.0042, 0.005, 0.0058}) {
+		Parameters parameters;
+		parameters.targetLength = length;
+		const MeasuredSurface measured(head);
+		const SurfaceMesh surface = resample(
+			measured, defaultTargetLength(measured, parameters), parameters.resampleIterations);
+		const Stage end = contractToSkeleton(firstStage(surface, parameters), parameters);
+		EXPECT_EQ(tips(refine(collapseToCurve(end), surface)).size(), 5u) << "edges of " << length;
+	}
+}
+
 TEST(Refine, GrowsABranchIntoALimbThatTheCurveLacks)
 {
 	const SurfaceMesh mesh = barWithArm(12).mesh();
@@ -488,14 +554,17 @@ TEST(Refine, TakesLowLimbsIfTheyAreLongAndFlatOnesIfTheyComeToAPoint)
 	EXPECT_TRUE(isLimb(3, 0.5, 1, 0.4)) << "an ear";
 	EXPECT_FALSE(isLimb(3, 0.5, 1, 0.2)) << "a rim";
 	EXPECT_FALSE(isLimb(3, 0.9, 1, 0.4)) << "a plate";
-	const auto isCorner = [&](double rim) {
+	const auto isCorner = [&](double rim, double spikiness) {
 		refining::FeatureBranch way = branch(3, 0);
 		way.rim = rim;
-		const refining::Peak peak = {0, 1, /*spikiness*/ 0.6, /*diagonals*/ 0, /*height*/ 1};
+		const refining::Peak peak = {0, 1, spikiness, /*diagonals*/ 0, /*height*/ 1};
 		return !refining::leadsIntoLimb(way, peak, rule);
 	};
-	EXPECT_FALSE(isCorner(0.3)) << "a limb next to a body";
-	EXPECT_TRUE(isCorner(0.7)) << "along the rim of a plate";
+	EXPECT_FALSE(isCorner(0.3, 0.5)) << "a limb next to a body";
+	EXPECT_TRUE(isCorner(0.7, 0.5)) << "along the rim of a plate";
+	EXPECT_FALSE(isCorner(0.7, 0.8)) << "a spike has no rim";
+	EXPECT_TRUE(isLimb(1.5, 0, 0.3, 0.8)) << "a low spike";
+	EXPECT_FALSE(isLimb(0.5, 0, 1, 0.8)) << "a spike, but too short";
 	const auto isLobe = [&](double height, double spikiness, double size) {
 		refining::FeatureBranch way = branch(6, 0.9);
 		const refining::Peak peak = {0, 1, spikiness, height * way.radii.back() * size, height};

@@ -55,7 +55,7 @@ struct RefineParameters
 	double spacing = 0.005;
 	/// A terminal branch whose end ball sticks out of the ball at its junction by less than this
 	/// part of the latter's radius is a spur and is removed, and so are one that ends where a shorter
-	/// one does and a stub in a plate, see withoutStubsInPlates(); in [0, 1], 0: all stay.
+	/// one does and stubs, see withoutStubs() and withoutStubsInPlates(); in [0, 1], 0: all stay.
 	double spurProminence = 0.1;
 	/// Two junctions are one where the smaller ball sticks out of the larger one by less than this
 	/// part of its own radius; in [0, 1].
@@ -153,7 +153,7 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 		measureBranchEnds(skeleton, clearances);
 		skeleton = withoutSpurs(skeleton, spurProminence);
 		if (spurProminence > 0)
-			skeleton = withoutTwinTips(skeleton);
+			skeleton = withoutTwinTips(withoutStubs(skeleton));
 		if (tipDistinctness > 0) {
 			skeleton = withoutCornerBranches(skeleton, clearances, tipDistinctness);
 			skeleton = withoutCornerEnds(skeleton, clearances, tipDistinctness);

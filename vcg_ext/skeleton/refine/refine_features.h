@@ -189,23 +189,26 @@ inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const ClosestSur
  * Whether a branch leads into a limb: not into the corner of a box, on the way to which the balls
  * shrink nearly as fast as they advance, not along the rim of a plate, that is into its corner, and not
  * through a plate, in which it could lead anywhere, unless that comes to a point and is longer than the
- * plate is thick, as an ear is, or is itself a lobe, high above the balls and a large part of the shape.
+ * plate is thick, as an ear is, or is itself a lobe, high above the balls and a large part of the shape. A spike
+ * has neither rims nor room beside it, whatever a way of few steps sees there.
  */
 inline bool leadsIntoLimb(const FeatureBranch& branch, const Peak& peak, const FeatureRule& rule)
 {
 	constexpr double mostFlatIfSpiky = 1.7, evenGain = 0.8, mostFlatIfEven = 0.1, mostRim = 0.5;
 	constexpr double lobeSpikiness = 0.25, mostlyFlat = 0.5, leastWayIfFlat = 2;
 	const double way = branch.way();
-	if (branch.joint < 0
-		|| way < branch.radii.back()
-				* std::max(rule.leastWay, rule.leastProtrusion / peak.relativeHeight))
+	const bool isSpike = peak.spikiness >= rule.leastOfSpike;
+	const double leastWay = isSpike
+		? rule.leastWay
+		: std::max(rule.leastWay, rule.leastProtrusion / peak.relativeHeight);
+	if (branch.joint < 0 || way < leastWay * branch.radii.back())
 		return false;
 	const double gain = 1 + (branch.radii.front() - branch.radii.back()) / way;
 	if (gain < rule.leastGain)
 		return false;
 	const bool isLobe = peak.height >= std::max(lobeHeight * branch.radii.back(), rule.leastLobe)
 		&& peak.spikiness >= lobeSpikiness;
-	return isLobe
+	return isLobe || isSpike
 		|| (branch.rim <= mostRim
 			&& (branch.flat <= mostlyFlat || way >= leastWayIfFlat * branch.radii.back())
 			&& branch.flat

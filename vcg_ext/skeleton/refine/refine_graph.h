@@ -98,6 +98,25 @@ inline CurveSkeleton withoutSpurs(const CurveSkeleton& skeleton, double least)
 	return withoutTerminalBranches(skeleton, least, terminalProminence);
 }
 
+/// A terminal branch goes on for at least so many radii of the ball that it hangs on.
+constexpr double leastWayOfBranch = 0.75;
+
+/**
+ * Removes the stubs, the shortest first: terminal branches whose tip is nearer to their junction than
+ * leastWayOfBranch radii of the ball there, as where a curve cuts a heel's corner. Such a one can stick out
+ * only because its own ball is as large as the junction's: it is no limb, but a blunt end of what it hangs on.
+ * @pre the radius of junctions is their distance from the surface.
+ */
+inline CurveSkeleton withoutStubs(const CurveSkeleton& skeleton)
+{
+	return withoutTerminalBranches(
+		skeleton, leastWayOfBranch, [](const CurveSkeleton& s, const Branch& fromJunction) {
+			const int junction = fromJunction.first();
+			return Distance(s.position[fromJunction.last()], s.position[junction])
+				/ std::max(s.radius[junction], 1e-300);
+		});
+}
+
 /**
  * Leaves one of two terminal branches that end in the same place, with tips closer to each other than twice
  * their smaller ball's radius: the shorter branch. What had merged into the other goes to its junction. The
@@ -174,21 +193,26 @@ struct BranchProfile
 };
 
 /**
- * How clearly a terminal branch leaves what it hangs from: the greatest gain of reach per way over any
- * stretch as long as the radius at its start. It is 1 along a limb, however short, and 1 - sin(a) on
- * the way into a corner or a pointed end with a half angle of a, whatever its size; a branch without
- * such a stretch is taken as a whole.
+ * How clearly a terminal branch leaves what it hangs from: the greatest gain of reach over any
+ * stretch as long as the radius at its start, as a part of that radius. It is 1 along a limb, however short, and
+ * 1 - sin(a) on the way into a corner or a pointed end with a half angle of a, whatever its size. Where the branch
+ * ends before that it has gained less; one without any such stretch is taken as a whole.
  * @param branch from its junction to its tip.
  */
 inline double distinctness(
 	const CurveSkeleton& skeleton, KnownClearances& clearances, const Branch& branch)
 {
 	const BranchProfile profile(skeleton, clearances, branch);
-	double most = -1;
-	for (size_t from = 0; from < profile.last(); ++from)
-		if (const size_t to = profile.oneRadiusOn(from); to <= profile.last())
+	const size_t last = profile.last();
+	double most = -1, upToTip = -1;
+	for (size_t from = 0; from < last; ++from)
+		if (const size_t to = profile.oneRadiusOn(from); to <= last)
 			most = std::max(most, profile.gain(from, to));
-	return most < 0 ? profile.gain(0, profile.last()) : most;
+		else {
+			const double length = profile.along[last] - profile.along[from];
+			upToTip = std::max(upToTip, profile.gain(from, last) * length / profile.radius[from]);
+		}
+	return most < 0 ? profile.gain(0, last) : std::max(most, upToTip);
 }
 
 /**

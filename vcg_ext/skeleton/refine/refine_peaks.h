@@ -8,6 +8,7 @@
 #define VCG_MCF_REFINE_PEAKS_H
 
 #include "local_scale.h"
+#include "refine_graph.h"
 
 #include <skeleton/core/parallel.h>
 #include <skeleton/core/progress.h>
@@ -37,9 +38,12 @@ struct FeatureRule
 	/// Of the spacing.
 	const LocalScale& scale = sameEverywhere;
 	/// The way is at least this many radii of the ball that it ends in.
-	double leastWay = 0.75;
-	/// The way, in such radii, times the relative height of the peak is at least this: low features are long ones.
+	double leastWay = leastWayOfBranch;
+	/// The way, in such radii, times the relative height of the peak is at least this: low features are long ones, but
+	/// for spikes.
 	double leastProtrusion = 0.56;
+	/// A peak that is spikier is a spike. The corner of a cube has 0.58.
+	double leastOfSpike = 0.6;
 	/// The peak rises from its surroundings by this part of the radius of the nearest ball, and by this many diagonals.
 	double leastProminence = 0.05, leastRise = 0.005;
 	/// The lobe of a plate is at least this many diagonals high.
