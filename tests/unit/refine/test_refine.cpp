@@ -560,9 +560,10 @@ TEST(Refine, TakesLowLimbsIfTheyAreLongAndFlatOnesIfTheyComeToAPoint)
 		const refining::Peak peak = {0, 1, spikiness, /*diagonals*/ 0, /*height*/ 1};
 		return !refining::leadsIntoLimb(way, peak, rule);
 	};
-	EXPECT_FALSE(isCorner(0.3, 0.5)) << "a limb next to a body";
-	EXPECT_TRUE(isCorner(0.7, 0.5)) << "along the rim of a plate";
-	EXPECT_FALSE(isCorner(0.7, 0.8)) << "a spike has no rim";
+	EXPECT_FALSE(isCorner(0.3, 0.4)) << "a limb next to a body";
+	EXPECT_TRUE(isCorner(0.7, 0.4)) << "along the rim of a plate";
+	EXPECT_FALSE(isCorner(0.7, 0.8)) << "a spike, of which the body is seen";
+	EXPECT_TRUE(isCorner(0.9, 0.8)) << "along a rim for more than a radius";
 	EXPECT_TRUE(isLimb(1.5, 0, 0.3, 0.8)) << "a low spike";
 	EXPECT_FALSE(isLimb(0.5, 0, 1, 0.8)) << "a spike, but too short";
 	const auto isLobe = [&](double height, double spikiness, double size) {

@@ -189,28 +189,30 @@ inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const ClosestSur
  * Whether a branch leads into a limb: not into the corner of a box, on the way to which the balls
  * shrink nearly as fast as they advance, not along the rim of a plate, that is into its corner, and not
  * through a plate, in which it could lead anywhere, unless that comes to a point and is longer than the
- * plate is thick, as an ear is, or is itself a lobe, high above the balls and a large part of the shape. A spike
- * has neither rims nor room beside it, whatever a way of few steps sees there.
+ * plate is thick, as an ear is, or is itself a lobe, high above the balls and a large part of the shape. Where the body of a
+ * low spike begins, a way of few steps can see a rim: it has to run along one for more than a radius.
  */
 inline bool leadsIntoLimb(const FeatureBranch& branch, const Peak& peak, const FeatureRule& rule)
 {
 	constexpr double mostFlatIfSpiky = 1.7, evenGain = 0.8, mostFlatIfEven = 0.1, mostRim = 0.5;
 	constexpr double lobeSpikiness = 0.25, mostlyFlat = 0.5, leastWayIfFlat = 2;
-	const double way = branch.way();
-	const bool isSpike = peak.spikiness >= rule.leastOfSpike;
+	if (branch.joint < 0)
+		return false;
+	const double way = branch.way(), radius = branch.radii.back();
+	const bool isSpike =
+		peak.spikiness >= rule.leastOfSpike && std::max(branch.flat, branch.rim) * way <= radius;
 	const double leastWay = isSpike
 		? rule.leastWay
 		: std::max(rule.leastWay, rule.leastProtrusion / peak.relativeHeight);
-	if (branch.joint < 0 || way < leastWay * branch.radii.back())
+	if (way < leastWay * radius)
 		return false;
-	const double gain = 1 + (branch.radii.front() - branch.radii.back()) / way;
+	const double gain = 1 + (branch.radii.front() - radius) / way;
 	if (gain < rule.leastGain)
 		return false;
-	const bool isLobe = peak.height >= std::max(lobeHeight * branch.radii.back(), rule.leastLobe)
+	const bool isLobe = peak.height >= std::max(lobeHeight * radius, rule.leastLobe)
 		&& peak.spikiness >= lobeSpikiness;
 	return isLobe || isSpike
-		|| (branch.rim <= mostRim
-			&& (branch.flat <= mostlyFlat || way >= leastWayIfFlat * branch.radii.back())
+		|| (branch.rim <= mostRim && (branch.flat <= mostlyFlat || way >= leastWayIfFlat * radius)
 			&& branch.flat
 				<= (gain > evenGain ? mostFlatIfEven : mostFlatIfSpiky * peak.spikiness));
 }

@@ -42,8 +42,8 @@ struct FeatureRule
 	/// The way, in such radii, times the relative height of the peak is at least this: low features are long ones, but
 	/// for spikes.
 	double leastProtrusion = 0.56;
-	/// A peak that is spikier is a spike. The corner of a cube has 0.58.
-	double leastOfSpike = 0.6;
+	/// A peak that is spikier is a spike: a cone with a half angle of 60 degrees has 0.5.
+	double leastOfSpike = 0.5;
 	/// The peak rises from its surroundings by this part of the radius of the nearest ball, and by this many diagonals.
 	double leastProminence = 0.05, leastRise = 0.005;
 	/// The lobe of a plate is at least this many diagonals high.
