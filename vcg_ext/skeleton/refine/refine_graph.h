@@ -100,20 +100,25 @@ inline CurveSkeleton withoutSpurs(const CurveSkeleton& skeleton, double least)
 
 /// A terminal branch goes on for at least so many radii of the ball that it hangs on.
 constexpr double leastWayOfBranch = 0.75;
+/// A blunt end is a feature of the shape if it is so many diagonals high.
+constexpr double leastBluntHeight = 0.04;
 
 /**
  * Removes the stubs, the shortest first: terminal branches whose tip is nearer to their junction than
  * leastWayOfBranch radii of the ball there, as where a curve cuts a heel's corner. Such a one can stick out
- * only because its own ball is as large as the junction's: it is no limb, but a blunt end of what it hangs on.
- * @pre the radius of junctions is their distance from the surface.
+ * only because its own ball is about as large: it is no limb, but a blunt end of what it hangs on. It stays if it
+ * sticks out by leastBluntHeight, as in one half of a large round body.
+ * @pre the radius of junctions and tips is their distance from the surface; the diagonal is 1.
  */
 inline CurveSkeleton withoutStubs(const CurveSkeleton& skeleton)
 {
 	return withoutTerminalBranches(
 		skeleton, leastWayOfBranch, [](const CurveSkeleton& s, const Branch& fromJunction) {
-			const int junction = fromJunction.first();
-			return Distance(s.position[fromJunction.last()], s.position[junction])
-				/ std::max(s.radius[junction], 1e-300);
+			const int junction = fromJunction.first(), tip = fromJunction.last();
+			const double way = Distance(s.position[tip], s.position[junction]);
+			return way + s.radius[tip] - s.radius[junction] < leastBluntHeight
+				? way / std::max(s.radius[junction], 1e-300)
+				: leastWayOfBranch;
 		});
 }
 

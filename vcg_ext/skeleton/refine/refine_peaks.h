@@ -49,7 +49,7 @@ struct FeatureRule
 	/// The lobe of a plate is at least this many diagonals high.
 	double leastLobe = 0.05;
 	/// A blunt corner is at least this many diagonals high.
-	double leastCorner = 0.04;
+	double leastCorner = leastBluntHeight;
 };
 
 /// A component of a surface; its vertices are numbered by their place in it.
