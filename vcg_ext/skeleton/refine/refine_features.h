@@ -189,8 +189,9 @@ inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const ClosestSur
  * Whether a branch leads into a limb: not into the corner of a box, on the way to which the balls
  * shrink nearly as fast as they advance, not along the rim of a plate, that is into its corner, and not
  * through a plate, in which it could lead anywhere, unless that comes to a point and is longer than the
- * plate is thick, as an ear is, or is itself a lobe, high above the balls and a large part of the shape. Where the body of a
- * low spike begins, a way of few steps can see a rim: it has to run along one for more than a radius.
+ * plate is thick, as an ear is, or is itself a lobe, high above the balls and a large part of the shape.
+ * The branch into a low spike is short: where it enters the body, its few samples can look like a rim or a plate. For
+ * spikes these only count over more than a radius.
  */
 inline bool leadsIntoLimb(const FeatureBranch& branch, const Peak& peak, const FeatureRule& rule)
 {

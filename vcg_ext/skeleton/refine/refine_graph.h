@@ -105,9 +105,9 @@ constexpr double leastBluntHeight = 0.04;
 
 /**
  * Removes the stubs, the shortest first: terminal branches whose tip is nearer to their junction than
- * leastWayOfBranch radii of the ball there, as where a curve cuts a heel's corner. Such a one can stick out
- * only because its own ball is about as large: it is no limb, but a blunt end of what it hangs on. It stays if it
- * sticks out by leastBluntHeight, as in one half of a large round body.
+ * leastWayOfBranch radii of the ball there, as where a curve cuts a heel's corner. A branch this short sticks out
+ * only if its own ball is about as large: it is a blunt end, not a limb. It stays if it sticks out by
+ * leastBluntHeight, as in one half of a large round body.
  * @pre the radius of junctions and tips is their distance from the surface; the diagonal is 1.
  */
 inline CurveSkeleton withoutStubs(const CurveSkeleton& skeleton)
@@ -115,9 +115,9 @@ inline CurveSkeleton withoutStubs(const CurveSkeleton& skeleton)
 	return withoutTerminalBranches(
 		skeleton, leastWayOfBranch, [](const CurveSkeleton& s, const Branch& fromJunction) {
 			const int junction = fromJunction.first(), tip = fromJunction.last();
-			const double way = Distance(s.position[tip], s.position[junction]);
-			return way + s.radius[tip] - s.radius[junction] < leastBluntHeight
-				? way / std::max(s.radius[junction], 1e-300)
+			return protrusion(s, tip, junction) < leastBluntHeight
+				? Distance(s.position[tip], s.position[junction])
+					/ std::max(s.radius[junction], 1e-300)
 				: leastWayOfBranch;
 		});
 }

@@ -39,10 +39,10 @@ struct FeatureRule
 	const LocalScale& scale = sameEverywhere;
 	/// The way is at least this many radii of the ball that it ends in.
 	double leastWay = leastWayOfBranch;
-	/// The way, in such radii, times the relative height of the peak is at least this: low features are long ones, but
-	/// for spikes.
+	/// The way, in such radii, times the relative height of the peak is at least this, but for spikes: low features are
+	/// long ones.
 	double leastProtrusion = 0.56;
-	/// A peak that is spikier is a spike: a cone with a half angle of 60 degrees has 0.5.
+	/// Spikiness from which on a peak is a spike: a cone with a half angle of 60 degrees has 0.5.
 	double leastOfSpike = 0.5;
 	/// The peak rises from its surroundings by this part of the radius of the nearest ball, and by this many diagonals.
 	double leastProminence = 0.05, leastRise = 0.005;
