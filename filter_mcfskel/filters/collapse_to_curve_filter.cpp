@@ -17,7 +17,7 @@ namespace mcf = vcg::tri::mcf;
 
 namespace {
 
-Results run(FilterRun& run)
+Results collapseToCurve(FilterRun& run)
 {
 	const StageLayer found = readStage(run.layer(), sourcesOf(run));
 	if (!found) {
@@ -89,7 +89,7 @@ FilterSpec collapseToCurveFilter()
 #else
 			{epsilonParameter()},
 #endif
-			run
+			collapseToCurve
 	};
 }
 

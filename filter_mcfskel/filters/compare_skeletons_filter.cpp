@@ -32,7 +32,7 @@ double sharedDiagonal(FilterRun& run, const CurveLayer& mine, const CurveLayer& 
 	return box.Diag();
 }
 
-Results run(FilterRun& run)
+Results compareSkeletons(FilterRun& run)
 {
 	const CurveLayer mine = skeletonOn(run, run.layer());
 	const int otherId = run.parameters.integer("other");
@@ -82,7 +82,7 @@ FilterSpec compareSkeletonsFilter()
 				"The skeletons are sampled so that no piece is longer than this, percent of the "
 				"diagonal, above 0; the paper takes 0.1."},
 			surfaceParameter("The surface whose diagonal the distances are divided by.")},
-		run};
+		compareSkeletons};
 	spec.changes = MeshModel::MM_VERTQUALITY | MeshModel::MM_VERTCOLOR;
 	return spec;
 }

@@ -70,7 +70,7 @@ Start startOf(FilterRun& run, const mcf::Parameters& parameters)
 	return start;
 }
 
-Results run(FilterRun& run)
+Results contractionStep(FilterRun& run)
 {
 	mcf::Parameters parameters;
 	readFlow(run.parameters, parameters);
@@ -154,7 +154,7 @@ FilterSpec contractionStepFilter()
 			"Starts from a surface, or carries on from the layer of an earlier step: step by step it "
 			"is the same as Full Skeletonize. Lengths refer to the surface that the steps came from. "
 			"Third stage of the skeletonization."),
-		FilterCategory::Remeshing, MeshModel::MM_FACENUMBER, parameters, run};
+		FilterCategory::Remeshing, MeshModel::MM_FACENUMBER, parameters, contractionStep};
 }
 
 } // namespace mcfskel

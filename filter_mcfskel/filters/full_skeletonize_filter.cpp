@@ -42,7 +42,7 @@ Results resultsOf(const mcf::Skeletonization& run, [[maybe_unused]] bool keepShe
 	return results;
 }
 
-Results run(FilterRun& run)
+Results fullSkeletonize(FilterRun& run)
 {
 	mcf::Parameters parameters;
 	parameters.resample = run.parameters.flag("resample");
@@ -196,7 +196,7 @@ FilterSpec fullSkeletonizeFilter()
 			"handle. New layers: the resampled surface, the last (or every k-th) stage of the "
 			"contraction, and the skeleton, whose quality is the local thickness; the attribute "
 			"<i>mcfskel_node</i> of the surfaces is the skeleton vertex of each of their vertices."),
-		FilterCategory::Remeshing, MeshModel::MM_FACENUMBER, parameters, run};
+		FilterCategory::Remeshing, MeshModel::MM_FACENUMBER, parameters, fullSkeletonize};
 }
 
 } // namespace mcfskel

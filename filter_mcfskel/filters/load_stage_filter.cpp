@@ -58,7 +58,7 @@ Results loadSkeleton(FilterRun& run, const mcf::PlyFile& ply, const QString& nam
 	return results;
 }
 
-Results run(FilterRun& run)
+Results loadStageOrSkeleton(FilterRun& run)
 {
 	const QString name = requiredName(run.parameters.text("file"), "to read");
 	try {
@@ -88,7 +88,7 @@ FilterSpec loadStageFilter()
 		FilterCategory::Remeshing, MeshModel::MM_NONE,
 		{{ParameterKind::FileToOpen, "file", 0, "File", "Name of the PLY file to read.",
 			{"*.ply"}}},
-		run, false};
+		loadStageOrSkeleton, false};
 }
 
 } // namespace mcfskel

@@ -14,7 +14,7 @@ namespace mcf = vcg::tri::mcf;
 
 namespace {
 
-Results run(FilterRun& run)
+Results makeSolid(FilterRun& run)
 {
 	const SolidLayer made = readSolid(run.layer(), mcf::Repair::Auto, run.progress.part(0, 0.9));
 	logNotes(run, made.surface);
@@ -61,7 +61,7 @@ FilterSpec makeSolidFilter()
 			"surface is wrapped: the new one is where the winding number of the triangles is one half.<br><br>"
 			"The log says what was done, and how far the result is from the input. A sheet that bounds "
 			"nothing is refused."),
-		FilterCategory::Remeshing, MeshModel::MM_FACENUMBER, {}, run};
+		FilterCategory::Remeshing, MeshModel::MM_FACENUMBER, {}, makeSolid};
 }
 
 } // namespace mcfskel

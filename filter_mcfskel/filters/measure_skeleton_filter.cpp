@@ -31,7 +31,7 @@ std::shared_ptr<const mcf::SurfaceMesh> hollowOf(
 	return own ? std::make_shared<const mcf::SurfaceMesh>(*std::move(own)) : nullptr;
 }
 
-Results run(FilterRun& run)
+Results measureSkeleton(FilterRun& run)
 {
 	const CurveLayer curve = skeletonOn(run, run.layer());
 	const SkeletonSurface surface = requireSurface(run, curve, run.progress.part(0, 0.1));
@@ -81,7 +81,7 @@ FilterSpec measureSkeletonFilter()
 			"The vertex quality and colour of the skeleton become the distance to the medial axis, mesh "
 			"units; the radius stays in <i>mcfskel_radius</i>."),
 		FilterCategory::Quality, MeshModel::MM_NONE,
-		{surfaceParameter("The surface to measure against, closed.")}, run};
+		{surfaceParameter("The surface to measure against, closed.")}, measureSkeleton};
 	spec.changes = MeshModel::MM_VERTQUALITY | MeshModel::MM_VERTCOLOR;
 	return spec;
 }

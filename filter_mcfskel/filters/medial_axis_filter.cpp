@@ -16,7 +16,7 @@ namespace mcf = vcg::tri::mcf;
 
 namespace {
 
-Results run(FilterRun& run)
+Results medialAxis(FilterRun& run)
 {
 	mcf::MedialLayerParameters parameters;
 	parameters.leastAngle = run.parameters.real("min_angle");
@@ -75,7 +75,7 @@ FilterSpec medialAxisFilter()
 				"Triangles with an edge more than this many times as long as on the surface are left "
 				"out, above 0: they join different sheets. Recommended: 2 to 10."}
 				.asAdvanced()},
-		run};
+		medialAxis};
 }
 
 } // namespace mcfskel

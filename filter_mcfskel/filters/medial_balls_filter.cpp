@@ -28,7 +28,7 @@ double volumeOf(const mcf::BallUnion& soup)
 	return sum / 6;
 }
 
-Results run(FilterRun& run)
+Results medialBalls(FilterRun& run)
 {
 	const CurveLayer curve = skeletonOn(run, run.layer());
 	const double voxel = run.parameters.fraction("voxel") * referenceDiagonal(run.layer());
@@ -84,7 +84,7 @@ FilterSpec medialBallsFilter()
 			 "Edge of the cubes, mesh units or percent of the diagonal, above 0. Smaller ones follow the "
 			 "balls more closely and take more memory; sane are 0.3 to 2 %."},
 			surfaceParameter("The surface that the balls reach up to.")},
-		run};
+		medialBalls};
 }
 
 } // namespace mcfskel

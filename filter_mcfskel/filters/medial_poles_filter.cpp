@@ -12,7 +12,7 @@ namespace mcf = vcg::tri::mcf;
 
 namespace {
 
-Results run(FilterRun& run)
+Results medialPoles(FilterRun& run)
 {
 	const SurfaceLayer surface = readSurface(run.layer(), run.progress.part(0, 0.2));
 	logNotes(run, surface);
@@ -51,7 +51,7 @@ FilterSpec medialPolesFilter()
 		{poleMethodParameter(),
 			{ParameterKind::Boolean, "create_layer", 0, "Create a layer of the poles",
 				"Also adds the poles as a layer of points, to look at them."}},
-		run};
+		medialPoles};
 }
 
 } // namespace mcfskel

@@ -14,7 +14,7 @@ namespace mcf = vcg::tri::mcf;
 
 namespace {
 
-Results run(FilterRun& run)
+Results pruneSkeleton(FilterRun& run)
 {
 	const CurveLayer curve = skeletonOn(run, run.layer());
 	const double diagonal = referenceDiagonal(run.layer());
@@ -91,7 +91,7 @@ FilterSpec pruneSkeletonFilter()
 				"Junctions closer to each other than the radius of the larger one become one, in the "
 				"place of that one, where no cycle vanishes by it."},
 			surfaceParameter("The surface that the radius is measured to.")},
-		run};
+		pruneSkeleton};
 }
 
 } // namespace mcfskel

@@ -16,7 +16,7 @@ namespace mcf = vcg::tri::mcf;
 
 namespace {
 
-Results run(FilterRun& run)
+Results refineSkeleton(FilterRun& run)
 {
 	const CurveLayer found = skeletonOn(run, run.layer());
 	const SkeletonSurface surface = requireSurface(run, found, run.progress.part(0, 0.1));
@@ -75,7 +75,7 @@ FilterSpec refineSkeletonFilter()
 				"shorter one does. More removes small features, 0 none."}
 				.asAdvanced(),
 			adaptive[0], adaptive[1]},
-		run};
+		refineSkeleton};
 }
 
 } // namespace mcfskel

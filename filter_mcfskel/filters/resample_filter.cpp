@@ -15,7 +15,7 @@ namespace mcf = vcg::tri::mcf;
 
 namespace {
 
-Results run(FilterRun& run)
+Results resample(FilterRun& run)
 {
 	mcf::Parameters parameters;
 	readResampling(run.parameters, parameters);
@@ -58,7 +58,7 @@ FilterSpec resampleFilter()
 			"flips edges towards six neighbours for each vertex, evens the vertices out along the "
 			"surface and puts them back onto it; the topology stays.<br><br>"
 			"First stage of the skeletonization."),
-		FilterCategory::Remeshing, MeshModel::MM_FACENUMBER, parameters, run};
+		FilterCategory::Remeshing, MeshModel::MM_FACENUMBER, parameters, resample};
 }
 
 } // namespace mcfskel

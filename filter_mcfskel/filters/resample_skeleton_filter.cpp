@@ -14,7 +14,7 @@ namespace mcf = vcg::tri::mcf;
 
 namespace {
 
-Results run(FilterRun& run)
+Results resampleSkeleton(FilterRun& run)
 {
 	const CurveLayer curve = skeletonOn(run, run.layer());
 	const double diagonal = referenceDiagonal(run.layer());
@@ -54,7 +54,7 @@ FilterSpec resampleSkeletonFilter()
 				"Waves along a branch shorter than about six times this are flattened, mesh units or "
 				"percent of the diagonal. 0: no smoothing; sane are up to 2 %, more may leave the "
 				"shape where it bends."}},
-		run};
+		resampleSkeleton};
 }
 
 } // namespace mcfskel

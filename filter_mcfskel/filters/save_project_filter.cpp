@@ -128,7 +128,7 @@ QByteArray projectText(const MeshDocument& document, const std::vector<SavedLaye
 	return text;
 }
 
-Results run(FilterRun& run)
+Results saveProject(FilterRun& run)
 {
 	QString project = requiredName(run.parameters.text("file"), "to write");
 	if (QFileInfo(project).suffix().compare("mlp", Qt::CaseInsensitive) != 0)
@@ -169,7 +169,7 @@ FilterSpec saveProjectFilter()
 		FilterCategory::Remeshing, MeshModel::MM_NONE,
 		{{ParameterKind::FileToSave, "file", 0, "File", "Name of the project to write, .mlp.",
 			{"*.mlp"}}},
-		run};
+		saveProject};
 }
 
 } // namespace mcfskel

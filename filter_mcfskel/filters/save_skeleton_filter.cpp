@@ -52,7 +52,7 @@ std::uint64_t takeSources(const FilterRun& run, CurveLayer& curve)
 	return 0;
 }
 
-Results run(FilterRun& run)
+Results saveSkeleton(FilterRun& run)
 {
 	const QString file = requiredName(run.parameters.text("file"), "to write");
 	CurveLayer curve = readCurve(run.layer(), sourcesOf(run));
@@ -117,7 +117,7 @@ FilterSpec saveSkeletonFilter()
 				{"none", "auto", "thickest"}},
 			{ParameterKind::Length, "bone_tolerance", 1, "Tolerance of bones (.glb)",
 				"A bone is straight; where the curve is farther from it than this it is divided."}},
-		run};
+		saveSkeleton};
 }
 
 } // namespace mcfskel

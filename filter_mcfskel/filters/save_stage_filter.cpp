@@ -14,7 +14,7 @@ namespace mcf = vcg::tri::mcf;
 
 namespace {
 
-Results run(FilterRun& run)
+Results saveStage(FilterRun& run)
 {
 	const QString file = requiredName(run.parameters.text("file"), "to write");
 	const StageLayer found = readStage(run.layer(), sourcesOf(run));
@@ -53,7 +53,7 @@ FilterSpec saveStageFilter()
 		FilterCategory::Remeshing, MeshModel::MM_NONE,
 		{{ParameterKind::FileToSave, "file", 0, "File", "Name of the PLY file to write.",
 			{"*.ply"}}},
-		run};
+		saveStage};
 }
 
 } // namespace mcfskel

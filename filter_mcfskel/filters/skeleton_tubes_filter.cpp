@@ -17,7 +17,7 @@ namespace mcf = vcg::tri::mcf;
 
 namespace {
 
-Results run(FilterRun& run)
+Results skeletonTubes(FilterRun& run)
 {
 	const CurveLayer curve = skeletonOn(run, run.layer());
 	const double thinnest = run.parameters.fraction("radius") * referenceDiagonal(run.layer());
@@ -72,7 +72,7 @@ FilterSpec skeletonTubesFilter()
 			ParameterSpec {
 				ParameterKind::Integer, "sides", 12, "Sides", "Of a tube's section, at least 3."}
 				.asAdvanced()},
-		run};
+		skeletonTubes};
 }
 
 } // namespace mcfskel

@@ -29,7 +29,7 @@ QVariant column(size_t rows, const Value& value)
 	return QVariant::fromValue(numbers);
 }
 
-Results run(FilterRun& run)
+Results surfaceParts(FilterRun& run)
 {
 	CurveLayer curve = skeletonOn(run, run.layer());
 	const SkeletonSurface target = requireSurface(run, curve, run.progress.part(0, 0.1));
@@ -87,7 +87,7 @@ FilterSpec surfacePartsFilter()
 			"<i>branch_first_kind</i> and <i>branch_last_kind</i>: 0 a tip, 1 a junction, 2 the branch "
 			"itself, a ring. A short branch between two junctions may have no part."),
 		FilterCategory::Quality, MeshModel::MM_NONE,
-		{surfaceParameter("The surface to cut into parts, closed.")}, run};
+		{surfaceParameter("The surface to cut into parts, closed.")}, surfaceParts};
 	spec.changes = MeshModel::MM_FACEQUALITY | MeshModel::MM_FACECOLOR | MeshModel::MM_VERTQUALITY;
 	return spec;
 }

@@ -45,7 +45,7 @@ bool differ(const CurveSkeleton& a, const CurveSkeleton& b)
 }
 
 /// A flat box: a shape with a sheet.
-shapes::Soup slab()
+shapes::Soup plainSlab()
 {
 	return shapes::transformed(
 		shapes::plate(0, 12), [](const Point3d& p) { return Point3d(p[0], p[1], p[2] / 8); });
@@ -215,19 +215,19 @@ TEST(Skeletonize, NoiseOfThinPartsGrowsNoTips)
 TEST(Skeletonize, KeepsSheetsWhereAskedTo)
 {
 	Parameters parameters = coarse();
-	EXPECT_FALSE(run(slab(), parameters).sheets);
+	EXPECT_FALSE(run(plainSlab(), parameters).sheets);
 	parameters.keepSheets = true;
 	std::vector<std::string> notes;
 	Observer observer;
 	observer.onNote = [&](const std::string& note) { notes.push_back(note); };
-	const Skeletonization kept = run(slab(), parameters, observer);
+	const Skeletonization kept = run(plainSlab(), parameters, observer);
 	ASSERT_TRUE(kept.sheets);
 	EXPECT_FALSE(kept.refined);
 	EXPECT_GT(kept.sheets->skeleton.faces.size(), 10u);
 	const BettiNumbers b = kept.sheets->skeleton.betti();
 	EXPECT_EQ((std::vector<int> {b.b0, b.b1, b.b2}), (std::vector<int> {1, 0, 0}));
 	EXPECT_EQ(kept.nodeOfSurface().size(), kept.surface->position.size());
-	EXPECT_EQ(kept.node.size(), slab().points.size());
+	EXPECT_EQ(kept.node.size(), plainSlab().points.size());
 	const auto says = [&](const std::string& words) {
 		return std::any_of(notes.begin(), notes.end(),
 			[&](const std::string& note) { return note.find(words) != std::string::npos; });
@@ -235,7 +235,7 @@ TEST(Skeletonize, KeepsSheetsWhereAskedTo)
 	EXPECT_TRUE(says("Keeping sheets"));
 	EXPECT_TRUE(says("not refined"));
 	parameters.sheetThreshold = 1;
-	EXPECT_FALSE(run(slab(), parameters).sheets);
+	EXPECT_FALSE(run(plainSlab(), parameters).sheets);
 }
 
 TEST(Skeletonize, HeldVerticesAreNodes)

@@ -13,7 +13,7 @@ using namespace graphs;
 
 namespace {
 
-size_t lineOfError(const std::string& text)
+size_t lineOfSwcError(const std::string& text)
 {
 	return errorLine([](std::istream& in) { readSwc(in); }, text);
 }
@@ -106,21 +106,21 @@ TEST(Swc, ReadsParentsThatComeLaterAndAnyIds)
 TEST(Swc, ErrorsCarryTheirLine)
 {
 	const std::string root = "# a file\n1 0 0 0 0 1 -1\n";
-	EXPECT_EQ(lineOfError(root + "2 0 1 0 0 1\n"), 3u) << "a field too few";
-	EXPECT_EQ(lineOfError(root + "2 0 1 0 0 1 1 1\n"), 3u) << "a field too many";
-	EXPECT_EQ(lineOfError(root + "2 0 1 0 inf 1 1\n"), 3u);
-	EXPECT_EQ(lineOfError(root + "2 0 1 0 1e37 1 1\n"), 3u) << "too far away to work with";
-	EXPECT_EQ(lineOfError(root + "2 0 1 0 0 -1 1\n"), 3u) << "a radius below 0";
-	EXPECT_EQ(lineOfError(root + "2 0 1 0 0 nan 1\n"), 3u);
-	EXPECT_EQ(lineOfError(root + "2 0 1 0 0 1e37 1\n"), 3u);
-	EXPECT_EQ(lineOfError(root + "1 0 1 0 0 1 1\n"), 3u) << "an id twice";
-	EXPECT_EQ(lineOfError(root + "-2 0 1 0 0 1 1\n"), 3u);
-	EXPECT_EQ(lineOfError(root + "2.5 0 1 0 0 1 1\n"), 3u);
-	EXPECT_EQ(lineOfError(root + "2 soma 1 0 0 1 1\n"), 3u);
-	EXPECT_EQ(lineOfError(root + "2 0 1 0 0 1 -2\n"), 3u);
-	EXPECT_EQ(lineOfError(root + "2 0 1 0 0 1 9\n3 0 1 0 0 1 1\n"), 3u) << "no such parent";
-	EXPECT_EQ(lineOfError(root + "2 0 1 0 0 1 2\n"), 3u) << "its own parent";
-	EXPECT_GE(lineOfError(root + "2 0 1 0 0 1 3\n3 0 1 0 0 1 2\n"), 3u) << "its own grandparent";
+	EXPECT_EQ(lineOfSwcError(root + "2 0 1 0 0 1\n"), 3u) << "a field too few";
+	EXPECT_EQ(lineOfSwcError(root + "2 0 1 0 0 1 1 1\n"), 3u) << "a field too many";
+	EXPECT_EQ(lineOfSwcError(root + "2 0 1 0 inf 1 1\n"), 3u);
+	EXPECT_EQ(lineOfSwcError(root + "2 0 1 0 1e37 1 1\n"), 3u) << "too far away to work with";
+	EXPECT_EQ(lineOfSwcError(root + "2 0 1 0 0 -1 1\n"), 3u) << "a radius below 0";
+	EXPECT_EQ(lineOfSwcError(root + "2 0 1 0 0 nan 1\n"), 3u);
+	EXPECT_EQ(lineOfSwcError(root + "2 0 1 0 0 1e37 1\n"), 3u);
+	EXPECT_EQ(lineOfSwcError(root + "1 0 1 0 0 1 1\n"), 3u) << "an id twice";
+	EXPECT_EQ(lineOfSwcError(root + "-2 0 1 0 0 1 1\n"), 3u);
+	EXPECT_EQ(lineOfSwcError(root + "2.5 0 1 0 0 1 1\n"), 3u);
+	EXPECT_EQ(lineOfSwcError(root + "2 soma 1 0 0 1 1\n"), 3u);
+	EXPECT_EQ(lineOfSwcError(root + "2 0 1 0 0 1 -2\n"), 3u);
+	EXPECT_EQ(lineOfSwcError(root + "2 0 1 0 0 1 9\n3 0 1 0 0 1 1\n"), 3u) << "no such parent";
+	EXPECT_EQ(lineOfSwcError(root + "2 0 1 0 0 1 2\n"), 3u) << "its own parent";
+	EXPECT_GE(lineOfSwcError(root + "2 0 1 0 0 1 3\n3 0 1 0 0 1 2\n"), 3u) << "its own grandparent";
 }
 
 TEST(Swc, DamagedFilesAreReadOrRefused)

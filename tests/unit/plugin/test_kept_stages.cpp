@@ -18,7 +18,7 @@ using namespace vcg::tri::mcf;
 
 namespace {
 
-KeptStages::StagePointer stageOf(const shapes::Soup& soup)
+KeptStages::StagePointer sharedStage(const shapes::Soup& soup)
 {
 	const SurfaceMesh mesh = soup.mesh();
 	return std::make_shared<const Stage>(initialStage(mesh, checks::noPoles(mesh)));
@@ -26,8 +26,8 @@ KeptStages::StagePointer stageOf(const shapes::Soup& soup)
 
 std::vector<KeptStages::StagePointer> someStages()
 {
-	return {stageOf(shapes::sphere(5)), stageOf(shapes::box(1, 0.7, 1e-3)),
-		stageOf(shapes::torus(1, 0.001, 600, 4)), stageOf(shapes::capsule())};
+	return {sharedStage(shapes::sphere(5)), sharedStage(shapes::box(1, 0.7, 1e-3)),
+		sharedStage(shapes::torus(1, 0.001, 600, 4)), sharedStage(shapes::capsule())};
 }
 
 TEST(KeptStages, FieldsAreThoseOfTheStageOnAnyNumberOfThreads)
@@ -62,7 +62,7 @@ TEST(KeptStages, OnOneThreadTheUserCanCancel)
 {
 	const ThreadCount threads(1);
 	KeptStages kept;
-	kept.add(stageOf(shapes::sphere(3)));
+	kept.add(sharedStage(shapes::sphere(3)));
 	EXPECT_THROW(kept.takeFields(0, Progress([](int, const char*) { return false; })), Cancelled);
 }
 

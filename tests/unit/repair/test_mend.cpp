@@ -19,7 +19,7 @@ using vcg::Point3d;
 
 namespace {
 
-MendedSurface mended(const shapes::Soup& soup)
+MendedSurface mendedOf(const shapes::Soup& soup)
 {
 	return mend(soup.points, soup.triangles);
 }
@@ -51,7 +51,7 @@ double enclosedVolume(const MendedSurface& surface)
 TEST(Mend, LeavesASoundSurfaceAsItIs)
 {
 	const shapes::Soup soup = shapes::torus();
-	const MendedSurface surface = mended(soup);
+	const MendedSurface surface = mendedOf(soup);
 	expectMended(surface, soup, 1, 0);
 	EXPECT_FALSE(surface.report.isChanged());
 	EXPECT_TRUE(surface.triangles == soup.triangles);
@@ -60,10 +60,10 @@ TEST(Mend, LeavesASoundSurfaceAsItIs)
 TEST(Mend, FillsAHoleOfOneTriangle)
 {
 	const shapes::Soup soup = shapes::opened(shapes::sphere(3));
-	const MendedSurface surface = mended(soup);
+	const MendedSurface surface = mendedOf(soup);
 	expectMended(surface, soup);
 	EXPECT_EQ(surface.report.holesClosed, 1);
-	EXPECT_NEAR(enclosedVolume(surface), enclosedVolume(mended(shapes::sphere(3))), 1e-12);
+	EXPECT_NEAR(enclosedVolume(surface), enclosedVolume(mendedOf(shapes::sphere(3))), 1e-12);
 }
 
 TEST(Mend, FillsTheHolesOfFacesMissingAtRandom)
@@ -74,11 +74,11 @@ TEST(Mend, FillsTheHolesOfFacesMissingAtRandom)
 		soup.triangles.erase(std::remove_if(soup.triangles.begin(), soup.triangles.end(),
 								 [&](const Triangle&) { return random() % 12 == 0; }),
 			soup.triangles.end());
-		const MendedSurface surface = mended(soup);
+		const MendedSurface surface = mendedOf(soup);
 		expectMended(surface, soup, 1, 0);
 		EXPECT_GT(surface.report.holesClosed, 50);
-		EXPECT_NEAR(enclosedVolume(surface), enclosedVolume(mended(shapes::torus(1, 0.3, 60, 24))),
-			0.02 * 1.7);
+		EXPECT_NEAR(enclosedVolume(surface),
+			enclosedVolume(mendedOf(shapes::torus(1, 0.3, 60, 24))), 0.02 * 1.7);
 	}
 }
 
@@ -90,7 +90,7 @@ TEST(Mend, LeavesALargeHole)
 		if (soup.points[size_t(t[0])][2] < 0.1)
 			half.push_back(t);
 	soup.triangles = half;
-	const MendedSurface surface = mended(soup);
+	const MendedSurface surface = mendedOf(soup);
 	EXPECT_FALSE(surface.closed);
 	EXPECT_EQ(surface.report.holesLeft, 1);
 	EXPECT_EQ(surface.report.holesClosed, 0);
@@ -110,9 +110,9 @@ TEST(Mend, DoesNotFillAcrossTheShape)
 			open.push_back(t);
 	}
 	soup.triangles = open;
-	EXPECT_EQ(mended(soup).report.holesClosed, 1);
+	EXPECT_EQ(mendedOf(soup).report.holesClosed, 1);
 	const shapes::Soup pin = shapes::moved(shapes::box(1, 0.05, 0.05), {1.5, -0.02, -0.02});
-	const MendedSurface crossed = mended(shapes::joined({soup, pin}));
+	const MendedSurface crossed = mendedOf(shapes::joined({soup, pin}));
 	EXPECT_EQ(crossed.report.holesClosed, 0);
 	EXPECT_FALSE(crossed.closed);
 }
@@ -122,7 +122,7 @@ TEST(Mend, TurnsFacesToAgree)
 	shapes::Soup soup = shapes::opened(shapes::sphere(3));
 	for (size_t f = 5; f < soup.triangles.size(); f += 20)
 		std::swap(soup.triangles[f][0], soup.triangles[f][1]);
-	const MendedSurface surface = mended(soup);
+	const MendedSurface surface = mendedOf(soup);
 	expectMended(surface, soup);
 	EXPECT_EQ(surface.report.facesTurned, int((soup.triangles.size() + 14) / 20));
 	EXPECT_GT(enclosedVolume(surface), 4);
@@ -131,7 +131,7 @@ TEST(Mend, TurnsFacesToAgree)
 TEST(Mend, PartsBodiesThatTouchAtAnEdge)
 {
 	const shapes::Soup soup = shapes::tetrahedraSharingEdge();
-	const MendedSurface surface = mended(soup);
+	const MendedSurface surface = mendedOf(soup);
 	expectMended(surface, soup, 2, 4);
 	EXPECT_EQ(surface.report.edgesParted, 1);
 	EXPECT_NEAR(enclosedVolume(surface), 2.0 / 6, 1e-12);
@@ -140,7 +140,7 @@ TEST(Mend, PartsBodiesThatTouchAtAnEdge)
 TEST(Mend, PartsBodiesThatTouchAtAVertex)
 {
 	const shapes::Soup soup = shapes::tetrahedraSharingVertex();
-	const MendedSurface surface = mended(soup);
+	const MendedSurface surface = mendedOf(soup);
 	expectMended(surface, soup, 2, 4);
 	EXPECT_EQ(surface.report.verticesParted, 1);
 }
@@ -152,10 +152,10 @@ TEST(Mend, DropsAFin)
 	const int tip = int(soup.points.size());
 	soup.points.push_back(soup.points[size_t(t[0])] * 1.1);
 	soup.triangles.push_back({t[1], t[0], tip});
-	const MendedSurface surface = mended(soup);
+	const MendedSurface surface = mendedOf(soup);
 	expectMended(surface, soup);
 	EXPECT_EQ(surface.report.piecesDropped, 1);
-	EXPECT_NEAR(enclosedVolume(surface), enclosedVolume(mended(shapes::sphere(3))), 1e-12);
+	EXPECT_NEAR(enclosedVolume(surface), enclosedVolume(mendedOf(shapes::sphere(3))), 1e-12);
 }
 
 /// An opened ball, and so many small ones beside it.
@@ -174,21 +174,21 @@ TEST(Mend, DropsWhatFloatsAboutAScan)
 	shapes::Soup sheet = {
 		{{0, 0, 2}, {0.3, 0, 2}, {0.3, 0.3, 2.1}, {0, 0.3, 2}}, {{0, 1, 2}, {0, 2, 3}}};
 	const shapes::Soup clump = shapes::moved(shapes::scaled(shapes::box(), 0.04), {0, 0, 1.5});
-	const MendedSurface surface = mended(shapes::joined({body, sheet, clump}));
+	const MendedSurface surface = mendedOf(shapes::joined({body, sheet, clump}));
 	expectMended(surface, body);
 	EXPECT_EQ(surface.report.piecesDropped, 2);
 	// A twig that was torn off is no clump: it is long.
 	const shapes::Soup twig = shapes::moved(shapes::box(0.5, 0.02, 0.02), {0, 0, 1.5});
-	expectMended(mended(shapes::joined({body, twig})), body, 2, 4);
+	expectMended(mendedOf(shapes::joined({body, twig})), body, 2, 4);
 }
 
 TEST(Mend, DropsClosedSpecksBesideABodyUnlessTheyAreTheSurface)
 {
-	const MendedSurface few = mended(withBalls(6, 0.009));
+	const MendedSurface few = mendedOf(withBalls(6, 0.009));
 	expectMended(few, {}, 1, 2);
 	EXPECT_EQ(few.report.piecesDropped, 6);
-	expectMended(mended(withBalls(6, 0.06)), {}, 7, 14);
-	const MendedSurface many = mended(withBalls(800, 0.009));
+	expectMended(mendedOf(withBalls(6, 0.06)), {}, 7, 14);
+	const MendedSurface many = mendedOf(withBalls(800, 0.009));
 	expectMended(many, {}, 801, 2 * 801);
 	EXPECT_EQ(many.report.piecesDropped, 0);
 }
@@ -203,7 +203,7 @@ TEST(Mend, UnitesBoxesWithACommonWall)
 			for (int w = 0; w < v; ++w)
 				if (merged.points[size_t(w)] == merged.points[size_t(v)])
 					v = w;
-	const MendedSurface surface = mended(merged);
+	const MendedSurface surface = mendedOf(merged);
 	ASSERT_TRUE(surface.closed);
 	EXPECT_NEAR(enclosedVolume(surface), 2, 1e-12);
 }
@@ -220,10 +220,10 @@ TEST(Mend, DropsAWallAcrossTheInside)
 				wall.push_back({a, b, middle});
 		}
 	ASSERT_GT(wall.size(), 8u);
-	const MendedSurface without = mended(soup);
+	const MendedSurface without = mendedOf(soup);
 	soup.points.emplace_back(0, 0, 0);
 	soup.triangles.insert(soup.triangles.end(), wall.begin(), wall.end());
-	const MendedSurface surface = mended(soup);
+	const MendedSurface surface = mendedOf(soup);
 	ASSERT_TRUE(surface.closed);
 	EXPECT_EQ(surface.report.holesLeft, 0);
 	EXPECT_EQ(surface.report.piecesDropped, 1);
@@ -261,7 +261,7 @@ TEST(Mend, DoesNotMergeAcrossSlivers)
 	shapes::Soup soup = tube;
 	for (size_t f : {size_t(40), size_t(30), size_t(20)})
 		soup.triangles.erase(soup.triangles.begin() + long(f));
-	const MendedSurface surface = mended(soup);
+	const MendedSurface surface = mendedOf(soup);
 	ASSERT_TRUE(surface.closed);
 	EXPECT_EQ(surface.report.verticesMerged, 0);
 	EXPECT_EQ(surface.report.junctionsClosed, 0);
@@ -276,7 +276,7 @@ TEST(Mend, ClosesTJunctions)
 	soup.points.push_back((soup.points[size_t(t[0])] + soup.points[size_t(t[1])]) / 2.0);
 	soup.triangles[7] = {t[0], middle, t[2]};
 	soup.triangles.push_back({middle, t[1], t[2]});
-	const MendedSurface surface = mended(soup);
+	const MendedSurface surface = mendedOf(soup);
 	expectMended(surface, soup);
 	EXPECT_EQ(surface.report.junctionsClosed, 1);
 	EXPECT_EQ(surface.report.holesClosed, 0);
@@ -285,7 +285,7 @@ TEST(Mend, ClosesTJunctions)
 TEST(Mend, MergesVerticesThatNearlyCoincide)
 {
 	const shapes::Soup soup = shapes::jittered(shapes::unmerged(shapes::sphere(3)), 1e-6);
-	const MendedSurface surface = mended(soup);
+	const MendedSurface surface = mendedOf(soup);
 	ASSERT_TRUE(surface.closed);
 	EXPECT_EQ(surface.report.verticesMerged, int(soup.points.size()) - 258);
 	EXPECT_EQ(int(soup.triangles.size()), int(surface.triangles.size()));
@@ -295,7 +295,7 @@ TEST(Mend, LeavesOutFacesThatAreNotFinite)
 {
 	shapes::Soup soup = shapes::sphere(3);
 	soup.points[3][1] = std::numeric_limits<double>::quiet_NaN();
-	const MendedSurface surface = mended(soup);
+	const MendedSurface surface = mendedOf(soup);
 	ASSERT_TRUE(surface.closed);
 	EXPECT_EQ(surface.report.holesClosed, 1);
 	for (const Triangle& t : surface.triangles)
@@ -305,7 +305,7 @@ TEST(Mend, LeavesOutFacesThatAreNotFinite)
 
 TEST(Mend, SaysThatASurfaceIsOneSided)
 {
-	const MendedSurface surface = mended(shapes::kleinBottle());
+	const MendedSurface surface = mendedOf(shapes::kleinBottle());
 	EXPECT_FALSE(surface.closed);
 	EXPECT_TRUE(surface.report.oneSided);
 }

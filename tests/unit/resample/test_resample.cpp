@@ -101,7 +101,7 @@ shapes::Soup cylinder(double radius, double length, int around)
 }
 
 /// A hemispherical bowl of outer radius 1 about the x axis, with a wall of the given thickness.
-shapes::Soup bowl(double thickness, int around = 60)
+shapes::Soup shellBowl(double thickness, int around = 60)
 {
 	std::vector<std::pair<double, double>> profile;
 	const int steps = around / 4;
@@ -208,7 +208,7 @@ TEST(Resample, VerticesLieOnTheInputAndNoFaceIsTurned)
 		{"dense torus", shapes::torus(1, 0.3, 80, 24), 0.15},
 		{"plate", shapes::plate(2, 1), 0.2},
 		{"bumps", shapes::jittered(shapes::sphere(3), 0.03), 0.1},
-		{"bowl", bowl(0.05), 0.1},
+		{"bowl", shellBowl(0.05), 0.1},
 	};
 	for (const auto& [name, soup, length] : cases) {
 		SCOPED_TRACE(name);
@@ -279,7 +279,7 @@ TEST(Resample, ThinWallsStayApart)
 {
 	// The wall is a third of an edge thick: a search in space would find the wrong side.
 	const double thickness = 0.02, length = 0.06;
-	const SurfaceMesh surface = checked(bowl(thickness));
+	const SurfaceMesh surface = checked(shellBowl(thickness));
 	const SurfaceMesh mesh = resample(surface, {length}, 5);
 	EXPECT_EQ(mesh.eulerCharacteristic(), 2);
 	EXPECT_NEAR(mesh.volume() / surface.volume(), 1, 0.05);
