@@ -68,7 +68,7 @@ QString baseName(QString name)
 	static const QRegularExpression copyNumber("\\(\\d+\\)$");
 	static const QRegularExpression fileType("\\.[A-Za-z0-9]{1,5}$");
 	static const QRegularExpression appended(
-		"_(solid|resampled|meso_\\d+|skeleton|refined|poles|pruned|smoothed|medial|balls)$");
+		"_(solid|resampled|meso_\\d+|skeleton|refined|poles|pruned|smoothed|medial|balls|tubes)$");
 	name.remove(copyNumber);
 	name.remove(fileType);
 	name.remove(appended);

@@ -222,6 +222,15 @@ def test_four_steps_and_the_curve(window: Window) -> None:
     assert skeleton_pixels(picture).sum() > 50, "its thickness is seen"
     assert_inside(outline_pixels(picture), surface, 500)
 
+    # Tubes take the skeleton's place, and the next stage takes theirs.
+    window.open_filter(PREFIX + "Skeleton to Tubes")
+    apply(window, "Skeleton to Tubes")
+    assert visible(window, window.layers()) == ["capsule", "capsule_tubes"]
+    window.click(next(w for w in window.view().all("table cell", "capsule_meso_4")))
+    window.open_filter(PREFIX + "Contraction Step")
+    apply(window, "Contraction Step")
+    assert visible(window, window.layers()) == ["capsule_meso_5"]
+
 
 def error_box(window: Window) -> list[Widget]:
     """The texts of the box that says that a filter has failed; empty if none shows."""
