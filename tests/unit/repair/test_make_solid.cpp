@@ -50,13 +50,14 @@ int piecesOf(const SurfaceMesh& mesh)
 	return components;
 }
 
-/// The part of a sphere below a height.
+/// The part of a sphere below a rim that goes up and down by a third of the radius.
 shapes::Soup bowl(double height, int levels = 4)
 {
 	shapes::Soup soup = shapes::sphere(levels);
 	std::vector<Triangle> left;
 	for (const Triangle& t : soup.triangles)
-		if (soup.points[size_t(t[0])][2] < height)
+		if (const Point3d& p = soup.points[size_t(t[0])];
+			p[2] < height + std::cos(3 * std::atan2(p[1], p[0])) / 3)
 			left.push_back(t);
 	soup.triangles = left;
 	return soup;

@@ -87,7 +87,9 @@ TEST(Mend, LeavesALargeHole)
 	shapes::Soup soup = shapes::sphere(3);
 	std::vector<Triangle> half;
 	for (const Triangle& t : soup.triangles)
-		if (soup.points[size_t(t[0])][2] < 0.1)
+		// A rim that goes up and down: not that of a cut by a plane.
+		if (const Point3d& p = soup.points[size_t(t[0])];
+			p[2] < 0.1 + std::cos(3 * std::atan2(p[1], p[0])) / 3)
 			half.push_back(t);
 	soup.triangles = half;
 	const MendedSurface surface = mendedOf(soup);

@@ -235,6 +235,52 @@ inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& point
 	return loops;
 }
 
+/// The normal of a triangle with its area as length.
+inline Point3d areaVector(const std::vector<Point3d>& points, const Triangle& t)
+{
+	const Point3d& a = points[size_t(t[0])];
+	return ((points[size_t(t[1])] - a) ^ (points[size_t(t[2])] - a)) / 2.0;
+}
+
+/// The border of a hole as its filling sees it: against the faces, so that the filling has its normals on the
+/// same side.
+struct BorderPolygon
+{
+	std::vector<int> corners; ///< vertices
+	std::vector<Point3d> points;
+	std::vector<Point3d> outside; ///< unit normal of the face at each side i, i + 1
+	std::set<int> pieces;         ///< of the surface, around the hole
+
+	/// Of two corners, by their vertices.
+	std::pair<int, int> edge(int a, int b) const
+	{
+		return std::minmax(corners[size_t(a)], corners[size_t(b)]);
+	}
+	/// Of vertices, from one of corners.
+	Triangle triangle(const Triangle& t) const
+	{
+		return {corners[size_t(t[0])], corners[size_t(t[1])], corners[size_t(t[2])]};
+	}
+};
+
+/// @param loop half-edges, as holeLoops() has them. @param piece of each face.
+inline BorderPolygon borderPolygon(const std::vector<Point3d>& points,
+	const std::vector<Triangle>& triangles, const std::vector<int>& piece,
+	const std::vector<int>& loop)
+{
+	BorderPolygon border;
+	for (auto h = loop.rbegin(); h != loop.rend(); ++h) {
+		const Triangle& face = triangles[size_t(*h) / 3];
+		const int v = face[size_t(Fans::next(*h)) % 3];
+		border.corners.push_back(v);
+		border.points.push_back(points[size_t(v)]);
+		const Point3d normal = areaVector(points, face);
+		border.outside.push_back(normal.Norm() > 0 ? normal / normal.Norm() : normal);
+		border.pieces.insert(piece[size_t(*h) / 3]);
+	}
+	return border;
+}
+
 /// The edges whose two vertices are marked.
 inline std::set<std::pair<int, int>> edgesBetween(
 	const std::vector<Triangle>& triangles, const std::vector<char>& marked)
@@ -307,14 +353,10 @@ inline FilledHoles fillHoles(const std::vector<Point3d>& points, std::vector<Tri
 	const std::vector<std::vector<int>> loops = detail::holeLoops(points, triangles, partner);
 	if (loops.empty())
 		return done;
-	const auto areaVector = [&](const Triangle& t) {
-		const Point3d& a = points[size_t(t[0])];
-		return ((points[size_t(t[1])] - a) ^ (points[size_t(t[2])] - a)) / 2.0;
-	};
 	const std::vector<int> piece = detail::pieceOfFaces(partner);
 	std::vector<double> area(piece.size(), 0), filled(piece.size(), 0);
 	for (size_t f = 0; f < piece.size(); ++f)
-		area[size_t(piece[f])] += areaVector(triangles[f]).Norm();
+		area[size_t(piece[f])] += detail::areaVector(points, triangles[f]).Norm();
 	std::vector<char> onBorder(points.size(), 0);
 	for (int h = 0; h < int(partner.size()); ++h)
 		if (partner[size_t(h)] < 0)
@@ -331,27 +373,14 @@ inline FilledHoles fillHoles(const std::vector<Point3d>& points, std::vector<Tri
 		++done.left;
 		if (n < 3 || n > limits.edges)
 			continue;
-		// Against the faces, so that the filling has its normals on the same side.
-		std::vector<int> corner;
-		std::vector<Point3d> polygon, outside;
-		std::set<int> around;
-		for (int k = 0; k < n; ++k) {
-			const int h = loop[size_t(n - 1 - k)];
-			const int v = triangles[size_t(h) / 3][size_t(detail::Fans::next(h)) % 3];
-			corner.push_back(v);
-			polygon.push_back(points[size_t(v)]);
-			const Point3d normal = areaVector(triangles[size_t(h) / 3]);
-			outside.push_back(normal.Norm() > 0 ? normal / normal.Norm() : normal);
-			around.insert(piece[size_t(h) / 3]);
-		}
-		const auto edge = [&](int a, int b) {
-			return std::pair<int, int>(std::minmax(corner[size_t(a)], corner[size_t(b)]));
-		};
-		const detail::PolygonFilling best(polygon, outside, [&](int a, int b) {
-			return corner[size_t(a)] != corner[size_t(b)] && !edges.count(edge(a, b));
+		const detail::BorderPolygon border = detail::borderPolygon(points, triangles, piece, loop);
+		const auto edge = [&](int a, int b) { return border.edge(a, b); };
+		const detail::PolygonFilling best(border.points, border.outside, [&](int a, int b) {
+			const std::vector<int>& corners = border.corners;
+			return corners[size_t(a)] != corners[size_t(b)] && !edges.count(edge(a, b));
 		});
 		double surface = 0, before = 0;
-		for (int p : around) {
+		for (int p : border.pieces) {
 			surface += area[size_t(p)];
 			before += filled[size_t(p)];
 		}
@@ -364,7 +393,7 @@ inline FilledHoles fillHoles(const std::vector<Point3d>& points, std::vector<Tri
 		std::set<std::pair<int, int>> chords;
 		bool fits = true;
 		for (const Triangle& t : best.triangles()) {
-			made.push_back({corner[size_t(t[0])], corner[size_t(t[1])], corner[size_t(t[2])]});
+			made.push_back(border.triangle(t));
 			for (const auto& [a, b] : {std::pair(t[0], t[1]), std::pair(t[1], t[2])})
 				if (b - a > 1)
 					fits &= chords.insert(edge(a, b)).second; // a vertex may be on the loop twice
@@ -374,7 +403,7 @@ inline FilledHoles fillHoles(const std::vector<Point3d>& points, std::vector<Tri
 			continue;
 		edges.insert(chords.begin(), chords.end());
 		triangles.insert(triangles.end(), made.begin(), made.end());
-		for (int p : around)
+		for (int p : border.pieces)
 			filled[size_t(p)] += size;
 		++done.closed;
 		--done.left;

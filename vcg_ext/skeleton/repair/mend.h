@@ -8,6 +8,7 @@
 #define VCG_MCF_MEND_H
 
 #include "bridge_gaps.h"
+#include "cap_cuts.h"
 #include "close_seams.h"
 #include "fill_holes.h"
 #include "part_surface.h"
@@ -279,8 +280,8 @@ inline int dropInnerWalls(
 /**
  * Mends small defects, in this order: faces that are degenerate, not finite, or there twice; vertices that
  * coincide; seams (see closeSeams()); edges and vertices where the surface is no two-manifold (see
- * partSurface()); orientation; specks; torn limbs (see bridgeGaps()); small holes (see fillHoles()); open walls
- * inside what is closed by then.
+ * partSurface()); orientation; specks; torn limbs (see bridgeGaps()); small holes (see fillHoles()); cuts by planes
+ * (see capCuts()); open walls inside what is closed by then.
  *
  * A surface that has none of these defects stays as it is. What cannot be mended is left, with `closed` false.
  * @param points    mesh units. @param triangles corners as indices into `points`.
@@ -369,9 +370,16 @@ inline MendedSurface mend(const std::vector<Point3d>& points,
 	if (report.gapsBridged > 0)
 		partner = pairedHalfEdges(mended.points, faces, nullptr, progress.cancelOnly());
 	const FilledHoles holes =
-		fillHoles(mended.points, faces, partner, limits, progress.part(0.6, 0.95));
+		fillHoles(mended.points, faces, partner, limits, progress.part(0.6, 0.9));
 	report.holesClosed = holes.closed;
 	report.holesLeft = holes.left;
+	if (report.holesLeft > 0) {
+		partner = pairedHalfEdges(mended.points, faces, nullptr, progress.cancelOnly());
+		const int capped =
+			capCuts(mended.points, faces, partner, CutLimits(), progress.part(0.9, 0.95));
+		report.holesClosed += capped;
+		report.holesLeft -= capped;
+	}
 	constexpr int mostCuts = 3;
 	for (int round = 0; round < mostCuts && report.holesLeft > 0; ++round) {
 		const Progress again = progress.cancelOnly();

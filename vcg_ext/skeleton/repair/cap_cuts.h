@@ -1,0 +1,268 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief Openings that a plane has cut, as the bottom of a scanned statue, closed by flat caps.
+
+#ifndef VCG_MCF_CAP_CUTS_H
+#define VCG_MCF_CAP_CUTS_H
+
+#include "fill_holes.h"
+
+#include <skeleton/core/progress.h>
+#include <skeleton/spatial/triangle_tree.h>
+
+#include <vcg/math/base.h>
+#include <vcg/space/point2.h>
+#include <vcg/space/point3.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/// What counts as cut by a plane.
+struct CutLimits
+{
+	/// How far the border may be from its plane, in mean border edges, since faces are cut away whole; and as a
+	/// part of the root of the cap's area, which is what counts where faces are large.
+	double edges = 2, flat = 0.1;
+	/// The surface has at least so many times the area of its caps: less would be the sheet itself, there twice.
+	double surface = 1.1;
+	/// The part of a cap that may run into the surface: the teeth of a jagged border.
+	double crossing = 0.01;
+	/// Smaller caps than this part of the surface are holes, and no cuts.
+	double least = 0.003;
+	/// The time grows with the square of the border's edges.
+	int most = 10000;
+};
+
+namespace detail {
+
+/// Triangles of a polygon in the plane, which turns counter-clockwise, by clipping ears, the one with the shortest
+/// new edge first. allowed(i, k): whether there may be an edge between those corners. Nothing if the polygon
+/// runs into itself. Complexity: O(n^2) for n corners.
+template <class Allowed>
+std::optional<std::vector<Triangle>> clippedEars(
+	const std::vector<Point2d>& p, const Allowed& allowed)
+{
+	constexpr double never = std::numeric_limits<double>::infinity();
+	const int n = int(p.size());
+	std::vector<int> before(size_t(n), 0), after(size_t(n), 0);
+	for (int i = 0; i < n; ++i) {
+		before[size_t(i)] = (i + n - 1) % n;
+		after[size_t(i)] = (i + 1) % n;
+	}
+	const auto leftTurn = [&](int a, int b, int c) {
+		return (p[size_t(b)] - p[size_t(a)]) ^ (p[size_t(c)] - p[size_t(a)]);
+	};
+	// Others in the ear, on its sides too, would be cut off.
+	const auto cost = [&](int i) {
+		const int a = before[size_t(i)], c = after[size_t(i)];
+		if (!(leftTurn(a, i, c) > 0) || !allowed(a, c))
+			return never;
+		for (int j = after[size_t(c)]; j != a; j = after[size_t(j)])
+			if (leftTurn(a, i, j) >= 0 && leftTurn(i, c, j) >= 0 && leftTurn(c, a, j) >= 0
+				&& p[size_t(j)] != p[size_t(a)] && p[size_t(j)] != p[size_t(i)]
+				&& p[size_t(j)] != p[size_t(c)])
+				return never;
+		return (p[size_t(c)] - p[size_t(a)]).SquaredNorm();
+	};
+	std::vector<double> costs;
+	for (int i = 0; i < n; ++i)
+		costs.push_back(n == 3 ? 0 : cost(i));
+	std::vector<Triangle> triangles;
+	for (int left = n; left > 3; --left) {
+		const int ear = int(std::min_element(costs.begin(), costs.end()) - costs.begin());
+		if (costs[size_t(ear)] == never)
+			return std::nullopt;
+		const int a = before[size_t(ear)], c = after[size_t(ear)];
+		triangles.push_back({a, ear, c});
+		after[size_t(a)] = c;
+		before[size_t(c)] = a;
+		costs[size_t(ear)] = never;
+		costs[size_t(a)] = left == 4 ? 0 : cost(a);
+		costs[size_t(c)] = left == 4 ? 0 : cost(c);
+	}
+	const int last = int(std::min_element(costs.begin(), costs.end()) - costs.begin());
+	const int a = before[size_t(last)], c = after[size_t(last)];
+	if (!(leftTurn(a, last, c) > 0))
+		return std::nullopt;
+	triangles.push_back({a, last, c});
+	return triangles;
+}
+
+/// Each corner moved halfway to the middle of its neighbours, so many times.
+inline std::vector<Point2d> smoothed(std::vector<Point2d> polygon, int rounds)
+{
+	const size_t n = polygon.size();
+	for (int round = 0; round < rounds; ++round) {
+		const std::vector<Point2d> before = polygon;
+		for (size_t i = 0; i < n; ++i)
+			polygon[i] = (before[(i + n - 1) % n] + before[i] * 2.0 + before[(i + 1) % n]) / 4.0;
+	}
+	return polygon;
+}
+
+/// Whether a point is inside a polygon of the plane.
+inline bool isInPolygon(const Point2d& q, const std::vector<Point2d>& polygon)
+{
+	bool inside = false;
+	for (size_t i = 0, k = polygon.size() - 1; i < polygon.size(); k = i++) {
+		const Point2d &a = polygon[i], &b = polygon[k];
+		if ((a[1] > q[1]) != (b[1] > q[1])
+			&& q[0] < a[0] + (b[0] - a[0]) * (q[1] - a[1]) / (b[1] - a[1]))
+			inside = !inside;
+	}
+	return inside;
+}
+
+/// A border that a plane has cut, and that plane.
+struct PlaneCut
+{
+	BorderPolygon border;
+	Point3d centre = Point3d(0, 0, 0), normal; ///< the cap's
+	Point3d x, y;                              ///< axes of the plane
+	double area = 0, tolerance = 0;
+
+	PlaneCut(BorderPolygon of, const CutLimits& limits) : border(std::move(of))
+	{
+		const std::vector<Point3d>& p = border.points;
+		double length = 0;
+		for (const Point3d& q : p)
+			centre += q / double(p.size());
+		Point3d areaVector(0, 0, 0);
+		for (size_t i = 0; i < p.size(); ++i) {
+			const Point3d &a = p[i], &b = p[(i + 1) % p.size()];
+			areaVector += ((a - centre) ^ (b - centre)) / 2.0;
+			length += Distance(a, b) / double(p.size());
+		}
+		area = areaVector.Norm();
+		normal = area > 0 ? areaVector / area : areaVector;
+		vcg::GetUV(normal, x, y);
+		if (((x ^ y) * normal) < 0)
+			std::swap(x, y);
+		tolerance = std::min(limits.edges * length, limits.flat * std::sqrt(area));
+	}
+
+	double height(const Point3d& q) const { return (q - centre) * normal; }
+	Point2d inPlane(const Point3d& q) const { return {(q - centre) * x, (q - centre) * y}; }
+
+	bool isFlat() const
+	{
+		return area > 0
+			&& std::all_of(border.points.begin(), border.points.end(),
+				[&](const Point3d& q) { return std::abs(height(q)) <= tolerance; });
+	}
+};
+
+} // namespace detail
+
+/**
+ * Closes by flat caps the openings that a plane has cut: where the border lies in a plane and all of its piece of the
+ * surface on one side of that. Not those that have others within them, as those of a cut wall, nor where the
+ * cap would run into the surface.
+ * @param triangles coherently oriented, parted by partSurface(); get the caps at their end.
+ * @param partner   as PartedSurface has it.
+ * @return how many were closed.
+ * @throws Cancelled. Complexity: O(F log F + n^2) for borders of n edges, and F for each of them.
+ */
+inline int capCuts(const std::vector<Point3d>& points, std::vector<Triangle>& triangles,
+	const std::vector<int>& partner, const CutLimits& limits = CutLimits(),
+	const Progress& progress = Progress())
+{
+	using namespace detail;
+	const std::vector<std::vector<int>> loops = holeLoops(points, triangles, partner);
+	if (loops.empty())
+		return 0;
+	const std::vector<int> piece = pieceOfFaces(partner);
+	std::map<int, double> area, capped; // of the pieces, by their first face
+	for (size_t f = 0; f < triangles.size(); ++f)
+		area[piece[f]] += areaVector(points, triangles[f]).Norm();
+	std::vector<char> onBorder(points.size(), 0);
+	std::vector<PlaneCut> cuts;
+	for (const std::vector<int>& loop : loops) {
+		for (int h : loop)
+			onBorder[size_t(triangles[size_t(h) / 3][size_t(h) % 3])] = 1;
+		const int n = int(loop.size());
+		if (n < 3 || n > limits.most)
+			continue;
+		PlaneCut cut(borderPolygon(points, triangles, piece, loop), limits);
+		if (cut.border.pieces.size() == 1
+			&& cut.area >= limits.least * area[*cut.border.pieces.begin()] && cut.isFlat())
+			cuts.push_back(std::move(cut));
+	}
+	if (cuts.empty())
+		return 0;
+	std::set<std::pair<int, int>> edges = edgesBetween(triangles, onBorder);
+	const std::vector<Triangle> given = triangles;
+	const TriangleTree tree(points, given, progress.part(0, 0.3));
+	const Progress capping = progress.part(0.3, 1);
+	int closed = 0;
+	for (size_t i = 0; i < cuts.size(); ++i) {
+		capping.report(double(i) / double(cuts.size()), "Capping cuts");
+		const PlaneCut& cut = cuts[i];
+		const int whose = *cut.border.pieces.begin();
+		double lowest = 0, highest = 0;
+		for (size_t f = 0; f < given.size(); ++f)
+			if (piece[f] == whose)
+				for (int v : given[f]) {
+					const double height = cut.height(points[size_t(v)]);
+					lowest = std::min(lowest, height);
+					highest = std::max(highest, height);
+				}
+		if (std::min(highest, -lowest) > cut.tolerance
+			|| area[whose] < limits.surface * (capped[whose] + cut.area))
+			continue;
+		std::vector<Point2d> polygon;
+		for (const Point3d& q : cut.border.points)
+			polygon.push_back(cut.inPlane(q));
+		const std::set<int> own(cut.border.corners.begin(), cut.border.corners.end());
+		bool fits = true;
+		for (int v = 0; fits && v < int(points.size()); ++v)
+			fits = !onBorder[size_t(v)] || own.count(v)
+				|| std::abs(cut.height(points[size_t(v)])) > cut.tolerance
+				|| !isInPolygon(cut.inPlane(points[size_t(v)]), polygon);
+		if (!fits)
+			continue;
+		const auto edge = [&](int a, int b) { return cut.border.edge(a, b); };
+		// The teeth of a jagged border overhang where the surface is steep: seen in the plane they cross.
+		std::optional<std::vector<Triangle>> ears;
+		for (int rounds : {0, 2, 8})
+			if (!ears)
+				ears = clippedEars(smoothed(polygon, rounds), [&](int a, int b) {
+					const std::vector<int>& corners = cut.border.corners;
+					return corners[size_t(a)] != corners[size_t(b)] && !edges.count(edge(a, b));
+				});
+		if (!ears)
+			continue;
+		std::vector<Triangle> cap;
+		double crossing = 0;
+		std::map<std::pair<int, int>, int> uses;
+		for (const Triangle& t : *ears) {
+			cap.push_back(cut.border.triangle(t));
+			for (size_t k = 0; k < 3; ++k)
+				fits = fits && ++uses[edge(t[k], t[(k + 1) % 3])] <= 2;
+			if (crossesOthers(tree, given, points, cap.back()))
+				crossing += areaVector(points, cap.back()).Norm();
+		}
+		if (!fits || crossing > limits.crossing * cut.area)
+			continue;
+		for (const auto& [ends, count] : uses)
+			edges.insert(ends);
+		triangles.insert(triangles.end(), cap.begin(), cap.end());
+		capped[whose] += cut.area;
+		++closed;
+	}
+	return closed;
+}
+
+} // namespace vcg::tri::mcf
+
+#endif
