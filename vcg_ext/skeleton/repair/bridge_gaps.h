@@ -52,13 +52,11 @@ inline bool leadsInto(const LimbEnd& limb, const LimbEnd& hole)
 		&& (apart - limb.heading * (limb.heading * apart)).Norm() < hole.radius;
 }
 
-/// Which way an end goes on to another one: as its limb was heading; but a hole where limbs met is the end of none of
-/// them, and goes on out of itself.
-inline Point3d headingTo(const LimbEnd& other, const LimbEnd& end, const GapLimits& limits)
+/// Which way an end goes on to another one: as its limb was heading; or out of itself where that leads there more
+/// directly, since a hole where limbs met is the end of none of them.
+inline Point3d headingTo(const LimbEnd& other, const LimbEnd& end)
 {
-	const Point3d apart = other.centre - end.centre;
-	return end.heading * apart >= std::cos(limits.aside * M_PI / 180) * apart.Norm() ? end.heading
-																					 : end.out;
+	return (end.out - end.heading) * (other.centre - end.centre) > 0 ? end.out : end.heading;
 }
 
 /// Pairs of ends that look at each other, the nearest ones first: how far apart, and their numbers.
@@ -82,7 +80,7 @@ inline std::vector<std::tuple<double, int, int>> facingEnds(
 			|| (b.radius > limits.wider * a.radius && !leadsInto(a, b))
 			|| ((isOnePiece || a.isOfSpeck || b.isOfSpeck) && !b.isCutThrough))
 			return;
-		const double ofA = a.heading * apart / gap, ofB = -(headingTo(a, b, limits) * apart) / gap;
+		const double ofA = a.heading * apart / gap, ofB = -(headingTo(a, b) * apart) / gap;
 		if (std::min(ofA, ofB) >= straight)
 			facing.emplace_back(gap / std::min(ofA, ofB), i, k);
 	};
@@ -194,7 +192,7 @@ private:
 	/// @return whether a tube from one to the other crosses nothing; it is then one of those.
 	bool join(const LimbEnd& a, LimbEnd b)
 	{
-		b.heading = headingTo(a, b, limits);
+		b.heading = headingTo(a, b);
 		const std::set<int> ofA(a.corner.begin(), a.corner.end());
 		if (std::any_of(b.corner.begin(), b.corner.end(), [&](int v) { return ofA.count(v) > 0; }))
 			return false;
