@@ -165,4 +165,74 @@ TEST(BridgeGaps, AHoleInASideIsNoEnd)
 	EXPECT_EQ(made.pieces, 2);
 }
 
+/// Limbs of these headings around the origin, without what is nearer to it than `gap`.
+shapes::Soup limbsAround(const std::vector<double>& degrees, double gap)
+{
+	shapes::Soup limbs;
+	for (double angle : degrees) {
+		const double c = std::cos(angle * M_PI / 180), s = std::sin(angle * M_PI / 180);
+		const shapes::Soup limb =
+			shapes::transformed(without(shapes::moved(shapes::capsule(4, 0.2, 24), {2.5, 0, 0}),
+									[&](const Point3d& p) { return p[0] < gap; }),
+				[&](const Point3d& p) {
+					return Point3d(c * p[0] - s * p[1], s * p[0] + c * p[1], p[2]);
+				});
+		limbs = limbs.points.empty() ? limb : shapes::joined({limbs, limb});
+	}
+	return limbs;
+}
+
+TEST(BridgeGaps, LimbsAroundALostJunction)
+{
+	for (const std::vector<double>& degrees :
+		std::vector<std::vector<double>> {{0, 120, 240}, {0, 100, 210}, {0, 150, 200}}) {
+		const Outcome made = mended(limbsAround(degrees, 0.9));
+		EXPECT_EQ(made.gaps, int(degrees.size()) - 1) << degrees[1];
+		EXPECT_EQ(made.pieces, 1) << degrees[1];
+		EXPECT_EQ(made.euler, 2) << degrees[1];
+	}
+}
+
+TEST(BridgeGaps, ALimbThatLooksPastATubeStaysApart)
+{
+	const shapes::Soup torn =
+		without(shapes::capsule(6, 0.2, 24), [](const Point3d& p) { return std::abs(p[0]) < 1; });
+	const auto openDownwards = [](double aside) {
+		return shapes::transformed(
+			without(shapes::capsule(3, 0.2, 24), [](const Point3d& p) { return p[0] < -1.2; }),
+			[&](const Point3d& p) { return Point3d(-p[1] + aside, p[0] + 2.5, p[2]); });
+	};
+	EXPECT_EQ(mended(shapes::joined({torn, openDownwards(0)})).pieces, 1);
+	EXPECT_EQ(mended(shapes::joined({torn, openDownwards(4)})).pieces, 2);
+}
+
+TEST(BridgeGaps, TheEndOfALimbThatIsNoLargerThanASpeck)
+{
+	const shapes::Soup torn = without(
+		shapes::capsule(40, 0.2, 24), [](const Point3d& p) { return p[0] > 19 && p[0] < 19.95; });
+	const Outcome made = mended(torn);
+	EXPECT_EQ(made.gaps, 1);
+	EXPECT_EQ(made.pieces, 1);
+	EXPECT_EQ(made.euler, 2);
+	// Turned away from the stump it belongs to nothing.
+	const Outcome apart = mended(shapes::transformed(torn, [](const Point3d& p) {
+		return p[0] > 19.5 ? Point3d(40 - p[0], p[1], -p[2]) + Point3d(1, 0, 0) : p;
+	}));
+	EXPECT_EQ(apart.gaps, 0);
+	EXPECT_EQ(apart.pieces, 1);
+}
+
+TEST(BridgeGaps, ALimbThatLeadsIntoAWideHole)
+{
+	const shapes::Soup body = without(shapes::sphere(4, 1),
+		[](const Point3d& p) { return p[0] > 0 && std::hypot(p[1], p[2]) < 0.6; });
+	const auto limbAt = [](double aside) {
+		return shapes::moved(
+			without(shapes::capsule(3, 0.1, 24), [](const Point3d& p) { return p[0] < -1.4; }),
+			{3, aside, 0});
+	};
+	EXPECT_EQ(mended(shapes::joined({body, limbAt(0.3)})).gaps, 1);
+	EXPECT_EQ(mended(shapes::joined({body, limbAt(1.2)})).gaps, 0);
+}
+
 } // namespace

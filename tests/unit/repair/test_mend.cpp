@@ -312,4 +312,18 @@ TEST(Mend, SaysThatASurfaceIsOneSided)
 	EXPECT_TRUE(surface.report.oneSided);
 }
 
+TEST(Mend, ClosesAShortPieceThatWasTornOff)
+{
+	shapes::Soup piece = shapes::moved(shapes::sphere(4, 0.5), {3, 0, 0});
+	piece.triangles.erase(
+		std::remove_if(piece.triangles.begin(), piece.triangles.end(),
+			[&](const Triangle& t) { return piece.points[size_t(t[0])][2] > 0.1; }),
+		piece.triangles.end());
+	const MendedSurface surface = mended(shapes::joined({shapes::sphere(4, 1), piece}));
+	EXPECT_TRUE(surface.closed);
+	EXPECT_EQ(surface.report.holesClosed, 1);
+	// The largest piece may be a bowl.
+	EXPECT_FALSE(mended(piece).closed);
+}
+
 } // namespace

@@ -36,7 +36,8 @@ struct FilledHoles
 /// What counts as a small hole.
 struct HoleLimits
 {
-	/// Area of the filling, as a part of that of the piece of surface around it; all holes of a piece.
+	/// Area of the filling, as a part of that of the piece of surface around it, where that is the largest piece: what
+	/// was torn off may be short. And all holes of a piece.
 	double area = 0.2, allAreas = 0.5;
 	/// Border edges of one hole: the time grows with their cube.
 	int edges = 200;
@@ -357,6 +358,7 @@ inline FilledHoles fillHoles(const std::vector<Point3d>& points, std::vector<Tri
 	std::vector<double> area(piece.size(), 0), filled(piece.size(), 0);
 	for (size_t f = 0; f < piece.size(); ++f)
 		area[size_t(piece[f])] += detail::areaVector(points, triangles[f]).Norm();
+	const double largest = *std::max_element(area.begin(), area.end());
 	std::vector<char> onBorder(points.size(), 0);
 	for (int h = 0; h < int(partner.size()); ++h)
 		if (partner[size_t(h)] < 0)
@@ -385,8 +387,9 @@ inline FilledHoles fillHoles(const std::vector<Point3d>& points, std::vector<Tri
 			before += filled[size_t(p)];
 		}
 		const auto [turn, size] = best.weight();
+		const bool isMain = surface >= largest;
 		const bool anyhow = std::isfinite(turn) && size <= limits.anyhow * surface;
-		if (!(turn <= mostTurn || anyhow) || size > limits.area * surface
+		if (!(turn <= mostTurn || anyhow) || (isMain && size > limits.area * surface)
 			|| before + size > limits.allAreas * surface)
 			continue;
 		std::vector<Triangle> made;

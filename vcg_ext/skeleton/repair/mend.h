@@ -12,6 +12,7 @@
 #include "close_seams.h"
 #include "fill_holes.h"
 #include "part_surface.h"
+#include "specks.h"
 #include "winding_number.h"
 
 #include <skeleton/core/errors.h>
@@ -101,86 +102,6 @@ inline int removeBackToBack(std::vector<Triangle>& triangles)
 		if (!drop[f])
 			triangles[kept++] = triangles[f];
 	triangles.resize(kept);
-	return dropped;
-}
-
-/// Drops what floats about a surface, unless the surface is made of it: open pieces that are small in area, more
-/// readily if they are sheets, and closed ones that are small in size; and closed ones without volume.
-inline int dropSpecks(
-	const std::vector<Point3d>& points, std::vector<Triangle>& triangles, std::vector<int>& partner)
-{
-	constexpr double speck = 0.002, sheet = 0.01; // of the whole area
-	constexpr double likeASheet = 0.25; // |sum of area vectors| / area: half a sphere has 0.5
-	constexpr double smallest = 0.01, small = 0.05; // diagonal, of that of the largest piece
-	constexpr double thin = 1e-4;    // volume, of that of the largest piece, of what is small
-	constexpr double mostAll = 0.05; // of the whole area: beyond, they are the surface
-	constexpr double flat = 1e-10;   // volume over area^1.5
-	const std::vector<int> piece = pieceOfFaces(partner);
-	struct Piece
-	{
-		double area = 0, volume = 0;
-		Point3d normal = Point3d(0, 0, 0);
-		bool open = false;
-		Box3d box;
-	};
-	std::map<int, Piece> pieces;
-	double whole = 0, largest = 0, fullest = 0;
-	const Point3d origin = points[size_t(triangles[0][0])];
-	for (size_t f = 0; f < triangles.size(); ++f) {
-		const Triangle& t = triangles[f];
-		const Point3d a = points[size_t(t[0])] - origin, b = points[size_t(t[1])] - origin,
-					  c = points[size_t(t[2])] - origin;
-		Piece& p = pieces[piece[f]];
-		const Point3d normal = ((b - a) ^ (c - a)) / 2.0;
-		const double area = normal.Norm();
-		p.area += area;
-		p.normal += normal;
-		whole += area;
-		p.volume += a * (b ^ c) / 6;
-		for (size_t k = 0; k < 3; ++k) {
-			p.open |= partner[3 * f + k] < 0;
-			p.box.Add(points[size_t(t[k])]);
-		}
-		largest = std::max(largest, p.box.Diag());
-	}
-	for (const auto& [first, p] : pieces)
-		if (p.box.Diag() > small * largest)
-			fullest = std::max(fullest, std::abs(p.volume));
-	const auto isSpeck = [&](const Piece& p) {
-		if (p.open)
-			return p.area <= (p.normal.Norm() > likeASheet * p.area ? sheet : speck) * whole;
-		return p.box.Diag() <= smallest * largest
-			|| (p.box.Diag() <= small * largest && std::abs(p.volume) <= thin * fullest);
-	};
-	double specks = 0;
-	for (const auto& [first, p] : pieces)
-		if (isSpeck(p))
-			specks += p.area;
-	std::vector<char> drop(triangles.size(), 0);
-	int dropped = 0;
-	for (const auto& [first, p] : pieces)
-		if ((isSpeck(p) && specks <= mostAll * whole)
-			|| (!p.open && std::abs(p.volume) <= flat * std::pow(p.area, 1.5))) {
-			drop[size_t(first)] = 1;
-			++dropped;
-		}
-	if (!dropped || dropped == int(pieces.size()))
-		return 0;
-	std::vector<int> number(triangles.size(), -1);
-	int kept = 0;
-	for (size_t f = 0; f < triangles.size(); ++f)
-		if (!drop[size_t(piece[f])])
-			number[f] = kept++;
-	std::vector<int> partnerLeft(3 * size_t(kept), -1);
-	for (size_t h = 0; h < partner.size(); ++h)
-		if (number[h / 3] >= 0 && partner[h] >= 0)
-			partnerLeft[3 * size_t(number[h / 3]) + h % 3] =
-				3 * number[size_t(partner[h]) / 3] + partner[h] % 3;
-	for (size_t f = 0; f < triangles.size(); ++f)
-		if (number[f] >= 0)
-			triangles[size_t(number[f])] = triangles[f];
-	triangles.resize(size_t(kept));
-	partner = std::move(partnerLeft);
 	return dropped;
 }
 
@@ -280,8 +201,8 @@ inline int dropInnerWalls(
 /**
  * Mends small defects, in this order: faces that are degenerate, not finite, or there twice; vertices that
  * coincide; seams (see closeSeams()); edges and vertices where the surface is no two-manifold (see
- * partSurface()); orientation; specks; torn limbs (see bridgeGaps()); small holes (see fillHoles()); cuts by planes
- * (see capCuts()); open walls inside what is closed by then.
+ * partSurface()); orientation; torn limbs (see bridgeGaps()) and specks; small holes (see fillHoles()); cuts by
+ * planes (see capCuts()); open walls inside what is closed by then.
  *
  * A surface that has none of these defects stays as it is. What cannot be mended is left, with `closed` false.
  * @param points    mesh units. @param triangles corners as indices into `points`.
@@ -364,11 +285,15 @@ inline MendedSurface mend(const std::vector<Point3d>& points,
 		return mended;
 	std::vector<int> partner =
 		pairedHalfEdges(mended.points, faces, nullptr, progress.part(0.5, 0.55));
-	report.piecesDropped = dropSpecks(mended.points, faces, partner);
-	report.gapsBridged =
-		bridgeGaps(mended.points, faces, partner, GapLimits(), progress.part(0.55, 0.6));
+	// The end of a limb may be no larger than a speck, but it is none where it belongs to a stump.
+	Specks specks = specksOf(mended.points, faces, partner);
+	spareTornLimbs(mended.points, faces, partner, specks);
+	report.piecesDropped = dropSpecks(faces, partner, specks);
+	report.gapsBridged = bridgeGaps(mended.points, faces, partner,
+		specksOf(mended.points, faces, partner).isOne, GapLimits(), progress.part(0.55, 0.6));
 	if (report.gapsBridged > 0)
 		partner = pairedHalfEdges(mended.points, faces, nullptr, progress.cancelOnly());
+	report.piecesDropped += dropSpecks(mended.points, faces, partner);
 	const FilledHoles holes =
 		fillHoles(mended.points, faces, partner, limits, progress.part(0.6, 0.9));
 	report.holesClosed = holes.closed;
@@ -389,7 +314,7 @@ inline MendedSurface mend(const std::vector<Point3d>& points,
 		if (!cut)
 			break;
 		partner = partSurface(mended.points, fewer, partedFrom, true, again).partner;
-		const int specks = dropSpecks(mended.points, fewer, partner);
+		const int dropped = dropSpecks(mended.points, fewer, partner);
 		const FilledHoles filled = fillHoles(mended.points, fewer, partner, limits, again);
 		if (filled.left >= report.holesLeft) {
 			mended.points.resize(pointsBefore);
@@ -397,7 +322,7 @@ inline MendedSurface mend(const std::vector<Point3d>& points,
 		}
 		faces = std::move(fewer);
 		report.facesDropped += cut;
-		report.piecesDropped += specks;
+		report.piecesDropped += dropped;
 		report.holesClosed += filled.closed;
 		report.holesLeft = filled.left;
 	}

@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief Borders of holes seen as the ends of limbs: where they are, how wide, and where the limb was going.
+
+#ifndef VCG_MCF_LIMB_ENDS_H
+#define VCG_MCF_LIMB_ENDS_H
+
+#include "fill_holes.h"
+#include "part_surface.h"
+
+#include <skeleton/mesh/surface_mesh.h>
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <vector>
+
+namespace vcg::tri::mcf::detail {
+
+/// The border of a hole, seen as the end of a limb.
+struct LimbEnd
+{
+	/// Against the faces, in the order of the triangles that go on there.
+	std::vector<int> corner;
+	/// Of the surface, by its lowest face; the diagonal of its box.
+	int piece = 0;
+	double pieceDiagonal = 0;
+	/// Whether that is to be dropped unless it is joined to others.
+	bool isOfSpeck = false;
+	Point3d centre = Point3d(0, 0, 0);
+	/// Of the tube, or of the disc that has the area of the hole.
+	double radius = 0;
+	/// The way the surface was going where it is cut through, else out of the hole; unit length.
+	Point3d heading = Point3d(0, 0, 0);
+	/// Out of the hole, square to it; unit length.
+	Point3d out = Point3d(0, 0, 0);
+	/// Whether all around the surface was heading out of the hole: a limb is cut through, not the side of a body open.
+	bool isCutThrough = false;
+
+	/// Whether the border meets no corner twice.
+	bool isOnce() const
+	{
+		return std::set<int>(corner.begin(), corner.end()).size() == corner.size();
+	}
+};
+
+/// The axis of the tube that ends at a loop of half-edges: what the normals of the last faces are square to; unit length.
+inline Point3d axisBehind(const std::vector<Point3d>& points,
+	const std::vector<Triangle>& triangles, const std::vector<int>& partner,
+	const std::vector<int>& loop, const LimbEnd& end)
+{
+	constexpr double reach = 4; // radii from the middle of the border
+	Eigen::Matrix3d square = Eigen::Matrix3d::Zero();
+	std::set<int> seen;
+	std::vector<int> stack;
+	for (int h : loop)
+		if (seen.insert(h / 3).second)
+			stack.push_back(h / 3);
+	while (!stack.empty()) {
+		const int f = stack.back();
+		stack.pop_back();
+		const Triangle& t = triangles[size_t(f)];
+		const Point3d& p = points[size_t(t[0])];
+		if ((p - end.centre).Norm() > reach * end.radius)
+			continue;
+		const Point3d normal = (points[size_t(t[1])] - p) ^ (points[size_t(t[2])] - p);
+		if (const double norm = normal.Norm(); norm > 0) {
+			const Eigen::Vector3d n(normal[0], normal[1], normal[2]);
+			square += n * n.transpose() / norm;
+		}
+		for (int h = 3 * f; h < 3 * f + 3; ++h)
+			if (const int g = partner[size_t(h)]; g >= 0 && seen.insert(g / 3).second)
+				stack.push_back(g / 3);
+	}
+	const Eigen::Vector3d axis =
+		Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(square).eigenvectors().col(0);
+	const Point3d result(axis[0], axis[1], axis[2]);
+	return result * end.heading < 0 ? -result : result;
+}
+
+inline LimbEnd limbEnd(const std::vector<Point3d>& points, const std::vector<Triangle>& triangles,
+	const std::vector<int>& partner, const std::vector<int>& loop)
+{
+	constexpr double likeATube = 0.7;
+	LimbEnd end;
+	for (auto h = loop.rbegin(); h != loop.rend(); ++h) {
+		end.corner.push_back(triangles[size_t(*h) / 3][size_t(Fans::next(*h)) % 3]);
+		end.centre += points[size_t(end.corner.back())];
+	}
+	const size_t n = end.corner.size();
+	end.centre /= double(n);
+	Point3d area(0, 0, 0);
+	for (size_t k = 0; k < n; ++k)
+		area += (points[size_t(end.corner[k])] - end.centre)
+			^ (points[size_t(end.corner[(k + 1) % n])] - end.centre);
+	end.radius = std::sqrt(area.Norm() / (2 * M_PI));
+	// Of a tube, however it is cut, this is its axis times its perimeter; around a flat hole nothing is left.
+	Point3d onwards(0, 0, 0);
+	for (int h : loop) {
+		const Triangle& t = triangles[size_t(h) / 3];
+		const Point3d &p = points[size_t(t[size_t(h) % 3])],
+					  &q = points[size_t(t[size_t(Fans::next(h)) % 3])],
+					  &apex = points[size_t(t[size_t(Fans::next(Fans::next(h))) % 3])];
+		const Point3d edge = q - p, normal = edge ^ (apex - p), outOfFace = edge ^ normal;
+		if (const double norm = outOfFace.Norm(); norm > 0)
+			onwards += outOfFace * (edge.Norm() / norm);
+	}
+	end.isCutThrough = onwards.Norm() > likeATube * 2 * M_PI * end.radius;
+	if (end.isCutThrough)
+		end.radius = onwards.Norm() / (2 * M_PI);
+	end.out = area.Norm() > 0 ? area / area.Norm() : area;
+	end.heading = end.isCutThrough ? onwards : area;
+	if (end.heading.Norm() > 0)
+		end.heading /= end.heading.Norm();
+	if (end.isCutThrough)
+		end.heading = axisBehind(points, triangles, partner, loop, end);
+	return end;
+}
+
+/// Whether a piece of surface, all by itself, ends like a limb that was cut through.
+inline bool isTornLimb(const std::vector<Point3d>& points, const std::vector<Triangle>& triangles,
+	const std::vector<int>& partner)
+{
+	const std::vector<std::vector<int>> loops = holeLoops(points, triangles, partner);
+	return std::any_of(loops.begin(), loops.end(), [&](const std::vector<int>& loop) {
+		const LimbEnd end = limbEnd(points, triangles, partner, loop);
+		return end.isCutThrough && end.isOnce();
+	});
+}
+
+} // namespace vcg::tri::mcf::detail
+
+#endif

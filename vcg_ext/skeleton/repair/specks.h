@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief Specks: small pieces that float about a surface.
+
+#ifndef VCG_MCF_SPECKS_H
+#define VCG_MCF_SPECKS_H
+
+#include "fill_holes.h"
+#include "limb_ends.h"
+
+#include <skeleton/mesh/surface_mesh.h>
+
+#include <vcg/space/box3.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace vcg::tri::mcf::detail {
+
+/// Pieces of a surface that are to be dropped.
+struct Specks
+{
+	std::vector<char> isOne; ///< for each face whether its piece is one
+	int count = 0;           ///< of pieces
+};
+
+/// What floats about a surface, unless the surface is made of it: open pieces that are small in area, more
+/// readily if they are sheets, and closed ones that are small in size; and closed ones without volume.
+inline Specks specksOf(const std::vector<Point3d>& points, const std::vector<Triangle>& triangles,
+	const std::vector<int>& partner)
+{
+	constexpr double speck = 0.002, sheet = 0.01; // of the whole area
+	constexpr double likeASheet = 0.25; // |sum of area vectors| / area: half a sphere has 0.5
+	constexpr double smallest = 0.01, small = 0.05; // diagonal, of that of the largest piece
+	constexpr double thin = 1e-4;    // volume, of that of the largest piece, of what is small
+	constexpr double mostAll = 0.05; // of the whole area: beyond, they are the surface
+	constexpr double flat = 1e-10;   // volume over area^1.5
+	const std::vector<int> piece = pieceOfFaces(partner);
+	struct Piece
+	{
+		double area = 0, volume = 0;
+		Point3d normal = Point3d(0, 0, 0);
+		bool open = false;
+		Box3d box;
+	};
+	std::map<int, Piece> pieces;
+	double whole = 0, largest = 0, fullest = 0;
+	const Point3d origin = points[size_t(triangles[0][0])];
+	for (size_t f = 0; f < triangles.size(); ++f) {
+		const Triangle& t = triangles[f];
+		const Point3d a = points[size_t(t[0])] - origin, b = points[size_t(t[1])] - origin,
+					  c = points[size_t(t[2])] - origin;
+		Piece& p = pieces[piece[f]];
+		const Point3d normal = ((b - a) ^ (c - a)) / 2.0;
+		const double area = normal.Norm();
+		p.area += area;
+		p.normal += normal;
+		whole += area;
+		p.volume += a * (b ^ c) / 6;
+		for (size_t k = 0; k < 3; ++k) {
+			p.open |= partner[3 * f + k] < 0;
+			p.box.Add(points[size_t(t[k])]);
+		}
+		largest = std::max(largest, p.box.Diag());
+	}
+	for (const auto& [first, p] : pieces)
+		if (p.box.Diag() > small * largest)
+			fullest = std::max(fullest, std::abs(p.volume));
+	const auto isSpeck = [&](const Piece& p) {
+		if (p.open)
+			return p.area <= (p.normal.Norm() > likeASheet * p.area ? sheet : speck) * whole;
+		return p.box.Diag() <= smallest * largest
+			|| (p.box.Diag() <= small * largest && std::abs(p.volume) <= thin * fullest);
+	};
+	double specks = 0;
+	for (const auto& [first, p] : pieces)
+		if (isSpeck(p))
+			specks += p.area;
+	Specks found;
+	std::set<int> drop;
+	for (const auto& [first, p] : pieces)
+		if ((isSpeck(p) && specks <= mostAll * whole)
+			|| (!p.open && std::abs(p.volume) <= flat * std::pow(p.area, 1.5)))
+			drop.insert(first);
+	found.isOne.assign(triangles.size(), 0);
+	if (drop.size() == pieces.size())
+		return found;
+	found.count = int(drop.size());
+	for (size_t f = 0; f < triangles.size() && found.count > 0; ++f)
+		found.isOne[f] = drop.count(piece[f]) > 0;
+	return found;
+}
+
+/// Takes limbs that were torn off out of the specks.
+inline void spareTornLimbs(const std::vector<Point3d>& points,
+	const std::vector<Triangle>& triangles, const std::vector<int>& partner, Specks& specks)
+{
+	if (!specks.count)
+		return;
+	const std::vector<int> piece = pieceOfFaces(partner);
+	std::map<int, std::vector<int>> faces;
+	std::vector<int> number(triangles.size(), -1); // within the piece
+	for (size_t f = 0; f < triangles.size(); ++f)
+		if (specks.isOne[f]) {
+			number[f] = int(faces[piece[f]].size());
+			faces[piece[f]].push_back(int(f));
+		}
+	for (const auto& [first, some] : faces) {
+		std::vector<Triangle> own;
+		std::vector<int> ownPartner;
+		for (int f : some) {
+			own.push_back(triangles[size_t(f)]);
+			for (int h = 3 * f; h < 3 * f + 3; ++h) {
+				const int g = partner[size_t(h)];
+				ownPartner.push_back(g < 0 ? -1 : 3 * number[size_t(g) / 3] + g % 3);
+			}
+		}
+		if (!isTornLimb(points, own, ownPartner))
+			continue;
+		for (int f : some)
+			specks.isOne[size_t(f)] = 0;
+		--specks.count;
+	}
+}
+
+/// Drops specks. @param partner  of the half-edges; becomes that of those that stay. @return how many pieces.
+inline int dropSpecks(
+	std::vector<Triangle>& triangles, std::vector<int>& partner, const Specks& specks)
+{
+	if (!specks.count)
+		return 0;
+	std::vector<int> number(triangles.size(), -1);
+	int kept = 0;
+	for (size_t f = 0; f < triangles.size(); ++f)
+		if (!specks.isOne[f])
+			number[f] = kept++;
+	std::vector<int> partnerLeft(3 * size_t(kept), -1);
+	for (size_t h = 0; h < partner.size(); ++h)
+		if (number[h / 3] >= 0 && partner[h] >= 0)
+			partnerLeft[3 * size_t(number[h / 3]) + h % 3] =
+				3 * number[size_t(partner[h]) / 3] + partner[h] % 3;
+	for (size_t f = 0; f < triangles.size(); ++f)
+		if (number[f] >= 0)
+			triangles[size_t(number[f])] = triangles[f];
+	triangles.resize(size_t(kept));
+	partner = std::move(partnerLeft);
+	return specks.count;
+}
+
+inline int dropSpecks(
+	const std::vector<Point3d>& points, std::vector<Triangle>& triangles, std::vector<int>& partner)
+{
+	return dropSpecks(triangles, partner, specksOf(points, triangles, partner));
+}
+
+} // namespace vcg::tri::mcf::detail
+
+#endif
