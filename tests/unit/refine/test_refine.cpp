@@ -463,6 +463,30 @@ TEST(Refine, AStubThatIsAsThickAsItsJunctionIsNoBranch)
 	EXPECT_EQ(tipsLeft(0.5, 0.9, 0.2), 3u) << "half of a large round body";
 }
 
+TEST(Refine, TheCornerOfABendIsNoLimb)
+{
+	// Two limbs of radius 1 whose axes meet at the origin, the curve across their corner, and a branch into it.
+	const auto tipsLeft = [](double bend, const Point3d& tip, double radius) {
+		const double size = 0.02; // diagonals
+		const Point3d limbs[] = {
+			{1, 0, 0}, {std::cos(bend * M_PI / 180), std::sin(bend * M_PI / 180), 0}};
+		CurveSkeleton s;
+		const int junction = curves::addNode(s, (limbs[0] + limbs[1]) * (0.35 * size), size);
+		for (const Point3d& limb : limbs) {
+			const int start = curves::addNode(s, limb * size, size);
+			curves::addEdge(s, junction, start);
+			curves::addLine(s, start, limb * (8 * size), size, 20);
+		}
+		curves::addEdge(s, junction, curves::addNode(s, tip * size, radius * size));
+		return tips(refining::withoutStubs(curves::tracked(s))).size();
+	};
+	EXPECT_EQ(tipsLeft(90, {-0.25, -0.25, 0}, 0.85), 2u) << "a heel";
+	EXPECT_EQ(tipsLeft(90, {-0.7, -0.7, 0}, 0.2), 3u) << "a spike on it, though no farther out";
+	EXPECT_EQ(tipsLeft(90, {-1.5, -1.5, 0}, 0.85), 3u) << "a third limb";
+	EXPECT_EQ(tipsLeft(90, {0.35, 0.35, 1.2}, 0.85), 3u) << "a limb across the bend";
+	EXPECT_EQ(tipsLeft(179, {0, -0.9, 0}, 0.85), 3u) << "limbs that go straight on have no corner";
+}
+
 TEST(Refine, GrowsABranchIntoALimbThatTheCurveLacks)
 {
 	const SurfaceMesh mesh = barWithArm(12).mesh();
@@ -551,6 +575,14 @@ TEST(Refine, TakesLowLimbsIfTheyAreLongAndFlatOnesIfTheyComeToAPoint)
 	EXPECT_TRUE(isCorner(0.7, 0.4)) << "along the rim of a plate";
 	EXPECT_FALSE(isCorner(0.7, 0.8)) << "a spike, of which the body is seen";
 	EXPECT_TRUE(isCorner(0.9, 0.8)) << "along a rim for more than a radius";
+	const auto isEvenSpike = [&](double bare) {
+		const refining::FeatureBranch way = {
+			{{0, 0, 0}, {1.8, 0, 0}}, {0.9, 1}, /*joint*/ 0, /*flat*/ 0, /*rim*/ 0.7, bare};
+		const refining::Peak peak = {0, 1, /*spikiness*/ 0.7, /*diagonals*/ 0, /*height*/ 0.6};
+		return refining::leadsIntoLimb(way, peak, rule);
+	};
+	EXPECT_TRUE(isEvenSpike(0.2)) << "what is beside it is covered, as by the head beside an eye";
+	EXPECT_FALSE(isEvenSpike(0.7)) << "along the rim of a plate";
 	EXPECT_TRUE(isLimb(1.5, 0, 0.3, 0.8)) << "a low spike";
 	EXPECT_FALSE(isLimb(0.5, 0, 1, 0.8)) << "a spike, but too short";
 	const auto isLobe = [&](double height, double spikiness, double size) {

@@ -41,7 +41,7 @@ struct Capped
 
 Capped capped(const shapes::Soup& soup)
 {
-	Capped result{mend(soup.points, soup.triangles)};
+	Capped result {mend(soup.points, soup.triangles)};
 	const auto mesh =
 		SurfaceMesh::ifClosedManifold(result.surface.points, result.surface.triangles);
 	EXPECT_EQ(bool(mesh), result.surface.closed);

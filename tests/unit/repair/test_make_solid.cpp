@@ -232,6 +232,29 @@ TEST(MakeSolid, RefusesAnOpenSheet)
 	EXPECT_EQ(defectOf(sheet, Repair::Off), Defect::BorderEdges);
 }
 
+TEST(MakeSolid, SaysThatADrawingIsFlat)
+{
+	// Turned, so that its flatness is that of rounded coordinates.
+	shapes::Soup drawing;
+	for (int i = 0; i <= 10; ++i)
+		for (int j = 0; j <= 10; ++j)
+			drawing.points.push_back(Point3d(0.6, 0.8, 0) * i + Point3d(0.48, -0.36, 0.8) * j);
+	for (int i = 0; i < 10; ++i)
+		for (int j = 0; j < 10; ++j)
+			if (i + j != 9)
+				drawing.triangles.push_back({11 * i + j, 11 * i + j + 11, 11 * i + j + 12});
+	for (const shapes::Soup& soup :
+		{drawing, shapes::Soup {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}})
+		try {
+			solid(soup);
+			ADD_FAILURE() << "a drawing bounds no solid";
+		}
+		catch (const InvalidInput& error) {
+			EXPECT_EQ(error.defect(), Defect::OpenSheet);
+			EXPECT_NE(std::string(error.what()).find("The mesh is flat"), std::string::npos);
+		}
+}
+
 TEST(MakeSolid, RefusesWhatHasNoFacesOrVolume)
 {
 	EXPECT_EQ(defectOf({}), Defect::Empty);

@@ -319,11 +319,11 @@ TEST(Mend, ClosesAShortPieceThatWasTornOff)
 		std::remove_if(piece.triangles.begin(), piece.triangles.end(),
 			[&](const Triangle& t) { return piece.points[size_t(t[0])][2] > 0.1; }),
 		piece.triangles.end());
-	const MendedSurface surface = mended(shapes::joined({shapes::sphere(4, 1), piece}));
+	const MendedSurface surface = mendedOf(shapes::joined({shapes::sphere(4, 1), piece}));
 	EXPECT_TRUE(surface.closed);
 	EXPECT_EQ(surface.report.holesClosed, 1);
 	// The largest piece may be a bowl.
-	EXPECT_FALSE(mended(piece).closed);
+	EXPECT_FALSE(mendedOf(piece).closed);
 }
 
 } // namespace

@@ -373,9 +373,11 @@ inline void moveInside(CurveSkeleton& skeleton, const ClosestSurface& surface)
  * radii aside the surface is still half a radius away. In a limb none, in a plate both, along its rim one.
  * @param contact    the second contact of the ball, see medialBall().
  * @param direction  of the branch.
+ * @param isTaken    (point): whether what is there does not count.
  */
-inline int wideSides(const ClosestSurface& surface, const Point3d& x,
-	const ClosestSurface::Hit& hit, const Point3d& contact, const Point3d& direction)
+template <class IsTaken>
+int wideSides(const ClosestSurface& surface, const Point3d& x, const ClosestSurface::Hit& hit,
+	const Point3d& contact, const Point3d& direction, const IsTaken& isTaken)
 {
 	constexpr double aside = 1.5, away = 0.5;
 	const Point3d side = (hit.point - contact) ^ direction;
@@ -383,8 +385,17 @@ inline int wideSides(const ClosestSurface& surface, const Point3d& x,
 	if (!(norm > 0))
 		return 0;
 	const Point3d offset = side * (aside * hit.distance / norm);
-	return int(surface.clearance(x + offset) > away * hit.distance)
-		+ int(surface.clearance(x - offset) > away * hit.distance);
+	const auto isWideAt = [&](const Point3d& p) {
+		return surface.clearance(p) > away * hit.distance && !isTaken(p);
+	};
+	return int(isWideAt(x + offset)) + int(isWideAt(x - offset));
+}
+
+/// The same, whatever is there.
+inline int wideSides(const ClosestSurface& surface, const Point3d& x,
+	const ClosestSurface::Hit& hit, const Point3d& contact, const Point3d& direction)
+{
+	return wideSides(surface, x, hit, contact, direction, [](const Point3d&) { return false; });
 }
 
 } // namespace vcg::tri::mcf::refining

@@ -120,8 +120,9 @@ struct FeatureBranch
 	std::vector<double> radii;
 	/// The node of that ball; -1 where the way leaves the surface or ends in none.
 	int joint = -1;
-	/// The parts of the points about which the shape is wide to both sides, and to one, see wideSides().
-	double flat = 0, rim = 0;
+	/// The parts of the points about which the shape is wide to both sides, to one, and to any where the skeleton's
+	/// balls leave that room out, see wideSides().
+	double flat = 0, rim = 0, bare = 0;
 
 	double way() const
 	{
@@ -144,7 +145,7 @@ inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const ClosestSur
 	// Of the next direction; the slope is 1 where the way leads straight away from the surface.
 	constexpr double pull = 0.3, keeping = 0.5;
 	FeatureBranch branch;
-	int flat = 0, rim = 0;
+	int flat = 0, rim = 0, bare = 0;
 	Point3d x = start, direction(0, 0, 0);
 	for (int i = 0; i < mostSteps; ++i) {
 		ClosestSurface::Hit hit = surface.closest(x);
@@ -164,6 +165,8 @@ inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const ClosestSur
 			const int wide = wideSides(surface, x, hit, ball.contact, direction);
 			flat += wide == 2;
 			rim += wide == 1;
+			const auto isCovered = [&](const Point3d& p) { return holdingNode(skeleton, p) >= 0; };
+			bare += wide > 0 && wideSides(surface, x, hit, ball.contact, direction, isCovered) > 0;
 		}
 		if (i > 0
 			&& !isSegmentInside(
@@ -175,6 +178,7 @@ inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const ClosestSur
 		if (branch.joint >= 0) {
 			branch.flat = double(flat) / double(branch.points.size());
 			branch.rim = double(rim) / double(branch.points.size());
+			branch.bare = double(bare) / double(branch.points.size());
 			return branch;
 		}
 		const Point3d there = skeleton.position[towards] - x;
@@ -191,7 +195,8 @@ inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const ClosestSur
  * through a plate, in which it could lead anywhere, unless that comes to a point and is longer than the
  * plate is thick, as an ear is, or is itself a lobe, high above the balls and a large part of the shape.
  * The branch into a low spike is short: where it enters the body, its few samples can look like a rim or a plate. For
- * spikes these only count over more than a radius.
+ * spikes these only count over more than a radius. Where the balls keep their size, as they do in no corner of a
+ * solid, they only count beside room that the skeleton's balls leave out: what these cover is the spike's body.
  */
 inline bool leadsIntoLimb(const FeatureBranch& branch, const Peak& peak, const FeatureRule& rule)
 {
@@ -200,15 +205,13 @@ inline bool leadsIntoLimb(const FeatureBranch& branch, const Peak& peak, const F
 	if (branch.joint < 0)
 		return false;
 	const double way = branch.way(), radius = branch.radii.back();
-	const bool isSpike =
-		peak.spikiness >= rule.leastOfSpike && std::max(branch.flat, branch.rim) * way <= radius;
+	const double gain = way > 0 ? 1 + (branch.radii.front() - radius) / way : 0;
+	const double wide = gain > evenGain ? branch.bare : std::max(branch.flat, branch.rim);
+	const bool isSpike = peak.spikiness >= rule.leastOfSpike && wide * way <= radius;
 	const double leastWay = isSpike
 		? rule.leastWay
 		: std::max(rule.leastWay, rule.leastProtrusion / peak.relativeHeight);
-	if (way < leastWay * radius)
-		return false;
-	const double gain = 1 + (branch.radii.front() - radius) / way;
-	if (gain < rule.leastGain)
+	if (way < leastWay * radius || gain < rule.leastGain)
 		return false;
 	const bool isLobe = peak.height >= std::max(lobeHeight * radius, rule.leastLobe)
 		&& peak.spikiness >= lobeSpikiness;

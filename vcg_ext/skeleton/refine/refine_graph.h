@@ -103,22 +103,92 @@ constexpr double leastWayOfBranch = 0.75;
 /// A blunt end is a feature of the shape if it is so many diagonals high.
 constexpr double leastBluntHeight = 0.04;
 
+/// A line.
+struct Axis
+{
+	Point3d point, direction;
+
+	/// The middle of the shortest way between two lines that are not parallel.
+	static Point3d meeting(const Axis& a, const Axis& b)
+	{
+		const Point3d between = a.point - b.point;
+		const double cosine = a.direction * b.direction, square = 1 - cosine * cosine;
+		const double onA = a.direction * between, onB = b.direction * between;
+		return (a.point + a.direction * ((cosine * onB - onA) / square) + b.point
+				   + b.direction * ((onB - cosine * onA) / square))
+			/ 2;
+	}
+};
+
+/// The axis of a branch where it has left the ball of its junction: the line through its points one and three radii of
+/// that ball away, or its end if that is nearer; without a direction where the end is nearer than one and a half.
+/// @pre the radius of junctions is their distance from the surface.
+inline Axis axisOf(const CurveSkeleton& skeleton, const Branch& fromJunction)
+{
+	constexpr double start = 1, farEnd = 3, shortestAxis = 1.5; // radii
+	const double radius = skeleton.radius[fromJunction.first()];
+	double along = 0;
+	Axis axis = {skeleton.position[fromJunction.first()], Point3d(0, 0, 0)};
+	Point3d end = axis.point;
+	for (size_t i = 1; i < fromJunction.nodes.size() && along < farEnd * radius; ++i) {
+		const Point3d &a = skeleton.position[fromJunction.nodes[i - 1]],
+					  &b = skeleton.position[fromJunction.nodes[i]];
+		const double length = Distance(a, b);
+		const auto at = [&](double way) { return a + (b - a) * ((way - along) / length); };
+		if (along < start * radius && along + length >= start * radius)
+			axis.point = at(start * radius);
+		end = along + length > farEnd * radius ? at(farEnd * radius) : b;
+		along += length;
+	}
+	if (radius > 0 && along >= shortestAxis * radius)
+		axis.direction = (end - axis.point).Normalize();
+	return axis;
+}
+
+/**
+ * Whether a terminal branch leads into the corner of a bend: the two limbs that it hangs between turn by 60 degrees or
+ * more, and go on straight to a place within the ball of its tip. The curve cuts the corner, and the branch is what it
+ * leaves out, no third limb.
+ * @pre the radius of junctions and tips is their distance from the surface.
+ */
+inline bool isCornerOfBend(const CurveSkeleton& skeleton,
+	const std::vector<std::vector<int>>& neighbours, const Branch& fromJunction)
+{
+	constexpr double widestBend = 120 * M_PI / 180;
+	const int junction = fromJunction.first(), tip = fromJunction.last();
+	if (neighbours[junction].size() != 3)
+		return false;
+	std::vector<Axis> axes;
+	for (int w : neighbours[junction])
+		if (w != fromJunction.nodes[1])
+			axes.push_back(axisOf(skeleton, branchAlong(neighbours, junction, w)));
+	if (axes.size() != 2 || axes[0].direction.SquaredNorm() == 0
+		|| axes[1].direction.SquaredNorm() == 0)
+		return false;
+	const double cosine = axes[0].direction * axes[1].direction;
+	return std::abs(cosine) < 1 - 1e-9 && cosine > std::cos(widestBend)
+		&& Distance(Axis::meeting(axes[0], axes[1]), skeleton.position[tip]) < skeleton.radius[tip];
+}
+
 /**
  * Removes the stubs, the shortest first: terminal branches whose tip is nearer to their junction than
- * leastWayOfBranch radii of the ball there, as where a curve cuts a heel's corner. A branch this short sticks out
- * only if its own ball is about as large: it is a blunt end, not a limb. It stays if it sticks out by
- * leastBluntHeight, as in one half of a large round body.
+ * leastWayOfBranch radii of the ball there, or leads into a corner that the curve cuts, see isCornerOfBend(), as at
+ * a heel. A branch this short sticks out only if its own ball is about as large: it is a blunt end, not a limb. It
+ * stays if it sticks out by leastBluntHeight, as in one half of a large round body.
  * @pre the radius of junctions and tips is their distance from the surface; the diagonal is 1.
  */
 inline CurveSkeleton withoutStubs(const CurveSkeleton& skeleton)
 {
+	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
 	return withoutTerminalBranches(
-		skeleton, leastWayOfBranch, [](const CurveSkeleton& s, const Branch& fromJunction) {
+		skeleton, leastWayOfBranch, [&](const CurveSkeleton& s, const Branch& fromJunction) {
 			const int junction = fromJunction.first(), tip = fromJunction.last();
-			return protrusion(s, tip, junction) < leastBluntHeight
-				? Distance(s.position[tip], s.position[junction])
-					/ std::max(s.radius[junction], 1e-300)
-				: leastWayOfBranch;
+			if (protrusion(s, tip, junction) >= leastBluntHeight)
+				return leastWayOfBranch;
+			return isCornerOfBend(s, neighbours, fromJunction)
+				? 0
+				: Distance(s.position[tip], s.position[junction])
+					/ std::max(s.radius[junction], 1e-300);
 		});
 }
 

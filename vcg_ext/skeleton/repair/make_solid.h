@@ -164,17 +164,13 @@ struct SurfacePlace
 inline std::vector<SurfacePlace> placesByArea(
 	const std::vector<Point3d>& points, const std::vector<Triangle>& triangles, int count)
 {
-	const auto areaVector = [&](const Triangle& t) {
-		const Point3d& a = points[size_t(t[0])];
-		return ((points[size_t(t[1])] - a) ^ (points[size_t(t[2])] - a)) / 2.0;
-	};
 	double whole = 0;
 	for (const Triangle& t : triangles)
-		whole += areaVector(t).Norm();
+		whole += areaVector(points, t).Norm();
 	std::vector<SurfacePlace> places;
 	double upto = 0;
 	for (const Triangle& t : triangles) {
-		const Point3d n = areaVector(t);
+		const Point3d n = areaVector(points, t);
 		const double area = n.Norm();
 		upto += area;
 		// A large triangle is as many places, each somewhere else on it.
@@ -607,7 +603,7 @@ private:
 		if (enclosure.outward < 0)
 			enclosure = enclosureOf(places, winding, box.Diag(), progress.part(0.17, 0.2));
 		if (enclosure.enclosing < 0.1)
-			refuse(error);
+			refuse(error, isFlat(given, faces));
 		const double widest = std::sqrt(area / usualSquares),
 					 narrowest = std::sqrt(area / mostSquares);
 		const double thin =
@@ -615,7 +611,7 @@ private:
 		const double spacing = std::clamp(ofThickness * thin, narrowest, widest);
 		WrappedSurface made = wrap(tree, winding, spacing, mostNodes, progress.part(0.25, 0.8));
 		if (made.triangles.empty())
-			refuse(error);
+			refuse(error, false);
 		solid.report.outcome = SolidReport::Wrapped;
 		solid.report.spacing = spacing / box.Diag();
 		LeftOutPieces cavities;
@@ -630,13 +626,36 @@ private:
 		finish(std::move(checked.mesh), std::vector<int>(points.size(), -1), progress.part(0.9, 1));
 	}
 
-	[[noreturn]] static void refuse(const std::optional<InvalidInput>& error)
+	/// Whether all faces lie in one plane, as those of a drawing.
+	static bool isFlat(const std::vector<Point3d>& given, const std::vector<Triangle>& faces)
+	{
+		constexpr double rounding = 1e-6; // of the diagonal
+		Point3d normal(0, 0, 0);
+		Box3d box;
+		for (const Triangle& t : faces) {
+			const Point3d n = areaVector(given, t);
+			if (n.SquaredNorm() > normal.SquaredNorm())
+				normal = n;
+			for (int v : t)
+				box.Add(given[size_t(v)]);
+		}
+		const Point3d& origin = given[size_t(faces[0][0])];
+		const double most = rounding * box.Diag() * normal.Norm();
+		return std::all_of(faces.begin(), faces.end(), [&](const Triangle& t) {
+			return std::all_of(t.begin(), t.end(),
+				[&](int v) { return std::abs((given[size_t(v)] - origin) * normal) <= most; });
+		});
+	}
+
+	[[noreturn]] static void refuse(const std::optional<InvalidInput>& error, bool flat)
 	{
 		if (error && (error->defect() == Defect::NoVolume || error->defect() == Defect::Flat))
 			throw InvalidInput(*error);
-		throw InvalidInput(
-			"The surface is an open sheet: it bounds no solid that a skeleton could lie in. Give it a "
-			"thickness first, or close it.",
+		throw InvalidInput(flat
+				? "The mesh is flat, an open sheet in one plane: it bounds no solid that a "
+				  "skeleton could lie in. Give it a thickness first."
+				: "The surface is an open sheet: it bounds no solid that a skeleton could lie "
+				  "in. Give it a thickness first, or close it.",
 			Defect::OpenSheet);
 	}
 
