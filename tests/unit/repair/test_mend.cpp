@@ -314,11 +314,15 @@ TEST(Mend, SaysThatASurfaceIsOneSided)
 
 TEST(Mend, ClosesAShortPieceThatWasTornOff)
 {
-	shapes::Soup piece = shapes::moved(shapes::sphere(4, 0.5), {3, 0, 0});
-	piece.triangles.erase(
-		std::remove_if(piece.triangles.begin(), piece.triangles.end(),
-			[&](const Triangle& t) { return piece.points[size_t(t[0])][2] > 0.1; }),
+	// Its rim goes up and down: not that of a cut by a plane.
+	shapes::Soup piece = shapes::sphere(4, 0.5);
+	piece.triangles.erase(std::remove_if(piece.triangles.begin(), piece.triangles.end(),
+							  [&](const Triangle& t) {
+								  const Point3d& p = piece.points[size_t(t[0])];
+								  return p[2] > 0.15 + std::cos(3 * std::atan2(p[1], p[0])) / 8;
+							  }),
 		piece.triangles.end());
+	piece = shapes::moved(piece, {3, 0, 0});
 	const MendedSurface surface = mendedOf(shapes::joined({shapes::sphere(4, 1), piece}));
 	EXPECT_TRUE(surface.closed);
 	EXPECT_EQ(surface.report.holesClosed, 1);
