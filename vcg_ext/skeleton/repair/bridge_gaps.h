@@ -107,7 +107,7 @@ public:
 		const std::vector<int>& partner, const std::vector<char>& isSpeck,
 		const GapLimits& limits) :
 			points(points),
-			triangles(triangles), isSpeck(isSpeck), limits(limits), piece(pieceOfFaces(partner)),
+			triangles(triangles), limits(limits), piece(pieceOfFaces(partner)),
 			pieces(int(piece.size()))
 	{
 		std::vector<Box3d> box(piece.size());
@@ -160,7 +160,6 @@ public:
 private:
 	std::vector<Point3d>& points;
 	std::vector<Triangle>& triangles;
-	const std::vector<char>& isSpeck; ///< for each face; empty: none is
 	const GapLimits& limits;
 	std::vector<int> piece; ///< of each face
 	MergeForest pieces;
