@@ -14,6 +14,7 @@ from PIL import Image
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "scripts" / "gui"))
+from display import SIZE  # noqa: E402
 from window import Window  # noqa: E402
 
 PREFIX = "Mean Curvature Skeleton: "
@@ -59,18 +60,21 @@ def project(window: Window) -> None:
     window.turn(60, -190)
 
 
-def saved_project(folder: Path, plugin: Path) -> Path:
-    """A project of the animal and its skeleton, and the stage between."""
-    import pymeshlab
-    pymeshlab.load_plugin(str(plugin))
-    layers = pymeshlab.MeshSet()
-    layers.load_new_mesh(str(ROOT / "meshes" / "animal.off"))
-    layers.apply_filter("generate_curve_skeleton_mcf")
-    for number in range(layers.mesh_number()):
-        layers.set_current_mesh(number)
-        layers.set_current_mesh_visibility(number == layers.mesh_number() - 1)
-    layers.apply_filter("save_project_mcf", file=str(folder / "animal.mlp"))
-    return folder / "animal.mlp"
+def saved_project(folder: Path, host: Path, data: Optional[Path]) -> Path:
+    """A project of the animal and its skeleton, and the stage between, as the window shows them."""
+    file = folder / "animal.mlp"
+    with Window(host / "bin" / "meshlab", ROOT / "meshes" / "animal.off", data=data) as window:
+        window.open_filter(PREFIX + "Full Skeletonize")
+        apply(window, "Full Skeletonize")
+        window.close(PREFIX + "Full Skeletonize")
+        window.open_filter(PREFIX + "Save Project")
+        window.press(re.escape(PREFIX + "Save Project"), "...")
+        window.wait(lambda: window.shown("dialog", "Save"), "the dialog of files")
+        window.write(str(file))
+        window.keys("Return")
+        window.wait(lambda: not window.shown("dialog", "Save"), "the dialog of files to close")
+        apply(window, "Save Project")
+    return file
 
 
 def dialogs(window: Window) -> Optional[tuple[int, int, int, int]]:
@@ -78,7 +82,11 @@ def dialogs(window: Window) -> Optional[tuple[int, int, int, int]]:
     boxes = [w.box for w in window.view()
              if w.name.startswith(PREFIX) and w.role == "frame" or w.name == "Filter Failure"]
     if not boxes:
-        return None
+        if not any(w.name.endswith(".mlp") for w in window.view()):
+            return None
+        # Without the title of a project, which is the folder that it happens to be in.
+        top = window.layers()[0].eye[1] - 8
+        return 0, top, SIZE[0], SIZE[1] - top
     left, top = (min(box[k] for box in boxes) for k in (0, 1))
     right, bottom = (max(box[k] + box[k + 2] for box in boxes) for k in (0, 1))
     return left, top, right - left, bottom - top
@@ -99,8 +107,6 @@ def main() -> None:
                         help="folder of MeshLab 2025.07: what scripts/get_host.sh prints")
     parser.add_argument("--data", type=Path,
                         help="$XDG_DATA_HOME with the plugin in it, if MeshLab has it from there")
-    parser.add_argument("--plugin", type=Path, help="for pymeshlab, which makes the picture 'project'",
-                        default=ROOT / "build/pymeshlab/filter_mcfskel/libfilter_mcfskel.so")
     parser.add_argument("--folder", type=Path, default=ROOT / "docs/gui")
     parser.add_argument("names", nargs="*", metavar="NAME", default=list(PICTURES),
                         help=f"which to take: {', '.join(PICTURES)} (default: all)")
@@ -110,7 +116,7 @@ def main() -> None:
         mesh, act = PICTURES[name]
         path = options.folder / f"{name}.png"
         with tempfile.TemporaryDirectory() as folder:
-            opened = (saved_project(Path(folder), options.plugin) if mesh.endswith(".mlp")
+            opened = (saved_project(Path(folder), options.host, options.data) if mesh.endswith(".mlp")
                       else ROOT / "meshes" / f"{mesh}.off")
             with Window(options.host / "bin" / "meshlab", opened, data=options.data) as window:
                 act(window)
