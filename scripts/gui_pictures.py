@@ -68,28 +68,25 @@ def saved_project(folder: Path, host: Path, data: Optional[Path]) -> Path:
         apply(window, "Full Skeletonize")
         window.close(PREFIX + "Full Skeletonize")
         window.open_filter(PREFIX + "Save Project")
-        window.press(re.escape(PREFIX + "Save Project"), "...")
-        window.wait(lambda: window.shown("dialog", "Save"), "the dialog of files")
-        window.write(str(file))
-        window.keys("Return")
-        window.wait(lambda: not window.shown("dialog", "Save"), "the dialog of files to close")
+        window.choose_file(PREFIX + "Save Project", file)
         apply(window, "Save Project")
     return file
 
 
-def dialogs(window: Window) -> Optional[tuple[int, int, int, int]]:
-    """The part of the screen that dialogs and boxes take; the whole screen if none is open."""
-    boxes = [w.box for w in window.view()
+def part_of_screen(window: Window) -> Optional[tuple[int, int, int, int]]:
+    """What dialogs and boxes take, where some are open; of a project all but its title, which is the folder that it
+    happens to be in; else the whole screen."""
+    view = window.view()
+    boxes = [w.box for w in view
              if w.name.startswith(PREFIX) and w.role == "frame" or w.name == "Filter Failure"]
-    if not boxes:
-        if not any(w.name.endswith(".mlp") for w in window.view()):
-            return None
-        # Without the title of a project, which is the folder that it happens to be in.
+    if boxes:
+        left, top = (min(box[k] for box in boxes) for k in (0, 1))
+        right, bottom = (max(box[k] + box[k + 2] for box in boxes) for k in (0, 1))
+        return left, top, right - left, bottom - top
+    if any(w.name.endswith(".mlp") for w in view):
         top = window.layers()[0].eye[1] - 8
         return 0, top, SIZE[0], SIZE[1] - top
-    left, top = (min(box[k] for box in boxes) for k in (0, 1))
-    right, bottom = (max(box[k] + box[k + 2] for box in boxes) for k in (0, 1))
-    return left, top, right - left, bottom - top
+    return None
 
 
 PICTURES: dict[str, tuple[str, Callable[[Window], None]]] = {
@@ -120,7 +117,7 @@ def main() -> None:
                       else ROOT / "meshes" / f"{mesh}.off")
             with Window(options.host / "bin" / "meshlab", opened, data=options.data) as window:
                 act(window)
-                window.still_picture(path, dialogs(window))
+                window.still_picture(path, part_of_screen(window))
         Image.open(path).convert("RGB").quantize(COLOURS).save(path, optimize=True)
         print(path)
 

@@ -325,6 +325,15 @@ class Window:
                       "click", "--repeat", "5", "5")
         self.click(found)
 
+    def choose_file(self, dialog: str, file: Path) -> None:
+        """Chooses a file to write, by the button of a filter dialog: what is typed into the field itself MeshLab
+        2020.09 does not take."""
+        self.press(re.escape(dialog), "...")
+        self.wait(lambda: self.shown("dialog", "Save"), "the dialog of files")
+        self.write(str(file))
+        self.keys("Return")
+        self.wait(lambda: not self.shown("dialog", "Save"), "the dialog of files to close")
+
     def close(self, dialog: str) -> None:
         """Closes a filter dialog."""
         self.press(re.escape(dialog), "Close")

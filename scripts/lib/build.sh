@@ -32,8 +32,8 @@ headers_of() {
 	esac
 }
 
-# build_host HOST [CMAKE_OPTION...]: configures and builds; prints the path of the plugin. Several files are
-# compiled as one (a unity build): most of a file's time goes into templates that others ask for, too.
+# build_host HOST [CMAKE_OPTION...]: configures and builds; prints the path of the plugin. A unity
+# build: most of the time of compiling goes into templates that several files instantiate.
 build_host() {
 	local host="$1" built_as="$1" target=all plugin=filter_mcfskel folder sources
 	shift
@@ -45,7 +45,8 @@ build_host() {
 	need_packages "${BUILD_PACKAGES[@]}" >&2
 	sources="$(meshlab_sources "$(headers_of "$built_as")")"
 	quietly cmake -S "$ROOT" -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release \
-		-DMESHLAB_HOST="$built_as" -DMESHLAB_SRC="$sources" -DCMAKE_UNITY_BUILD=ON "$@" || die "could not configure for $host"
+		-DMESHLAB_HOST="$built_as" -DMESHLAB_SRC="$sources" -DCMAKE_UNITY_BUILD=ON "$@" ||
+		die "could not configure for $host"
 	if ! ninja -C "$folder" -n "$target" | grep -q 'no work to do'; then
 		say "building for $host"
 		quietly ninja -C "$folder" -j "$JOBS" "$target" || die "could not build for $host"

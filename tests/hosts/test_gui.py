@@ -183,12 +183,7 @@ def test_a_project_is_seen_as_it_was_saved(window: Window, host: Path, tmp_path:
     apply(window, "Full Skeletonize")
     lines = [skeleton_pixels(viewport(window)).sum()]
     window.open_filter(PREFIX + "Save Project")
-    # By the button: what is typed into the field itself MeshLab 2020.09 does not take.
-    window.press(re.escape(PREFIX + "Save Project"), "...")
-    window.wait(lambda: window.shown("dialog", "Save"), "the dialog of files")
-    window.write(str(tmp_path / "y.mlp"))
-    window.keys("Return")
-    window.wait(lambda: not window.shown("dialog", "Save"), "the dialog of files to close")
+    window.choose_file(PREFIX + "Save Project", tmp_path / "y.mlp")
     apply(window, "Save Project")
     with Window(host / "bin" / "meshlab", tmp_path / "y.mlp", data=host / "data") as again:
         assert names(again.layers()) == names(window.layers())

@@ -369,33 +369,25 @@ inline void moveInside(CurveSkeleton& skeleton, const ClosestSurface& surface)
 }
 
 /**
- * To how many sides of a branch the shape is wide at a point of it, 0 to 2: one and a half of the ball's
- * radii aside the surface is still half a radius away. In a limb none, in a plate both, along its rim one.
+ * The places to the sides of a branch, none to two, where the shape is wide at a point of it: one and a half of the ball's
+ * radii aside the surface is still half a radius away. In a limb none, in a plate two, along its rim one.
  * @param contact    the second contact of the ball, see medialBall().
  * @param direction  of the branch.
- * @param isTaken    (point): whether what is there does not count.
  */
-template <class IsTaken>
-int wideSides(const ClosestSurface& surface, const Point3d& x, const ClosestSurface::Hit& hit,
-	const Point3d& contact, const Point3d& direction, const IsTaken& isTaken)
+inline std::vector<Point3d> widePlaces(const ClosestSurface& surface, const Point3d& x,
+	const ClosestSurface::Hit& hit, const Point3d& contact, const Point3d& direction)
 {
 	constexpr double aside = 1.5, away = 0.5;
 	const Point3d side = (hit.point - contact) ^ direction;
 	const double norm = side.Norm();
 	if (!(norm > 0))
-		return 0;
+		return {};
 	const Point3d offset = side * (aside * hit.distance / norm);
-	const auto isWideAt = [&](const Point3d& p) {
-		return surface.clearance(p) > away * hit.distance && !isTaken(p);
-	};
-	return int(isWideAt(x + offset)) + int(isWideAt(x - offset));
-}
-
-/// The same, whatever is there.
-inline int wideSides(const ClosestSurface& surface, const Point3d& x,
-	const ClosestSurface::Hit& hit, const Point3d& contact, const Point3d& direction)
-{
-	return wideSides(surface, x, hit, contact, direction, [](const Point3d&) { return false; });
+	std::vector<Point3d> places;
+	for (const Point3d& place : {x + offset, x - offset})
+		if (surface.clearance(place) > away * hit.distance)
+			places.push_back(place);
+	return places;
 }
 
 } // namespace vcg::tri::mcf::refining

@@ -107,7 +107,8 @@ inline CurveSkeleton withoutStubsInPlates(
 					continue;
 				const ClosestSurface::Ball ball = medialBall(surface, x, hit);
 				const Point3d direction = x - s.position[fromJunction.nodes[i - 1]];
-				flat += isMedial(ball) && wideSides(surface, x, hit, ball.contact, direction) == 2;
+				flat += isMedial(ball)
+					&& widePlaces(surface, x, hit, ball.contact, direction).size() == 2;
 			}
 			return flat >= mostlyFlat * double(fromJunction.nodes.size() - 1) ? excess : 0.0;
 		});
@@ -121,7 +122,7 @@ struct FeatureBranch
 	/// The node of that ball; -1 where the way leaves the surface or ends in none.
 	int joint = -1;
 	/// The parts of the points about which the shape is wide to both sides, to one, and to any where the skeleton's
-	/// balls leave that room out, see wideSides().
+	/// balls leave that room out, see widePlaces().
 	double flat = 0, rim = 0, bare = 0;
 
 	double way() const
@@ -162,11 +163,11 @@ inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const ClosestSur
 			hit = surface.closest(x, hit.face);
 			if (hit.distance <= 0 || !surface.isInside(x, hit))
 				return branch;
-			const int wide = wideSides(surface, x, hit, ball.contact, direction);
-			flat += wide == 2;
-			rim += wide == 1;
-			const auto isCovered = [&](const Point3d& p) { return holdingNode(skeleton, p) >= 0; };
-			bare += wide > 0 && wideSides(surface, x, hit, ball.contact, direction, isCovered) > 0;
+			const std::vector<Point3d> wide = widePlaces(surface, x, hit, ball.contact, direction);
+			flat += wide.size() == 2;
+			rim += wide.size() == 1;
+			bare += std::any_of(wide.begin(), wide.end(),
+				[&](const Point3d& p) { return holdingNode(skeleton, p) < 0; });
 		}
 		if (i > 0
 			&& !isSegmentInside(

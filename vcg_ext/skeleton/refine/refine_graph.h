@@ -14,10 +14,14 @@
 #include <skeleton/poles/sizing_field.h>
 #include <skeleton/spatial/closest_surface.h>
 
+#include <vcg/space/distance3.h>
+#include <vcg/space/line3.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
@@ -103,46 +107,28 @@ constexpr double leastWayOfBranch = 0.75;
 /// A blunt end is a feature of the shape if it is so many diagonals high.
 constexpr double leastBluntHeight = 0.04;
 
-/// A line.
-struct Axis
-{
-	Point3d point, direction;
-
-	/// The middle of the shortest way between two lines that are not parallel.
-	static Point3d meeting(const Axis& a, const Axis& b)
-	{
-		const Point3d between = a.point - b.point;
-		const double cosine = a.direction * b.direction, square = 1 - cosine * cosine;
-		const double onA = a.direction * between, onB = b.direction * between;
-		return (a.point + a.direction * ((cosine * onB - onA) / square) + b.point
-				   + b.direction * ((onB - cosine * onA) / square))
-			/ 2;
-	}
-};
-
 /// The axis of a branch where it has left the ball of its junction: the line through its points one and three radii of
-/// that ball away, or its end if that is nearer; without a direction where the end is nearer than one and a half.
+/// that ball away, or its end if that is nearer; none where the end is nearer than one and a half.
 /// @pre the radius of junctions is their distance from the surface.
-inline Axis axisOf(const CurveSkeleton& skeleton, const Branch& fromJunction)
+inline std::optional<vcg::Line3d> axisOf(const CurveSkeleton& skeleton, const Branch& fromJunction)
 {
 	constexpr double start = 1, farEnd = 3, shortestAxis = 1.5; // radii
 	const double radius = skeleton.radius[fromJunction.first()];
 	double along = 0;
-	Axis axis = {skeleton.position[fromJunction.first()], Point3d(0, 0, 0)};
-	Point3d end = axis.point;
+	Point3d origin = skeleton.position[fromJunction.first()], end = origin;
 	for (size_t i = 1; i < fromJunction.nodes.size() && along < farEnd * radius; ++i) {
 		const Point3d &a = skeleton.position[fromJunction.nodes[i - 1]],
 					  &b = skeleton.position[fromJunction.nodes[i]];
 		const double length = Distance(a, b);
 		const auto at = [&](double way) { return a + (b - a) * ((way - along) / length); };
 		if (along < start * radius && along + length >= start * radius)
-			axis.point = at(start * radius);
+			origin = at(start * radius);
 		end = along + length > farEnd * radius ? at(farEnd * radius) : b;
 		along += length;
 	}
-	if (radius > 0 && along >= shortestAxis * radius)
-		axis.direction = (end - axis.point).Normalize();
-	return axis;
+	if (!(radius > 0 && along >= shortestAxis * radius))
+		return std::nullopt;
+	return vcg::Line3d(origin, (end - origin).Normalize());
 }
 
 /**
@@ -158,16 +144,19 @@ inline bool isCornerOfBend(const CurveSkeleton& skeleton,
 	const int junction = fromJunction.first(), tip = fromJunction.last();
 	if (neighbours[junction].size() != 3)
 		return false;
-	std::vector<Axis> axes;
+	std::vector<vcg::Line3d> axes;
 	for (int w : neighbours[junction])
 		if (w != fromJunction.nodes[1])
-			axes.push_back(axisOf(skeleton, branchAlong(neighbours, junction, w)));
-	if (axes.size() != 2 || axes[0].direction.SquaredNorm() == 0
-		|| axes[1].direction.SquaredNorm() == 0)
+			if (const auto axis = axisOf(skeleton, branchAlong(neighbours, junction, w)))
+				axes.push_back(*axis);
+	if (axes.size() != 2 || axes[0].Direction() * axes[1].Direction() <= std::cos(widestBend))
 		return false;
-	const double cosine = axes[0].direction * axes[1].direction;
-	return std::abs(cosine) < 1 - 1e-9 && cosine > std::cos(widestBend)
-		&& Distance(Axis::meeting(axes[0], axes[1]), skeleton.position[tip]) < skeleton.radius[tip];
+	bool parallel = false;
+	double apart = 0;
+	Point3d onOne, onOther; // where they are nearest to each other
+	vcg::LineLineDistance(axes[0], axes[1], parallel, apart, onOne, onOther);
+	return !parallel
+		&& Distance((onOne + onOther) / 2, skeleton.position[tip]) < skeleton.radius[tip];
 }
 
 /**

@@ -90,7 +90,7 @@ inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, c
 				break;
 			const ClosestSurface::Ball ball = medialBall(surface, y, hit);
 			const bool isWide =
-				!isMedial(ball) || wideSides(surface, y, hit, ball.contact, direction) > 0;
+				!isMedial(ball) || !widePlaces(surface, y, hit, ball.contact, direction).empty();
 			if (isMedial(ball))
 				y = movedAside(y, ball, direction, step / 2);
 			const double s = Distance(x, y);

@@ -63,9 +63,14 @@ std::optional<std::vector<Triangle>> clippedEars(
 		return (p[size_t(b)] - p[size_t(a)]) ^ (p[size_t(c)] - p[size_t(a)]);
 	};
 	// Others in the ear, on its sides too, would be cut off.
+	int left = n;
 	const auto cost = [&](int i) {
 		const int a = before[size_t(i)], c = after[size_t(i)];
-		if (!(leftTurn(a, i, c) > 0) || !allowed(a, c))
+		if (!(leftTurn(a, i, c) > 0))
+			return never;
+		if (left == 3)
+			return 0.0;
+		if (!allowed(a, c))
 			return never;
 		for (int j = after[size_t(c)]; j != a; j = after[size_t(j)])
 			if (leftTurn(a, i, j) >= 0 && leftTurn(i, c, j) >= 0 && leftTurn(c, a, j) >= 0
@@ -76,9 +81,9 @@ std::optional<std::vector<Triangle>> clippedEars(
 	};
 	std::vector<double> costs;
 	for (int i = 0; i < n; ++i)
-		costs.push_back(n == 3 ? 0 : cost(i));
+		costs.push_back(cost(i));
 	std::vector<Triangle> triangles;
-	for (int left = n; left > 3; --left) {
+	while (left >= 3) {
 		const int ear = int(std::min_element(costs.begin(), costs.end()) - costs.begin());
 		if (costs[size_t(ear)] == never)
 			return std::nullopt;
@@ -86,15 +91,11 @@ std::optional<std::vector<Triangle>> clippedEars(
 		triangles.push_back({a, ear, c});
 		after[size_t(a)] = c;
 		before[size_t(c)] = a;
+		--left;
 		costs[size_t(ear)] = never;
-		costs[size_t(a)] = left == 4 ? 0 : cost(a);
-		costs[size_t(c)] = left == 4 ? 0 : cost(c);
+		costs[size_t(a)] = cost(a);
+		costs[size_t(c)] = cost(c);
 	}
-	const int last = int(std::min_element(costs.begin(), costs.end()) - costs.begin());
-	const int a = before[size_t(last)], c = after[size_t(last)];
-	if (!(leftTurn(a, last, c) > 0))
-		return std::nullopt;
-	triangles.push_back({a, last, c});
 	return triangles;
 }
 
@@ -131,20 +132,19 @@ struct PlaneCut
 	Point3d x, y;                              ///< axes of the plane
 	double area = 0, tolerance = 0;
 
-	PlaneCut(BorderPolygon of, const CutLimits& limits) : border(std::move(of))
+	PlaneCut(const std::vector<Point3d>& points, BorderPolygon of, const CutLimits& limits) :
+			border(std::move(of))
 	{
 		const std::vector<Point3d>& p = border.points;
 		double length = 0;
 		for (const Point3d& q : p)
 			centre += q / double(p.size());
-		Point3d areaVector(0, 0, 0);
-		for (size_t i = 0; i < p.size(); ++i) {
-			const Point3d &a = p[i], &b = p[(i + 1) % p.size()];
-			areaVector += ((a - centre) ^ (b - centre)) / 2.0;
-			length += Distance(a, b) / double(p.size());
-		}
-		area = areaVector.Norm();
-		normal = area > 0 ? areaVector / area : areaVector;
+		for (size_t i = 0; i < p.size(); ++i)
+			length += Distance(p[i], p[(i + 1) % p.size()]) / double(p.size());
+		normal = areaVector(points, border.corners, centre);
+		area = normal.Norm();
+		if (area > 0)
+			normal /= area;
 		vcg::GetUV(normal, x, y);
 		if (((x ^ y) * normal) < 0)
 			std::swap(x, y);
@@ -182,24 +182,21 @@ inline int capCuts(const std::vector<Point3d>& points, std::vector<Triangle>& tr
 	if (loops.empty())
 		return 0;
 	const std::vector<int> piece = pieceOfFaces(partner);
-	std::map<int, double> area, capped; // of the pieces, by their first face
-	for (size_t f = 0; f < triangles.size(); ++f)
-		area[piece[f]] += areaVector(points, triangles[f]).Norm();
-	std::vector<char> onBorder(points.size(), 0);
+	const std::vector<double> area = areaOfPieces(points, triangles, piece);
+	std::vector<double> capped(piece.size(), 0);
 	std::vector<PlaneCut> cuts;
 	for (const std::vector<int>& loop : loops) {
-		for (int h : loop)
-			onBorder[size_t(triangles[size_t(h) / 3][size_t(h) % 3])] = 1;
 		const int n = int(loop.size());
 		if (n < 3 || n > limits.most)
 			continue;
-		PlaneCut cut(borderPolygon(points, triangles, piece, loop), limits);
+		PlaneCut cut(points, borderPolygon(points, triangles, piece, loop), limits);
 		if (cut.border.pieces.size() == 1
-			&& cut.area >= limits.least * area[*cut.border.pieces.begin()] && cut.isFlat())
+			&& cut.area >= limits.least * area[size_t(*cut.border.pieces.begin())] && cut.isFlat())
 			cuts.push_back(std::move(cut));
 	}
 	if (cuts.empty())
 		return 0;
+	const std::vector<char> onBorder = borderVertices(points.size(), triangles, partner);
 	std::set<std::pair<int, int>> edges = edgesBetween(triangles, onBorder);
 	const std::vector<Triangle> given = triangles;
 	const TriangleTree tree(points, given, progress.part(0, 0.3));
@@ -208,10 +205,10 @@ inline int capCuts(const std::vector<Point3d>& points, std::vector<Triangle>& tr
 	for (size_t i = 0; i < cuts.size(); ++i) {
 		capping.report(double(i) / double(cuts.size()), "Capping cuts");
 		const PlaneCut& cut = cuts[i];
-		const int whose = *cut.border.pieces.begin();
+		const size_t whose = size_t(*cut.border.pieces.begin());
 		double lowest = 0, highest = 0;
 		for (size_t f = 0; f < given.size(); ++f)
-			if (piece[f] == whose)
+			if (size_t(piece[f]) == whose)
 				for (int v : given[f]) {
 					const double height = cut.height(points[size_t(v)]);
 					lowest = std::min(lowest, height);
@@ -231,15 +228,12 @@ inline int capCuts(const std::vector<Point3d>& points, std::vector<Triangle>& tr
 				|| !isInPolygon(cut.inPlane(points[size_t(v)]), polygon);
 		if (!fits)
 			continue;
-		const auto edge = [&](int a, int b) { return cut.border.edge(a, b); };
 		// The teeth of a jagged border overhang where the surface is steep: seen in the plane they cross.
 		std::optional<std::vector<Triangle>> ears;
 		for (int rounds : {0, 2, 8})
 			if (!ears)
-				ears = clippedEars(smoothed(polygon, rounds), [&](int a, int b) {
-					const std::vector<int>& corners = cut.border.corners;
-					return corners[size_t(a)] != corners[size_t(b)] && !edges.count(edge(a, b));
-				});
+				ears = clippedEars(smoothed(polygon, rounds),
+					[&](int a, int b) { return cut.border.mayJoin(a, b, edges); });
 		if (!ears)
 			continue;
 		std::vector<Triangle> cap;
@@ -248,7 +242,7 @@ inline int capCuts(const std::vector<Point3d>& points, std::vector<Triangle>& tr
 		for (const Triangle& t : *ears) {
 			cap.push_back(cut.border.triangle(t));
 			for (size_t k = 0; k < 3; ++k)
-				fits = fits && ++uses[edge(t[k], t[(k + 1) % 3])] <= 2;
+				fits = fits && ++uses[cut.border.edge(t[k], t[(k + 1) % 3])] <= 2;
 			if (crossesOthers(tree, given, points, cap.back()))
 				crossing += areaVector(points, cap.back()).Norm();
 		}

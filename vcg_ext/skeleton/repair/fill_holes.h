@@ -243,6 +243,27 @@ inline Point3d areaVector(const std::vector<Point3d>& points, const Triangle& t)
 	return ((points[size_t(t[1])] - a) ^ (points[size_t(t[2])] - a)) / 2.0;
 }
 
+/// The normal of a polygon in space with its area as length; of vertices in order. @param centre  of these.
+inline Point3d areaVector(
+	const std::vector<Point3d>& points, const std::vector<int>& polygon, const Point3d& centre)
+{
+	Point3d sum(0, 0, 0);
+	for (size_t k = 0; k < polygon.size(); ++k)
+		sum += (points[size_t(polygon[k])] - centre)
+			^ (points[size_t(polygon[(k + 1) % polygon.size()])] - centre);
+	return sum / 2.0;
+}
+
+/// For each face that is the lowest of its piece, see pieceOfFaces(), the area of the piece; else 0.
+inline std::vector<double> areaOfPieces(const std::vector<Point3d>& points,
+	const std::vector<Triangle>& triangles, const std::vector<int>& piece)
+{
+	std::vector<double> area(piece.size(), 0);
+	for (size_t f = 0; f < piece.size(); ++f)
+		area[size_t(piece[f])] += areaVector(points, triangles[f]).Norm();
+	return area;
+}
+
 /// The border of a hole as its filling sees it: against the faces, so that the filling has its normals on the
 /// same side.
 struct BorderPolygon
@@ -256,6 +277,11 @@ struct BorderPolygon
 	std::pair<int, int> edge(int a, int b) const
 	{
 		return std::minmax(corners[size_t(a)], corners[size_t(b)]);
+	}
+	/// Whether a filling may have the edge between two corners: not one that the surface has.
+	bool mayJoin(int a, int b, const std::set<std::pair<int, int>>& edges) const
+	{
+		return corners[size_t(a)] != corners[size_t(b)] && !edges.count(edge(a, b));
 	}
 	/// Of vertices, from one of corners.
 	Triangle triangle(const Triangle& t) const
@@ -280,6 +306,17 @@ inline BorderPolygon borderPolygon(const std::vector<Point3d>& points,
 		border.pieces.insert(piece[size_t(*h) / 3]);
 	}
 	return border;
+}
+
+/// For each vertex whether it is on a border.
+inline std::vector<char> borderVertices(
+	size_t vertices, const std::vector<Triangle>& triangles, const std::vector<int>& partner)
+{
+	std::vector<char> onBorder(vertices, 0);
+	for (size_t h = 0; h < partner.size(); ++h)
+		if (partner[h] < 0)
+			onBorder[size_t(triangles[h / 3][h % 3])] = 1;
+	return onBorder;
 }
 
 /// The edges whose two vertices are marked.
@@ -355,15 +392,11 @@ inline FilledHoles fillHoles(const std::vector<Point3d>& points, std::vector<Tri
 	if (loops.empty())
 		return done;
 	const std::vector<int> piece = detail::pieceOfFaces(partner);
-	std::vector<double> area(piece.size(), 0), filled(piece.size(), 0);
-	for (size_t f = 0; f < piece.size(); ++f)
-		area[size_t(piece[f])] += detail::areaVector(points, triangles[f]).Norm();
+	const std::vector<double> area = detail::areaOfPieces(points, triangles, piece);
+	std::vector<double> filled(piece.size(), 0);
 	const double largest = *std::max_element(area.begin(), area.end());
-	std::vector<char> onBorder(points.size(), 0);
-	for (int h = 0; h < int(partner.size()); ++h)
-		if (partner[size_t(h)] < 0)
-			onBorder[size_t(triangles[size_t(h) / 3][size_t(h) % 3])] = 1;
-	std::set<std::pair<int, int>> edges = detail::edgesBetween(triangles, onBorder);
+	std::set<std::pair<int, int>> edges =
+		detail::edgesBetween(triangles, detail::borderVertices(points.size(), triangles, partner));
 	const std::vector<Triangle> given = triangles;
 	const TriangleTree tree(points, given, progress.part(0, 0.3));
 	const double mostTurn = 1 - std::cos(limits.turn * M_PI / 180);
@@ -376,11 +409,8 @@ inline FilledHoles fillHoles(const std::vector<Point3d>& points, std::vector<Tri
 		if (n < 3 || n > limits.edges)
 			continue;
 		const detail::BorderPolygon border = detail::borderPolygon(points, triangles, piece, loop);
-		const auto edge = [&](int a, int b) { return border.edge(a, b); };
-		const detail::PolygonFilling best(border.points, border.outside, [&](int a, int b) {
-			const std::vector<int>& corners = border.corners;
-			return corners[size_t(a)] != corners[size_t(b)] && !edges.count(edge(a, b));
-		});
+		const detail::PolygonFilling best(border.points, border.outside,
+			[&](int a, int b) { return border.mayJoin(a, b, edges); });
 		double surface = 0, before = 0;
 		for (int p : border.pieces) {
 			surface += area[size_t(p)];
@@ -399,7 +429,8 @@ inline FilledHoles fillHoles(const std::vector<Point3d>& points, std::vector<Tri
 			made.push_back(border.triangle(t));
 			for (const auto& [a, b] : {std::pair(t[0], t[1]), std::pair(t[1], t[2])})
 				if (b - a > 1)
-					fits &= chords.insert(edge(a, b)).second; // a vertex may be on the loop twice
+					fits &= chords.insert(border.edge(a, b))
+								.second; // a vertex may be on the loop twice
 			fits = fits && (anyhow || !detail::crossesOthers(tree, given, points, made.back()));
 		}
 		if (!fits)

@@ -64,10 +64,9 @@ inline Point3d axisBehind(const std::vector<Point3d>& points,
 		const int f = stack.back();
 		stack.pop_back();
 		const Triangle& t = triangles[size_t(f)];
-		const Point3d& p = points[size_t(t[0])];
-		if ((p - end.centre).Norm() > reach * end.radius)
+		if ((points[size_t(t[0])] - end.centre).Norm() > reach * end.radius)
 			continue;
-		const Point3d normal = (points[size_t(t[1])] - p) ^ (points[size_t(t[2])] - p);
+		const Point3d normal = areaVector(points, t);
 		if (const double norm = normal.Norm(); norm > 0) {
 			const Eigen::Vector3d n(normal[0], normal[1], normal[2]);
 			square += n * n.transpose() / norm;
@@ -91,13 +90,9 @@ inline LimbEnd limbEnd(const std::vector<Point3d>& points, const std::vector<Tri
 		end.corner.push_back(triangles[size_t(*h) / 3][size_t(Fans::next(*h)) % 3]);
 		end.centre += points[size_t(end.corner.back())];
 	}
-	const size_t n = end.corner.size();
-	end.centre /= double(n);
-	Point3d area(0, 0, 0);
-	for (size_t k = 0; k < n; ++k)
-		area += (points[size_t(end.corner[k])] - end.centre)
-			^ (points[size_t(end.corner[(k + 1) % n])] - end.centre);
-	end.radius = std::sqrt(area.Norm() / (2 * M_PI));
+	end.centre /= double(end.corner.size());
+	const Point3d area = areaVector(points, end.corner, end.centre);
+	end.radius = std::sqrt(area.Norm() / M_PI);
 	// Of a tube, however it is cut, this is its axis times its perimeter; around a flat hole nothing is left.
 	Point3d onwards(0, 0, 0);
 	for (int h : loop) {

@@ -146,8 +146,7 @@ inline LimbEnd holeInWall(const std::vector<Point3d>& points, const LimbTube& tu
 	std::vector<std::pair<double, size_t>> byDistance;
 	for (size_t f = 0; f < tube.faces.size(); ++f) {
 		const Triangle& t = tube.faces[f];
-		const Point3d normal = (points[size_t(t[1])] - points[size_t(t[0])])
-			^ (points[size_t(t[2])] - points[size_t(t[0])]);
+		const Point3d normal = areaVector(points, t);
 		if (normal * towards > facing * normal.Norm())
 			byDistance.emplace_back((centreOf(t) - middle).Norm(), f);
 	}
@@ -193,11 +192,7 @@ inline LimbEnd holeInWall(const std::vector<Point3d>& points, const LimbTube& tu
 		hole.corner.push_back(v);
 		hole.centre += points[size_t(v)] / double(count);
 	}
-	Point3d area(0, 0, 0);
-	for (size_t k = 0; k < count; ++k)
-		area += (points[size_t(hole.corner[k])] - hole.centre)
-			^ (points[size_t(hole.corner[(k + 1) % count])] - hole.centre);
-	hole.radius = std::sqrt(area.Norm() / (2 * M_PI));
+	hole.radius = std::sqrt(areaVector(points, hole.corner, hole.centre).Norm() / M_PI);
 	hole.heading = hole.out = towards;
 	faces.clear();
 	for (size_t f = 0; f < cut.size(); ++f)

@@ -485,10 +485,8 @@ private:
 		constexpr int samples = 4000;
 		constexpr double part = 0.1, cells = 2.5; // of the area is thinner than so many
 		double area = 0;
-		for (const Triangle& t : faces) {
-			const Point3d& a = points[size_t(t[0])];
-			area += ((points[size_t(t[1])] - a) ^ (points[size_t(t[2])] - a)).Norm() / 2;
-		}
+		for (const Triangle& t : faces)
+			area += areaVector(points, t).Norm();
 		const double least = cells * std::sqrt(area / mostSquares);
 		return smallThickness(placesByArea(points, faces, samples), tree, part, 2 * least, progress)
 			< least;
@@ -578,8 +576,7 @@ private:
 		for (const Triangle& t : faces) {
 			for (int v : t)
 				box.Add(given[size_t(v)]);
-			const Point3d& a = given[size_t(t[0])];
-			area += ((given[size_t(t[1])] - a) ^ (given[size_t(t[2])] - a)).Norm() / 2;
+			area += areaVector(given, t).Norm();
 		}
 		if (!(area > 0))
 			throw InvalidInput(*error);

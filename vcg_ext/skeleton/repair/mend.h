@@ -131,9 +131,7 @@ inline int cutAroundHoles(
 				cut[size_t(h) / 3] = 1;
 	double whole = 0, gone = 0;
 	for (size_t f = 0; f < triangles.size(); ++f) {
-		const Triangle& t = triangles[f];
-		const Point3d& a = points[size_t(t[0])];
-		const double area = ((points[size_t(t[1])] - a) ^ (points[size_t(t[2])] - a)).Norm() / 2;
+		const double area = areaVector(points, triangles[f]).Norm();
 		whole += area;
 		gone += cut[f] ? area : 0;
 	}
@@ -289,11 +287,14 @@ inline MendedSurface mend(const std::vector<Point3d>& points,
 	Specks specks = specksOf(mended.points, faces, partner);
 	spareTornLimbs(mended.points, faces, partner, specks);
 	report.piecesDropped = dropSpecks(faces, partner, specks);
-	report.gapsBridged = bridgeGaps(mended.points, faces, partner,
-		specksOf(mended.points, faces, partner).isOne, GapLimits(), progress.part(0.55, 0.6));
-	if (report.gapsBridged > 0)
+	specks = specksOf(mended.points, faces, partner);
+	report.gapsBridged = bridgeGaps(
+		mended.points, faces, partner, specks.isOne, GapLimits(), progress.part(0.55, 0.6));
+	if (report.gapsBridged > 0) {
 		partner = pairedHalfEdges(mended.points, faces, nullptr, progress.cancelOnly());
-	report.piecesDropped += dropSpecks(mended.points, faces, partner);
+		specks = specksOf(mended.points, faces, partner);
+	}
+	report.piecesDropped += dropSpecks(faces, partner, specks);
 	const FilledHoles holes =
 		fillHoles(mended.points, faces, partner, limits, progress.part(0.6, 0.9));
 	report.holesClosed = holes.closed;
