@@ -130,6 +130,16 @@ QString legend(const MeshModel& layer)
 		.arg(*std::max_element(thickness.begin(), thickness.end()));
 }
 
+/// The percentage that a dialog showed. It shows three decimals, but hands on mesh units, in steps of a
+/// ten-millionth of the power of ten above the diagonal, so that its own defaults come back as others.
+double percentInDialog(double percent, double diagonal)
+{
+	const double shown = std::round(1000 * percent) / 1000;
+	const double step = std::pow(10, std::ceil(std::log10(diagonal)) - 7);
+	const double rounding = 100 * step / diagonal / 2 + 1e-6 * percent;
+	return std::abs(shown - percent) <= rounding ? shown : percent;
+}
+
 } // namespace
 
 Scalarm defaultLength(const ParameterSpec& spec, double diagonal)
@@ -140,8 +150,11 @@ Scalarm defaultLength(const ParameterSpec& spec, double diagonal)
 void ParameterValues::setLength(const ParameterSpec& spec, Scalarm length, double diagonal)
 {
 	// A host's single precision must not show: six digits of a percentage are what all hosts agree on.
-	const double percent = diagonal > 0 ? 100 * double(float(length)) / diagonal : 0;
-	set(spec.name, QString::number(percent, 'g', 6).toDouble() / 100);
+	double percent = diagonal > 0 ? 100 * double(float(length)) / diagonal : 0;
+	percent = QString::number(percent, 'g', 6).toDouble();
+	if (diagonal > 0 && host::hasWindow())
+		percent = percentInDialog(percent, diagonal);
+	set(spec.name, percent / 100);
 }
 
 const std::vector<FilterSpec>& catalogue()

@@ -71,7 +71,8 @@ public:
 
 	/**
 	 * Takes a Length in mesh units and keeps it as a fraction of the diagonal, rounded so that hosts
-	 * that count in float and in double get the same one, and with it the same results.
+	 * that count in float and in double, or show it in a dialog, get the same one, and with it the same
+	 * results.
 	 */
 	void setLength(const ParameterSpec& spec, Scalarm length, double diagonal);
 

@@ -31,12 +31,11 @@ inline void logIfNotConverged(
 					.arg(surfaceSpreads));
 		return;
 	}
-	const double volume = std::max(vcg::tri::mcf::figuresOf(stage).volumeFraction, 0.0);
 	run.log(QString(
-		"Warning: the contraction has not converged after %1 iterations, %2 % of the volume "
-		"is left: the curve may be off the middle. %3")
+		"Warning: the contraction has not converged after %1 iterations, %2 is left: the curve may be "
+		"off the middle. %3")
 				.arg(stage.iteration)
-				.arg(100 * volume, 0, 'g', 3)
+				.arg(partOfVolume(vcg::tri::mcf::figuresOf(stage).volumeFraction))
 				.arg(cure));
 }
 

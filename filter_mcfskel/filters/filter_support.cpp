@@ -221,16 +221,22 @@ Results curveResults(const mcf::CurveSkeleton& skeleton)
 	};
 }
 
+QString partOfVolume(double fraction)
+{
+	// Contracted lobes turn inside out, and then count as negative.
+	if (fraction <= 0)
+		return "no volume (parts are inside out)";
+	return QString("%1 % of the volume").arg(100 * fraction, 0, 'g', 3);
+}
+
 QString stageLine(const mcf::StageFigures& figures)
 {
 	return QString(
-		"Iteration %1: %2 vertices, %3 % of the area and %4 % of the volume left, %5 % of the "
-		"vertices fixed%6")
+		"Iteration %1: %2 vertices, %3 % of the area and %4 left, %5 % of the vertices fixed%6")
 		.arg(figures.iteration)
 		.arg(figures.vertices)
 		.arg(100 * figures.areaFraction, 0, 'g', 3)
-		.arg(std::max(100 * figures.volumeFraction, 0.0), 0, 'g',
-			3) // contracted lobes turn inside out
+		.arg(partOfVolume(figures.volumeFraction))
 		.arg(100 * figures.fixedFraction, 0, 'g', 3)
 		.arg(figures.converged ? "; converged" : "");
 }

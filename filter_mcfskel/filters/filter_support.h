@@ -57,6 +57,8 @@ Results stageResults(const vcg::tri::mcf::Stage& stage);
 /// diagonal, and what crosses or is left out.
 Results repairResults(const vcg::tri::mcf::SolidReport& report);
 Results curveResults(const vcg::tri::mcf::CurveSkeleton& skeleton);
+/// What a stage has left of the surface's volume, such as "12.3 % of the volume".
+QString partOfVolume(double fraction);
 QString stageLine(const vcg::tri::mcf::StageFigures& figures);
 
 /**

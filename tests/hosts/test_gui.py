@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from conftest import MESHES, ROOT, gui_host
+from conftest import FULL, MESHES, ROOT, gui_host, opened
+from host_programs import ply_vertices
 
 sys.path.insert(0, str(ROOT / "scripts" / "gui"))
 from window import Layer, Widget, Window  # noqa: E402
@@ -185,6 +186,11 @@ def test_a_project_is_seen_as_it_was_saved(window: Window, host: Path, tmp_path:
     window.open_filter(PREFIX + "Save Project")
     window.choose_file(PREFIX + "Save Project", tmp_path / "y.mlp")
     apply(window, "Save Project")
+    script = opened("y_tube")
+    script.apply_filter(FULL)
+    nodes = ply_vertices(next(tmp_path.glob("**/y_tube_skeleton.ply")))
+    assert np.array_equal(np.column_stack([nodes[axis] for axis in "xyz"]),
+                          script.current_mesh().vertex_matrix()), "the dialog's lengths are a script's"
     with Window(host / "bin" / "meshlab", tmp_path / "y.mlp", data=host / "data") as again:
         assert names(again.layers()) == names(window.layers())
         lines.append(skeleton_pixels(viewport(again)).sum())
