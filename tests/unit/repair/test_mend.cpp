@@ -184,6 +184,25 @@ TEST(Mend, DropsWhatFloatsAboutAScan)
 	expectMended(mendedOf(shapes::joined({body, twig})), body, 2, 4);
 }
 
+TEST(Mend, DropsAStrayTriangleHoweverLargeUnlessTheSurfaceIsMadeOfThem)
+{
+	const shapes::Soup body = shapes::sphere();
+	const shapes::Soup stray = {{{2, 0, 0}, {2, 1.4, 0}, {2, 0, 1.4}}, {{0, 1, 2}}};
+	const MendedSurface surface = mendedOf(shapes::joined({body, stray}));
+	expectMended(surface, body);
+	EXPECT_EQ(surface.report.piecesDropped, 1);
+	// Twelve triangles of a box, apart from each other.
+	shapes::Soup apart = shapes::unmerged(shapes::box());
+	for (const Triangle& t : apart.triangles) {
+		const Point3d centre =
+			(apart.points[size_t(t[0])] + apart.points[size_t(t[1])] + apart.points[size_t(t[2])])
+			/ 3.0;
+		for (int v : t)
+			apart.points[size_t(v)] += (centre - apart.points[size_t(v)]) * 0.2;
+	}
+	EXPECT_EQ(mendedOf(apart).report.piecesDropped, 0);
+}
+
 TEST(Mend, DropsClosedSpecksBesideABodyUnlessTheyAreTheSurface)
 {
 	const MendedSurface few = mendedOf(withBalls(6, 0.009));

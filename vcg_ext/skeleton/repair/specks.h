@@ -31,15 +31,18 @@ struct Specks
 };
 
 /// What floats about a surface, unless the surface is made of it: open pieces that are small in area, more
-/// readily if they are sheets, and closed ones that are small in size; and closed ones without volume.
+/// readily if they are sheets, and most readily if they are flat, so that nothing that closes them makes a body;
+/// closed ones that are small in size, and those without volume.
 inline Specks specksOf(const std::vector<Point3d>& points, const std::vector<Triangle>& triangles,
 	const std::vector<int>& partner)
 {
-	constexpr double speck = 0.002, sheet = 0.01; // of the whole area
-	constexpr double likeASheet = 0.25; // |sum of area vectors| / area: half a sphere has 0.5
+	constexpr double speck = 0.002, sheet = 0.01, flatSheet = 0.1; // of the whole area
+	// |sum of area vectors| / area: half a sphere has 0.5, what is flat 1
+	constexpr double likeASheet = 0.25, flatAsSheet = 0.999;
 	constexpr double smallest = 0.01, small = 0.05; // diagonal, of that of the largest piece
-	constexpr double thin = 1e-4;    // volume, of that of the largest piece, of what is small
-	constexpr double mostAll = 0.05; // of the whole area: beyond, they are the surface
+	constexpr double thin = 1e-4; // volume, of that of the largest piece, of what is small
+	constexpr double mostAll = 0.05,
+					 mostFlat = 0.2; // of the whole area: beyond, they are the surface
 	constexpr double flat = 1e-10;   // volume over area^1.5
 	const std::vector<int> piece = pieceOfFaces(partner);
 	struct Piece
@@ -78,14 +81,18 @@ inline Specks specksOf(const std::vector<Point3d>& points, const std::vector<Tri
 		return p.box.Diag() <= smallest * largest
 			|| (p.box.Diag() <= small * largest && std::abs(p.volume) <= thin * fullest);
 	};
-	double specks = 0;
-	for (const auto& [first, p] : pieces)
-		if (isSpeck(p))
-			specks += p.area;
+	const auto isFlat = [&](const Piece& p) {
+		return p.open && p.area <= flatSheet * whole && p.normal.Norm() > flatAsSheet * p.area;
+	};
+	double specks = 0, flats = 0;
+	for (const auto& [first, p] : pieces) {
+		specks += isSpeck(p) ? p.area : 0;
+		flats += isFlat(p) ? p.area : 0;
+	}
 	Specks found;
 	std::set<int> drop;
 	for (const auto& [first, p] : pieces)
-		if ((isSpeck(p) && specks <= mostAll * whole)
+		if ((isSpeck(p) && specks <= mostAll * whole) || (isFlat(p) && flats <= mostFlat * whole)
 			|| (!p.open && std::abs(p.volume) <= flat * std::pow(p.area, 1.5)))
 			drop.insert(first);
 	found.isOne.assign(triangles.size(), 0);
