@@ -8,10 +8,9 @@
 #define MCFSKEL_FILTERS_CONVERGENCE_H
 
 #include "../filters.h"
+#include "filter_support.h"
 
 #include <skeleton/pipeline.h>
-
-#include <algorithm>
 
 namespace mcfskel {
 
