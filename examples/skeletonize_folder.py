@@ -6,7 +6,7 @@
 Each mesh is done in a process of its own: a mesh that is refused, or that takes its process down,
 costs nobody else anything. The table RESULTS/results.csv has a line for each mesh that was tried; a
 second run, after Ctrl-C or worse, goes on with the others, and with --retry tries those again that
-did not go well.
+did not go well. What was done with other options, or lacks a file in one of the formats, is done again.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ MESHES = {".off", ".ply", ".obj", ".stl", ".glb", ".gltf", ".dae", ".3ds", ".x3d
 FORMATS = ("swc", "cg", "graphml", "json", "vtp", "glb", "ply")
 COLUMNS = ("mesh", "status", "seconds", "mesh_vertices", "mesh_faces", "skeleton_vertices", "branches",
            "terminals", "junctions", "components", "cycles", "skeleton_length", "radius_min",
-           "radius_max", "converged", "error")
+           "radius_max", "converged", "options", "error")
 #: The first argument of the process that does one mesh.
 CHILD = "--child"
 Row = dict[str, Any]
@@ -172,6 +172,20 @@ def rows_of(table: Path) -> list[Row]:
     return list(csv.DictReader(io.StringIO(text[:text.rfind("\n") + 1])))
 
 
+def is_done(row: Row, target: Path, arguments: argparse.Namespace) -> bool:
+    """Whether a mesh need not be done again for what is asked now. target: the skeleton's path without ending."""
+    if row.get("options") != options_text(arguments.options):
+        return False
+    if row["status"] != "ok":
+        return not arguments.retry
+    return all(Path(f"{target}.{kind}").is_file() for kind in arguments.formats)
+
+
+def options_text(options: dict[str, Any]) -> str:
+    """Options as they stand in the table."""
+    return json.dumps(options, sort_keys=True)
+
+
 def write_table(table: Path, rows: Iterable[Row]) -> None:
     """Replaces the table, or leaves it as it was, after any error and if the process is killed."""
     part = table.with_suffix(".part")
@@ -231,7 +245,7 @@ def meshes_of(folder: Path, results: Path) -> list[Path]:
 
 
 def check_options(options: dict[str, Any]) -> None:
-    """Ends the program if an option does not exist or is of the wrong kind, before any work."""
+    """Ends the program if an option does not exist, is of the wrong kind or out of its range, before any work."""
     import mcfskel
 
     try:
@@ -264,10 +278,11 @@ def main() -> int:
     from tqdm import tqdm
 
     table = (results / "results.csv").resolve()  # where a link leads to
+    targets = {mesh: results / Path(mesh).relative_to(folder) for mesh in meshes}
     done = {row["mesh"]: row for row in rows_of(table)
-            if row["status"] == "ok" or not arguments.retry}
-    jobs = [(mesh, str(results / Path(mesh).relative_to(folder)), arguments.formats,
-             arguments.options, arguments.timeout) for mesh in meshes if mesh not in done]
+            if row["mesh"] not in targets or is_done(row, targets[row["mesh"]], arguments)}
+    jobs = [(mesh, str(targets[mesh]), arguments.formats, arguments.options, arguments.timeout)
+            for mesh in meshes if mesh not in done]
 
     write_table(table, done.values())
     rows = (run_on_cluster(jobs, arguments.scheduler) if arguments.scheduler
@@ -277,6 +292,7 @@ def main() -> int:
                  disable=None) as bar:  # no bar but on a terminal
         writer = csv.DictWriter(lines, COLUMNS, extrasaction="ignore")
         for row in rows:
+            row["options"] = options_text(arguments.options)
             writer.writerow(row)
             flush_to_disk(lines)  # what is done stays done if this run is interrupted
             done[row["mesh"]] = row

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 WRITTEN = (".swc", ".cg", ".graphml", ".json", ".vtp", ".glb", ".ply")
 #: Of these, what load() reads; .glb is an armature, which has no radius.
 READ = (".swc", ".cg", ".graphml", ".json", ".vtp", ".ply")
+#: The formats that an option of save() is for.
+OPTIONS_OF = {"scale": ".swc", "units": ".swc", "soma": ".swc", "bone_tolerance": ".glb"}
 COMMENT = "mcfskel skeleton 1"
 PLY_TYPES = {"char": "i1", "uchar": "u1", "short": "<i2", "ushort": "<u2", "int": "<i4",
              "uint": "<u4", "float": "<f4", "double": "<f8", "int8": "i1", "uint8": "u1",
@@ -43,8 +45,23 @@ def suffix_of(path: Path, known: tuple[str, ...]) -> str:
     return suffix
 
 
+def path_of(path: Any) -> Path:
+    """A path from what the user gave for one.
+
+    Raises:
+        SkeletonError: It is neither text nor a path.
+    """
+    try:
+        return Path(path)
+    except TypeError:
+        raise SkeletonError(f"path={path!r} is no path of a file.") from None
+
+
 def save(skeleton: Skeleton, path: Path, options: dict[str, Any]) -> None:
     suffix = suffix_of(path, WRITTEN)
+    for option, ending in OPTIONS_OF.items():
+        if options.get(option) is not None and suffix != ending:
+            raise SkeletonError(f"'{path}': {option} is for {ending} only.")
     if len(skeleton.faces) and suffix == ".ply":
         return write_sheets(skeleton, path)
     if len(skeleton.faces) and not len(skeleton.edges):

@@ -9,12 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from . import _sections
+from ._run import SkeletonError
 
 if TYPE_CHECKING:
     from ._skeleton import Skeleton
 
 
 def branch_measures(skeleton: Skeleton, sections: int) -> dict[str, np.ndarray]:
+    if not isinstance(sections, (int, np.integer)) or isinstance(sections, bool) or sections < 0:
+        raise SkeletonError(f"sections={sections!r} is no whole number of at least 0.")
     rows = [_measures(skeleton, branch) for branch in skeleton.branches]
     names = ("first", "last", "length", "chord", "tortuosity", "curvature", "torsion", "radius_min",
              "radius_mean", "radius_max", "significance")

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import ctypes
+import math
 import os
 import re
 import threading
@@ -20,6 +21,8 @@ from . import _plugin
 Length = Union[float, str, pymeshlab.PercentageValue, pymeshlab.PureValue]
 #: The options that are lengths: pymeshlab tells them from numbers only once a filter runs.
 LENGTHS = ("target_length", "epsilon", "bone_tolerance")
+#: The options that are one of several: pymeshlab holds them as numbers.
+CHOICES = ("pole_method", "preset", "repair", "soma", "units")
 INT_MAX = np.iinfo(np.int32).max
 
 
@@ -50,32 +53,16 @@ def filter_options(filter_name: str, options: dict[str, Any],
             for name, value in options.items() if value is not None}
 
 
-def check_choices(layers: pymeshlab.MeshSet, name: str, options: dict[str, Any]) -> None:
-    """Checks choices by their names, which pymeshlab does only once the filter runs.
-
-    Args:
-        layers: A document that the filter refuses after that, such as one without faces.
-
-    Raises:
-        SkeletonError: There is no such choice; the text names those there are.
-    """
-    for option, value in options.items():
-        if isinstance(value, str):
-            try:
-                layers.apply_filter(name, **{option: value})
-            except Exception as error:
-                if text := _no_choice(reason(error), {option: value}):
-                    raise SkeletonError(text) from None
-
-
 def _no_choice(text: str, options: dict[str, Any]) -> str | None:
     """pymeshlab's error of a choice that does not exist, with the option's name; None if it is another."""
-    found = re.match(r"Enum '(.*)' not found\. Possible values are (.*)", text)
-    if found is None:
-        return None
-    name = next((name for name, value in options.items() if value == found[1]), "")
-    choices = ", ".join(re.findall(r"'[^']*'", found[2]))
-    return f"{name}={found[1]!r} is none of {choices}."
+    choices = {value: name for name, value in options.items() if name in CHOICES}
+    if found := re.match(r"Enum '(.*)' not found\. Possible values are (.*)", text):
+        names = ", ".join(re.findall(r"'[^']*'", found[2]))
+        return f"{choices.get(found[1], '')}={found[1]!r} is none of {names}."
+    if found := re.match(r"Enum (-?\d+) not valid\. Must be a value between 0 and (\d+)", text):
+        # The number that it says is that of the choices.
+        return f"{choices.get(int(found[1]), '')}={found[1]} is none of the choices, 0 to {int(found[2]) - 1}."
+    return None
 
 
 def _option(name: str, value: Any, default: Any) -> Any:
@@ -87,13 +74,14 @@ def _option(name: str, value: Any, default: Any) -> Any:
         raise SkeletonError(f"{name} is no length: write a {_kind(default)}, not {value!r}.")
     if name in LENGTHS:
         return _length(name, value)
+    if name in CHOICES and isinstance(value, str):
+        return value
     if isinstance(default, bool):
         if isinstance(value, bool) or value in (0, 1):
             return bool(value)
     elif isinstance(default, int):
-        if isinstance(value, str):
-            return value  # a choice by its name; see check_choices()
-        if isinstance(value, (int, float)) and value == int(value) and not isinstance(value, bool):
+        if (isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
+                and value == int(value)):
             if abs(value) > INT_MAX:
                 raise SkeletonError(f"{name}={value!r} is too large.")
             return int(value)
@@ -116,9 +104,13 @@ def _kind(default: Any) -> str:
 def _length(name: str, value: Any) -> Any:
     if isinstance(value, str):
         try:
-            return pymeshlab.PercentageValue(float(value.strip().removesuffix("%")))
+            percent = float(value.strip().removesuffix("%"))
         except ValueError:
             pass
+        else:
+            if not 0 <= percent <= 100:
+                raise SkeletonError(f"{name}={value!r} is not between 0% and 100%.")
+            return pymeshlab.PercentageValue(percent)
     elif isinstance(value, (int, float)) and not isinstance(value, bool):
         return pymeshlab.PureValue(float(value))
     raise SkeletonError(f"{name}={value!r} is no length: write 0.01 (mesh units) or '0.2%' (of the "

@@ -16,7 +16,7 @@ import numpy.typing as npt
 import pymeshlab
 
 from . import _branches, _convert, _files, _measures, _picture, _plot
-from ._run import (INT_MAX, Length, SkeletonError, SkeletonWarning, apply, check_choices, filter_options,
+from ._run import (INT_MAX, Length, SkeletonError, SkeletonWarning, apply, filter_options,
                    open_mesh)
 from ._volumes import VOLUME_FILES, point_triangles, read_volume, volume_of, voxel_surface
 
@@ -212,7 +212,7 @@ class Skeleton:
         Raises:
             SkeletonError: The name ends otherwise, an option is wrong, or the file cannot be written.
         """
-        _files.save(self, Path(path), options)
+        _files.save(self, _files.path_of(path), options)
 
 
 def skeletonize(vertices: Any, faces: npt.ArrayLike | None = None, *,
@@ -246,13 +246,14 @@ def skeletonize(vertices: Any, faces: npt.ArrayLike | None = None, *,
             not exist or is out of its range.
 
     Warns:
-        SkeletonWarning: The contraction has not converged within ``max_iterations``.
+        SkeletonWarning: The contraction has not converged within ``max_iterations``, or components could
+            not be refined.
     """
     layers = _document(vertices, faces, normals, spacing, level)
     surface = Surface(layers.current_mesh().vertex_matrix(), layers.current_mesh().face_matrix())
-    options = filter_options("skeletonize()", options | {"target_length": target_length,
-                                                         "epsilon": epsilon},
-                             layers.filter_parameter_values(FILTER))
+    defaults = layers.filter_parameter_values(FILTER)
+    options = filter_options("skeletonize()", options | {"target_length": target_length, "epsilon": epsilon},
+                             defaults)
     if not len(surface.faces):
         raise SkeletonError("There are no faces: faces is empty, or the file is one of points without normals.")
     mesh = layers.current_mesh_id()
@@ -261,19 +262,34 @@ def skeletonize(vertices: Any, faces: npt.ArrayLike | None = None, *,
         warnings.warn(f"The contraction has not converged within max_iterations="
                       f"{int(results['iterations'])}: raise max_iterations, or expect a skeleton that "
                       "is off the middle.", SkeletonWarning, stacklevel=2)
+    if results["refined"] < 1 and _is_to_be_refined(defaults | options):
+        warnings.warn(f"{1 - results['refined']:.0%} of the components are not refined: their curves are those of "
+                      "the flow, which may be off the middle, and partly outside where the surface crosses itself "
+                      "or is very thin.", SkeletonWarning, stacklevel=2)
     return _from_layer(layers.current_mesh(), layers.mesh(mesh), results, surface)
 
 
+def _is_to_be_refined(values: dict[str, Any]) -> bool:
+    return (values["refine"] and not values["keep_sheets"] and not values["fix_selected"]
+            and values["preset"] not in ("paper", 1))
+
+
 def check_options(**options: Any) -> None:
-    """Checks options of ``skeletonize()`` before there is a mesh: their names, kinds and choices.
+    """Checks options of ``skeletonize()`` before there is a mesh: their names, kinds, choices and ranges.
+
+    How long a length in mesh units may be depends on the mesh, and whether vertices are selected, too.
 
     Raises:
-        SkeletonError: One does not exist, or its value is of the wrong kind; the text names it.
+        SkeletonError: One does not exist, or its value is of the wrong kind or out of its range; the text
+            names it.
     """
     layers = pymeshlab.MeshSet()
-    layers.add_mesh(pymeshlab.Mesh(np.zeros((1, 3))), "none")  # defaults are those of some layer
+    layers.create_octahedron()
     values = filter_options("skeletonize()", options, layers.filter_parameter_values(FILTER))
-    check_choices(layers, FILTER, values)
+    of_the_mesh = {name for name, value in values.items() if isinstance(value, pymeshlab.PureValue)}
+    values = {name: value for name, value in values.items() if name not in of_the_mesh | {"fix_selected"}}
+    # The filter checks them before it begins; an octahedron as it is takes no time.
+    apply(layers, FILTER, values | {"resample": False, "refine": False})
 
 
 def load(path: str | os.PathLike[str]) -> Skeleton:
@@ -285,7 +301,7 @@ def load(path: str | os.PathLike[str]) -> Skeleton:
     Raises:
         SkeletonError: The file cannot be read; the text says where it is wrong.
     """
-    nodes, edges, radius, correspondence, faces, significance, bridges = _files.load(Path(path))
+    nodes, edges, radius, correspondence, faces, significance, bridges = _files.load(_files.path_of(path))
     return Skeleton(nodes, edges, radius, correspondence, {}, faces, None, significance, bridges)
 
 

@@ -105,6 +105,8 @@ def test_subfolders_and_names_that_meet(folder, environment):
 @pytest.mark.parametrize("arguments, words", [
     (["--option", "foo=1"], "There is no option foo"),
     (["--option", "w_l=thin"], "w_l='thin' is no number"),
+    (["--option", "w_m=-1"], "Parameter w_m must be at least 0."),
+    (["--option", "target_length=-1%"], "target_length='-1%' is not between 0% and 100%"),
     (["--option", "repair=all"], "repair='all' is none of 'auto', 'mend', 'off'"),
     (["--option", "w_l"], "expected NAME=VALUE"),
     (["--formats", "xyz"], "'vtp'"),
@@ -145,6 +147,20 @@ def test_goes_on_where_it_stopped(folder, environment):
     assert run(folder, env=environment).returncode == 1
     assert run(folder, "--retry", env=environment).returncode == 0
     assert table(folder)["flat"]["status"] == "ok"
+
+
+def test_other_formats_and_options_are_done(folder, environment):
+    for name in ["flat", "animal450"]:
+        (folder / f"{name}.off").unlink()
+    run(folder, env=environment)
+    before = table(folder)
+    swc = folder.parent / "out" / "capsule.off.swc"
+    assert not swc.exists()
+    run(folder, "--formats", "json", "swc", env=environment)
+    assert swc.is_file()
+    assert table(folder)["capsule"]["skeleton_vertices"] == before["capsule"]["skeleton_vertices"]
+    run(folder, "--option", "refine=false", env=environment)
+    assert table(folder)["capsule"]["skeleton_vertices"] != before["capsule"]["skeleton_vertices"]
 
 
 @pytest.mark.parametrize("way, status", [(signal.SIGINT, 130), (signal.SIGKILL, -signal.SIGKILL)])

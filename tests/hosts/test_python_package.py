@@ -425,6 +425,22 @@ def test_a_contraction_that_is_cut_short_warns(run):
     assert "not converged within max_iterations=2" in answer[2] and answer[3] == "SkeletonWarning"
 
 
+def test_components_that_are_not_refined_are_told(run):
+    answer = run("""
+        import mcfskel, warnings
+        apply = mcfskel._skeleton.apply
+        mcfskel._skeleton.apply = lambda *arguments: apply(*arguments) | {"refined": 0.5}
+        answer = []
+        for options in [{}, {"refine": False}, {"keep_sheets": True}, {"preset": "paper"}]:
+            with warnings.catch_warnings(record=True) as caught:
+                warnings.simplefilter("always")
+                mcfskel.skeletonize(MESHES + "/torus.off", target_length="3%", **options)
+            answer.append([str(warning.message) for warning in caught])
+    """)
+    assert len(answer[0]) == 1 and "50% of the components are not refined" in answer[0][0]
+    assert answer[1:] == [[], [], []], "where no refinement was asked for"
+
+
 def test_save_and_load(run, tmp_path):
     answer = run("""
         import mcfskel, networkx, pickle, trimesh, warnings
@@ -474,11 +490,21 @@ ERRORS = {
     "mesh.vertices, mesh.faces[:-1], repair='off'": "Close Holes",
     "mesh, epsilom=0.2": "no option epsilom",
     "mesh, epsilon='much'": "epsilon='much' is no length",
+    "mesh, epsilon='-1%'": "epsilon='-1%' is not between 0% and 100%",
+    "mesh, epsilon='150%'": "epsilon='150%' is not between 0% and 100%",
+    "mesh, epsilon=-1": "Parameter epsilon must be between",
+    "mesh, w_h=float('nan')": "Parameter w_h must be",
     "mesh, w_l='a'": "w_l='a' is no number",
     "mesh, resample='no'": "resample='no' is no truth value",
     "mesh, max_iterations=2.5": "max_iterations=2.5 is no whole number",
     "mesh, max_iterations=2**40": "max_iterations=1099511627776 is too large",
+    "mesh, max_iterations='x'": "max_iterations='x' is no whole number",
+    "mesh, max_iterations=float('nan')": "max_iterations=nan is no whole number",
+    "mesh, max_iterations=float('inf')": "max_iterations=inf is no whole number",
     "mesh, pole_method='x'": "pole_method='x' is none of 'voronoi', 'balls'.",
+    "mesh, pole_method=-1": "pole_method=-1 is none of the choices, 0 to 1.",
+    "mesh, repair=7": "repair=7 is none of the choices, 0 to 2.",
+    "mesh, preset='old'": "preset='old' is none of",
     "mesh, w_m=-1": "w_m",
     "mesh.vertices[:, :2], mesh.faces": "vertices must have the shape (n, 3)",
     "mesh.vertices, mesh.faces + 1": "not one of the",
@@ -493,6 +519,12 @@ ERRORS = {
     "'text.ply'": "'text.ply' cannot be read: Header not found",
     "'text.xyzw'": "does not end like a mesh's: .off, .ply",
     "'mesh.off', mesh.faces": "faces must not be given",
+}
+SAVED = {
+    "'x.json', scale=2": "'x.json': scale is for .swc only",
+    "'x.glb', bone_tolerance='-1%'": "bone_tolerance='-1%' is not between",
+    "5": "path=5 is no path",
+    "None": "path=None is no path",
 }
 FILES = {
     "bad.swc": ("1 0 0 0 0 1 -1\n2 0 x 0 0 1 1\n", "Line 2"),
@@ -517,11 +549,14 @@ def test_errors_are_one_sentence_with_the_cure(run, tmp_path):
         (tmp_path / name).write_text("not a mesh")
     (tmp_path / "text.xyzw").write_text("not a mesh")
     calls = [f"mcfskel.skeletonize({arguments})" for arguments in ERRORS]
-    calls += [f"mcfskel.load({name!r})" for name in FILES]
+    calls += [f"mcfskel.load({name!r})" for name in [*FILES, 5]]
+    calls += [f"skeleton.save({arguments})" for arguments in SAVED]
+    calls += ["skeleton.branch_measures(sections='a')"]
     answer = run(f"""
         import mcfskel, os, trimesh
         mesh = trimesh.load(MESHES + "/torus.off", process=False)
         here = os.getcwd()
+        skeleton = mcfskel.skeletonize(mesh, target_length="3%")
         answer = []
         for call in {calls}:
             try:
@@ -531,7 +566,8 @@ def test_errors_are_one_sentence_with_the_cure(run, tmp_path):
                 answer.append(str(error))
         answer += [os.getcwd() == here, len(mcfskel.skeletonize(mesh, target_length="1.5%").nodes)]
     """)
-    words = [*ERRORS.values(), *(word for _, word in FILES.values())]
+    words = [*ERRORS.values(), *(word for _, word in FILES.values()), "path=5 is no path", *SAVED.values(),
+             "sections='a' is no whole number"]
     for call, text, word in zip(calls, answer, words):
         assert word in text and "\n" not in text, (call, text, word)
     assert answer[-2] is True
