@@ -29,14 +29,43 @@ END
 	;;
 esac
 
-need_packages libgtest-dev
+missing=()
+
+# with_python VARIABLE WHAT FILE [PYTHON]: an environment as of python_env() for the tests that ask other programs;
+# where it cannot be had the variable stays unset, and those are skipped.
+with_python() {
+	local variable="$1" what="$2" place
+	shift 2
+	# A program of its own: in the condition of an if, errors in a function would go unseen.
+	if place="$(bash -euo pipefail -c '. "$1/common.sh"; . "$1/python_env.sh"; python_env "${@:2}"' - \
+		"$ROOT/scripts/lib" "$@")"; then
+		export "$variable=$place"
+	else
+		missing+=("$what SKIPPED: could not be set up; see above")
+	fi
+}
+
+# newer_python: a Python of 3.12 or newer, if there is one; VMTK needs it.
+newer_python() {
+	local python
+	for python in python3.12 python3.13 "${PYENV_ROOT:-$HOME/.pyenv}"/versions/3.1[23]*/bin/python3; do
+		if "$python" --version >/dev/null 2>&1; then
+			echo "$python"
+			return
+		fi
+	done
+	echo python3.12 # which says that there is none
+}
+
+# Besides GoogleTest what Blender's module expects from the system.
+need_packages libgtest-dev libsm6 libxext6 libxfixes3 libxi6 libxkbcommon0 libxrender1
 python="$(python_env)"
 build_host pymeshlab -DMCFSKEL_TESTS=ON -DMCFSKEL_PYTHON="$python" >&2
 folder="$ROOT/build/pymeshlab"
 read -r -a hosts <<<"${MCFSKEL_TEST_HOSTS-${TEST_HOSTS[*]}}"
 tested=(pymeshlab)
 for host in "${hosts[@]}"; do
-	# A program of its own: in the condition of an if, errors in a function would go unseen.
+	# A program of its own, as above.
 	if place="$("$ROOT/scripts/get_host.sh" "$host")"; then
 		variable="$(tr a-z.- A-Z__ <<<"$host")"
 		more=()
@@ -47,6 +76,8 @@ for host in "${hosts[@]}"; do
 		tested+=("$host")
 	fi
 done
+with_python MCFSKEL_READERS_PYTHON "navis, VTK, meshio, Blender" requirements-readers.txt
+with_python MCFSKEL_VMTK_PYTHON VMTK requirements-vmtk.txt "$(newer_python)"
 rm -rf "$folder/pytest" "$folder/ctest.xml"
 say "testing"
 status=0
@@ -59,4 +90,5 @@ for host in "${TEST_HOSTS[@]}"; do
 	[[ " ${hosts[*]} " == *" $host "* ]] || reason="is not in MCFSKEL_TEST_HOSTS"
 	[[ " ${tested[*]} " == *" $host "* ]] || echo "HOST SKIPPED: $host $reason"
 done
+[ "${#missing[@]}" = 0 ] || printf '%s\n' "${missing[@]}"
 exit "$status"

@@ -10,25 +10,26 @@
 PYMESHLAB_PACKAGES=(libgl1 libopengl0 libegl1 libglib2.0-0 libfontconfig1 libfreetype6
 	libx11-6 libxcb1 zlib1g)
 
-# python_env [FILE]: prints the path of the interpreter of an environment with the requirements in that
-# file of scripts/ (default: requirements.txt), making the environment if need be.
+# python_env [FILE [PYTHON]]: prints the path of the interpreter of an environment with the requirements in
+# that file of scripts/ (default: requirements.txt), making the environment if need be, with PYTHON (default:
+# the system's).
 python_env() {
 	need_packages python3 python3-venv "${PYMESHLAB_PACKAGES[@]}" >&2
 	local requirements="$ROOT/scripts/${1:-requirements.txt}" wanted folder
 	# A changed list of requirements is a new environment; the old one may still serve another checkout.
 	wanted="$(sha256sum "$requirements" | cut -c 1-12)"
 	folder="$CACHE/python-$wanted"
-	with_lock "python-$wanted" make_python_env "$folder" "$requirements" >&2
+	with_lock "python-$wanted" make_python_env "$folder" "$requirements" "${2:-/usr/bin/python3}" >&2
 	echo "$folder/bin/python"
 }
 
 make_python_env() {
-	local folder="$1" requirements="$2"
+	local folder="$1" requirements="$2" python="$3"
 	[ ! -f "$folder/complete" ] || return 0
-	say "preparing Python with pymeshlab"
+	say "preparing Python with $(basename "$requirements")"
 	rm -rf "$folder"
 	# A venv knows its own path, so it cannot be made elsewhere and moved: the mark comes last instead.
-	/usr/bin/python3 -m venv "$folder"
+	"$python" -m venv "$folder" || die "no environment by $python"
 	quietly "$folder/bin/python" -m pip install --disable-pip-version-check \
 		-r "$requirements" || die "could not install $requirements"
 	touch "$folder/complete"
