@@ -245,14 +245,15 @@ TEST(MakeSolid, SaysThatADrawingIsFlat)
 				drawing.triangles.push_back({11 * i + j, 11 * i + j + 11, 11 * i + j + 12});
 	for (const shapes::Soup& soup :
 		{drawing, shapes::Soup {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}})
-		try {
-			solid(soup);
-			ADD_FAILURE() << "a drawing bounds no solid";
-		}
-		catch (const InvalidInput& error) {
-			EXPECT_EQ(error.defect(), Defect::OpenSheet);
-			EXPECT_NE(std::string(error.what()).find("The mesh is flat"), std::string::npos);
-		}
+		for (const Repair repair : {Repair::Auto, Repair::Mend, Repair::Off})
+			try {
+				solid(soup, repair);
+				ADD_FAILURE() << "a drawing bounds no solid";
+			}
+			catch (const InvalidInput& error) {
+				EXPECT_EQ(error.defect(), Defect::OpenSheet);
+				EXPECT_NE(std::string(error.what()).find("The mesh is flat"), std::string::npos);
+			}
 }
 
 TEST(MakeSolid, RefusesWhatHasNoFacesOrVolume)

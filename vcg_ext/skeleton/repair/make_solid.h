@@ -380,7 +380,11 @@ public:
 				points, triangles, repair == Repair::Off ? progress : progress.part(0, 0.3));
 		}
 		catch (const InvalidInput& found) {
-			if (repair == Repair::Off || !isMended(found.defect()))
+			if (!isMended(found.defect()))
+				throw;
+			if (found.defect() != Defect::NotFinite && isFlat(points, triangles))
+				refuse(found, true);
+			if (repair == Repair::Off)
 				throw;
 			error = found;
 		}
