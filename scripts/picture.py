@@ -66,7 +66,8 @@ def choose_view(vertices: np.ndarray, up: str, turn: float, tilt: float, pixels:
     low, high = local.min(axis=0), local.max(axis=0)
     extent = np.maximum(high - low, 1e-300)[:2]
     scale = 0.92 * pixels / extent.max()
-    size = tuple(int(s) for s in np.ceil(extent * scale / 0.92) + 0.04 * pixels)
+    # Long thin shapes get room above and below, for the legend.
+    size = tuple(int(s) for s in np.maximum(np.ceil(extent * scale / 0.92) + 0.04 * pixels, pixels / 3))
     return View(axes, (low + high) / 2 @ axes, scale, size)
 
 
@@ -198,9 +199,12 @@ def draw(vertices: np.ndarray, faces: np.ndarray, nodes: np.ndarray, edges: np.n
     order = np.argsort(at[edges, 2].mean(axis=1), kind="stable")  # far edges first
     edges = edges[order]
     segments = at[edges][:, :, :2]
-    thick = 4.2 * line_width * pixels / 1200
+    # A line that is wider than the shape would hide it: at most a third of its thickest place.
+    thickest = 2 * float(radius.max(initial=0)) * view.scale / oversampling * 72 / dpi
+    thick = min(4.2 * line_width * pixels / 1200, max(thickest / 3, 0.8))
+    rim = min(2.2, thick)
     # Each edge with its own outline, so that a near branch visibly passes over a far one.
-    outline = LineCollection(segments, colors="#1b2430", linewidths=thick + 2.2, capstyle="round")
+    outline = LineCollection(segments, colors="#1b2430", linewidths=thick + rim, capstyle="round")
     line = LineCollection(segments, linewidths=thick, capstyle="round")
     if colour == "radius":
         line.set_array(radius[edges].mean(axis=1))

@@ -259,12 +259,12 @@ class Window:
             self.call("xdotool", "mousemove", str(x + right * step // 10), str(y + down * step // 10))
         self.call("xdotool", "mouseup", "1")
 
-    def open_filter(self, name: str) -> Widget:
-        """Searches for a filter and opens it; returns its dialog."""
+    def open_filter(self, name: str, words: str = "") -> Widget:
+        """Searches for a filter by its name, or by other words, and opens what is found first; returns its dialog."""
         for patience in (8, 16, 32, 64):
             self.call("xdotool", "windowfocus", self.main)
             self.keys("ctrl+f", "ctrl+a")
-            self.write(name)
+            self.write(words or name)
             self.keys("Down", "Return")
             try:
                 return self.wait(lambda: self.dialog(name), f"the dialog of {name}", patience)

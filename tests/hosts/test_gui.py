@@ -143,7 +143,7 @@ def test_from_the_search_to_the_skeleton(window: Window) -> None:
     name = PREFIX + "Full Skeletonize"
     before = viewport(window)
     surface = surface_pixels(before)
-    dialog = window.open_filter(name)
+    dialog = window.open_filter(name, "centerline")
     assert dialog.name == name
     # The dialog says what the filter does, each parameter what it means, lengths are percentages.
     shown = window.shown("frame", name)
@@ -231,6 +231,19 @@ def test_four_steps_and_the_curve(window: Window) -> None:
     window.open_filter(PREFIX + "Contraction Step")
     apply(window, "Contraction Step")
     assert visible(window, window.layers()) == ["capsule_meso_5"]
+
+
+@pytest.mark.parametrize("window", ["hand"], indirect=True)
+def test_what_is_inside_out_of_a_stage_is_lit(window: Window) -> None:
+    before = viewport(window)
+    window.open_filter(PREFIX + "Contraction Step")
+    window.fill(PREFIX + "Contraction Step", "Steps", "6")
+    apply(window, "Contraction Step")
+    assert "parts are inside out" in window.log()
+    picture = viewport(window)
+    stage = new_pixels(before, picture)
+    assert stage.sum() > 2000
+    assert (picture.max(axis=2)[stage] < 0.3).mean() < 0.02, "nothing is black"
 
 
 def error_box(window: Window) -> list[Widget]:
