@@ -65,6 +65,10 @@ class TestMemory:
             def job():
                 opened().apply_filter("generate_curve_skeleton_mcf", keep_stages=2, **SHORT)
         """,
+        "resampled and refined": """
+            def job():
+                opened().apply_filter("generate_curve_skeleton_mcf", target_length=pymeshlab.PercentageValue(8))
+        """,
         "one document, cleared": """
             layers = pymeshlab.MeshSet()
             def job():

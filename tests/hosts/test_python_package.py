@@ -207,13 +207,33 @@ def test_other_packages(run):
         import mcfskel, trimesh, pyvista
         s = mcfskel.skeletonize(MESHES + "/plate3.off", target_length="1.5%", refine=False)
         lines, path = s.to_pyvista(), s.to_trimesh()
+        scene, plotter = s.plot(backend="trimesh"), s.plot(backend="pyvista")
         answer = {"length": float(s.lengths().sum()), "branches": len(s.branches),
+                  "shown": [sorted(scene.geometry), len(plotter.actors), float(np.abs(scene.bounds - np.array(
+                      [s.surface.vertices.min(axis=0), s.surface.vertices.max(axis=0)])).max())],
                   "pyvista": [lines.n_lines, float(lines.compute_cell_sizes()["Length"].sum()),
                               bool((lines["radius"] == s.radius).all())],
                   "trimesh": [len(path.entities), float(path.length)]}
     """)
     assert answer["pyvista"] == [answer["branches"], pytest.approx(answer["length"]), True]
     assert answer["trimesh"] == [answer["branches"], pytest.approx(answer["length"])]
+    assert answer["shown"][0] == ["skeleton", "surface"] and answer["shown"][1] >= 2
+    assert answer["shown"][2] == pytest.approx(0, abs=1e-6)
+
+
+def test_a_neuron_of_navis_has_all_nodes_and_its_units(run):
+    """navis in the place of which a stand-in reads the file: the real reader's part is in test_losses.py."""
+    answer = run("""
+        import mcfskel, sys, types
+        def read_swc(path):
+            rows = [line.split() for line in open(path) if not line.startswith("#")]
+            return types.SimpleNamespace(count=len(rows), units="1 dimensionless")
+        sys.modules["navis"] = types.SimpleNamespace(read_swc=read_swc)
+        s = mcfskel.skeletonize(MESHES + "/capsule.off", target_length="3%")
+        neuron = s.to_navis(units="nm")
+        answer = [neuron.count, len(s.nodes), neuron.units, s.to_navis().units]
+    """)
+    assert answer[0] == answer[1] and answer[2:] == ["nm", "1 dimensionless"]
 
 
 def test_vtk_reads_vtp(run):
