@@ -128,7 +128,8 @@ struct Parameters
 		require(sheetThreshold >= 0 && sheetThreshold <= 1, "sheet_threshold", "between 0 and 1");
 		require(targetLength >= 0 && targetLength <= 0.5, "target_length",
 			"between 0 and 50 % of the diagonal");
-		require(relativeLength > 0 && relativeLength <= 2, "relative_length", "between 0 and 2");
+		require(relativeLength > 0 && relativeLength <= 2, "relative_length",
+			"greater than 0 and at most 2");
 		require(detail >= 0 && detail <= 1, "detail", "between 0 and 1");
 		require(
 			minComponent >= 0 && minComponent < 1, "min_component", "at least 0 and less than 1");
