@@ -1,9 +1,10 @@
 # SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""scripts/skeletonize.sh: the files it writes, what is in them, and how it fails."""
+"""scripts/skeletonize.sh: the files it writes, what is in them, and how it fails; --help of all commands."""
 
 import os
 import pty
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -128,6 +129,23 @@ class TestOptions:
         for option in ["--w-l", "--epsilon", "--no-resample", "--keep-stages", "--formats",
                        "--no-picture"]:
             assert option in run.stdout
+
+
+@pytest.mark.parametrize("command", sorted((ROOT / "scripts").glob("*.sh")), ids=lambda path: path.name)
+def test_help_is_answered_before_anything_is_prepared(command, tmp_path):
+    run = subprocess.run([str(command), "--help"], capture_output=True, text=True, timeout=60,
+                         env=os.environ | {"MCFSKEL_CACHE": str(tmp_path / "cache")})
+    assert run.returncode == 0 and f"usage: scripts/{command.name}" in run.stdout
+    assert not run.stderr and not (tmp_path / "cache").exists()
+
+
+def test_help_of_the_bench_names_every_study():
+    studies = (ROOT / "scripts" / "bench" / "studies.py").read_text()
+    names = re.findall(r'"([a-z ]+)": \w+[,}]', studies[studies.index("STUDIES = {"):])
+    run = subprocess.run([str(ROOT / "scripts" / "bench.sh"), "--help"], capture_output=True, text=True)
+    assert len(names) >= 8
+    text = " ".join(run.stdout.split())
+    assert "all studies, or " + ", ".join(name.replace(" ", "-") for name in names) in text
 
 
 def test_progress_goes_to_the_terminal_and_results_to_the_output(tmp_path):
