@@ -7,9 +7,16 @@ Importing this package loads the plugin into pymeshlab and makes its filters met
 :class:`Skeleton` in one call.
 """
 
+from importlib.metadata import PackageNotFoundError, version
+
 from ._plugin import FILTERS, PLUGIN
 from ._run import SkeletonError, SkeletonWarning
 from ._skeleton import Skeleton, Surface, check_options, load, skeletonize
 
 __all__ = ["FILTERS", "PLUGIN", "Skeleton", "SkeletonError", "SkeletonWarning", "Surface",
            "check_options", "load", "skeletonize"]
+
+try:
+    __version__ = version("mcfskel")
+except PackageNotFoundError:  # not installed: imported from the sources
+    __version__ = "0+unknown"
