@@ -12,13 +12,16 @@ set -euo pipefail
 # shellcheck source=lib/bench.sh
 . "$ROOT/scripts/lib/bench.sh"
 
-need_packages "${BENCH_PACKAGES[@]}"
-python="$(bench_python)"
 for argument in "$@"; do
 	case "$argument" in
-	-h | --help) exec "$python" "$ROOT/scripts/bench/bench.py" --help ;;
+	-h | --help)
+		need_packages python3
+		exec /usr/bin/python3 "$ROOT/scripts/bench/bench_options.py" --help
+		;;
 	esac
 done
+need_packages "${BENCH_PACKAGES[@]}"
+python="$(bench_python)"
 host=()
 for argument in "$@"; do
 	# Also as in --only host and --only kept.

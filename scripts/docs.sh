@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
-# The pages and the library's reference as a site in out/site; any warning is an error.
+# The pages and the references of C++ and Python as a site in out/site; any warning is an error.
 
 set -euo pipefail
 # shellcheck source=lib/common.sh
@@ -16,8 +16,8 @@ case "${1:-}" in
 	cat <<END
 usage: scripts/docs.sh
 
-Builds out/site: the pages by MkDocs, whose links are checked, and under reference/ the library's headers by
-Doxygen. Installs both if need be. Open out/site/index.html.
+Builds out/site: the pages by MkDocs, whose links are checked, with the Python package by mkdocstrings, and under
+reference/ the library's headers by Doxygen. Installs them if need be. Open out/site/index.html.
 END
 	exit 0
 	;;
@@ -47,4 +47,15 @@ git ls-files -z -- '*.md' docs examples vcg_ext filter_mcfskel/CMakeLists.txt me
 mv "$out/reference/html" "$pages/reference"
 quietly "$python" -m mkdocs build --strict --config-file docs/mkdocs.yml || die "MkDocs: see above"
 rm -rf "$pages" "$out/reference"
+names="$("$python" - <<'END'
+import ast
+for line in ast.parse(open("python/mcfskel/__init__.py").read()).body:
+    if isinstance(line, ast.Assign) and line.targets[0].id == "__all__":
+        print(*ast.literal_eval(line.value), "__version__")
+END
+)"
+for name in ${names:?}; do
+	grep -q "id=\"mcfskel\.$name\"" "$out/site/docs/python_reference.html" ||
+		die "$name is not in the Python reference: it has no docstring, or is not in __all__ of mcfskel"
+done
 echo "$out/site/index.html"

@@ -3,6 +3,7 @@
 """The project's own PLY files. MeshLab and its Python module write neither edges nor attributes."""
 
 import io
+import json
 from pathlib import Path
 
 import numpy as np
@@ -10,10 +11,13 @@ from plyfile import PlyData, PlyElement
 
 from whole_file import write_whole
 
+MADE_OF = "made of "
+LONGEST_COMMENT = 400  # MeshLab reads lines of up to 510 characters
 
-def _write(path: Path, elements: list[PlyElement]) -> None:
+
+def _write(path: Path, elements: list[PlyElement], *comments: str) -> None:
     content = io.BytesIO()
-    PlyData(elements, byte_order="<").write(content)
+    PlyData(elements, byte_order="<", comments=list(comments)).write(content)
     write_whole(path, content.getvalue())
 
 
@@ -26,16 +30,31 @@ def _vertices(positions: np.ndarray, attributes: dict[str, np.ndarray]) -> PlyEl
     return PlyElement.describe(table, "vertex")
 
 
-def write_skeleton(path: Path, nodes: np.ndarray, edges: np.ndarray, radius: np.ndarray) -> None:
+def write_skeleton(path: Path, nodes: np.ndarray, edges: np.ndarray, radius: np.ndarray, mesh: str) -> None:
     """Nodes with their radius, also as the quality that MeshLab shows, and edges by node index.
 
-    MeshLab reads the radius as a float only.
+    MeshLab reads the radius as a float only. The name of the mesh's file is in a comment.
     """
+    comment = MADE_OF + json.dumps(mesh)
     thickness = radius.astype(np.float32)
     table = np.empty(len(edges), dtype=[("vertex1", np.int32), ("vertex2", np.int32)])
     table["vertex1"], table["vertex2"] = edges[:, 0], edges[:, 1]
     _write(path, [_vertices(nodes, {"radius": thickness, "quality": thickness}),
-                  PlyElement.describe(table, "edge")])
+                  PlyElement.describe(table, "edge")], *[comment] * (len(comment) <= LONGEST_COMMENT))
+
+
+def mesh_of_skeleton(path: Path) -> str | None:
+    """The name of the mesh's file in a file that write_skeleton() made; None if it says none, or is not there."""
+    try:
+        with open(path, "rb") as lines:
+            for line in lines:
+                if line.startswith(b"comment " + MADE_OF.encode()):
+                    return json.loads(line.split(b" ", 3)[3])
+                if line.startswith(b"end_header"):
+                    return None
+    except (OSError, ValueError):
+        pass
+    return None
 
 
 def write_surface(path: Path, vertices: np.ndarray, faces: np.ndarray,

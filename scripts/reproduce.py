@@ -1,12 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes Table 1 and the figures of the paper again, on shapes at hand, and puts them into docs/paper.md.
-
-The program runs as `paper` and as `default`, beside Au et al. 2008; distances are to the skeletons of Dey
-and Sun 2006, and to the exact medial axis. Results are kept in build/reproduce: a run that was interrupted
-goes on where it stopped.
-"""
+"""Makes Table 1 and the figures of the paper again: see reproduce_options.py."""
 
 from __future__ import annotations
 
@@ -35,6 +30,7 @@ from meshes import read_mesh, write_mesh  # noqa: E402
 from meshgen.thin import THIN  # noqa: E402
 from paper_figures import PALE, RED, Mesh, Panel, draw_rows  # noqa: E402
 from quality import Shape, distance_to_medial_axis, measure  # noqa: E402
+from reproduce_options import parse_arguments  # noqa: E402
 from scipy.spatial import cKDTree  # noqa: E402
 from tables import markdown, number  # noqa: E402
 
@@ -507,23 +503,6 @@ def steady_states(work: Work, options: argparse.Namespace) -> str:
 
 
 FIGURES = {1: figure_1, 2: figure_2, 3: figure_3, 5: figure_5, 6: figure_6, 7: figure_7, 8: figure_8}
-
-
-def parse_arguments() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="scripts/reproduce.sh", description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("meshes", nargs="*", type=Path, metavar="MESH",
-                        help="further shapes of Table 1; `elephant` is that of Fig. 5 and 6")
-    parser.add_argument("--quick", action="store_true", help="small meshes, fewer weights, in five minutes")
-    parser.add_argument("--vertices", type=int, metavar="N", help="of the meshes of Table 1 (default: as many as in the paper)")
-    parser.add_argument("--docs", type=Path, metavar="FOLDER",
-                        help="where paper.md is, and the folder paper with the pictures (default: docs; with --quick: "
-                             "the tables are printed, the pictures go to build/reproduce)")
-    parser.add_argument("--program", type=Path, help=argparse.SUPPRESS)
-    options = parser.parse_args()
-    if missing := [str(p) for p in options.meshes if not p.is_file()]:
-        parser.error("no such mesh: " + ", ".join(missing))
-    return options
 
 
 def main() -> int:

@@ -12,12 +12,15 @@ set -euo pipefail
 # shellcheck source=lib/bench.sh
 . "$ROOT/scripts/lib/bench.sh"
 
-need_packages "${BENCH_PACKAGES[@]}"
-python="$(bench_python)"
 for argument in "$@"; do
 	case "$argument" in
-	-h | --help) exec "$python" "$ROOT/scripts/reproduce.py" --help ;;
+	-h | --help)
+		need_packages python3
+		exec /usr/bin/python3 "$ROOT/scripts/reproduce_options.py" --help
+		;;
 	esac
 done
+need_packages "${BENCH_PACKAGES[@]}"
+python="$(bench_python)"
 programs="$(build_bench mcfskel_cli)"
 exec "$python" "$ROOT/scripts/reproduce.py" --program "$programs/mcfskel_cli" "$@"

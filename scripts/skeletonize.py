@@ -11,6 +11,9 @@ from typing import Any
 
 DEFAULT_MESH = Path(__file__).resolve().parent.parent / "meshes" / "animal.off"
 FILTER = "generate_curve_skeleton_mcf"
+INT_MAX = 2**31 - 1  # the filter's numbers
+#: What the log says of a skeleton that is not all that was asked for.
+LESS_THAN_ASKED = ("not refined", "was far outside")
 FORMATS = ("ply", "obj", "swc", "cg", "graphml", "json", "vtp", "glb")
 
 
@@ -27,14 +30,28 @@ def length(text: str) -> tuple[str, float]:
         raise argparse.ArgumentTypeError(f"'{text}' is neither a percentage nor a number") from None
     if not 0 <= value < float("inf"):
         raise argparse.ArgumentTypeError(f"'{text}' is not a length")
+    if kind == "percent" and value > 100:
+        raise argparse.ArgumentTypeError(f"'{text}' is more than 100%, which is the bounding box diagonal")
     return kind, value
+
+
+def whole_number(text: str) -> int:
+    try:
+        value = int(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a whole number") from None
+    if abs(value) > INT_MAX:
+        raise argparse.ArgumentTypeError(f"'{text}' is too large")
+    return value
 
 
 def parse_arguments(arguments: list[str] | None = None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="scripts/skeletonize.sh", description=__doc__, allow_abbrev=False,
         epilog="Lengths are mesh units, or with a % sign percent of the bounding box diagonal. "
-               "What is not given takes the plugin's own default.")
+               "What is not given takes the plugin's own default. Files of the same mesh that are there are "
+               "replaced; where another mesh's begin with the same name, as of y.stl and y.ply, those of the "
+               "second begin with y_ply.")
     parser.add_argument("mesh", nargs="?", type=Path, default=DEFAULT_MESH, metavar="MESH",
                         help="triangle mesh, or points with normals, any format that MeshLab opens; or "
                              f"voxels, .npy, .npz or .nrrd (default: meshes/{DEFAULT_MESH.name})")
@@ -59,7 +76,7 @@ def parse_arguments(arguments: list[str] | None = None) -> argparse.Namespace:
                       help="contract the mesh as it is")
     flow.add_argument("--target-length", type=length, metavar="LENGTH",
                       help="edge length of the resampling (chosen from the mesh)")
-    flow.add_argument("--resample-iterations", type=int, metavar="N", help="rounds of it (5)")
+    flow.add_argument("--resample-iterations", type=whole_number, metavar="N", help="rounds of it (5)")
     flow.add_argument("--no-denoise", dest="denoise", action="store_const", const=False,
                       help="resample without smoothing the noise first")
     flow.add_argument("--repair", choices=["auto", "mend", "off"],
@@ -77,26 +94,43 @@ def parse_arguments(arguments: list[str] | None = None) -> argparse.Namespace:
     flow.add_argument("--detail", type=float, metavar="D",
                       help="how small branches may be, from 0, the trunk alone, to 1, all (0.9)")
     flow.add_argument("--pole-method", choices=["voronoi", "balls"], help="how poles are found")
-    flow.add_argument("--max-iterations", type=int, metavar="N", help="cap of the contraction (500)")
+    flow.add_argument("--max-iterations", type=whole_number, metavar="N", help="cap of the contraction (500)")
     results = parser.add_argument_group("the results")
-    results.add_argument("--keep-stages", type=int, metavar="K",
+    results.add_argument("--keep-stages", type=whole_number, metavar="K",
                          help="also write every K-th stage of the contraction, NAME_meso_K.ply")
     results.add_argument("--formats", nargs="+", choices=FORMATS, default=["ply"], metavar="FORMAT",
                          help=f"formats of the skeleton: {', '.join(FORMATS)} (ply); obj has lines, glb "
                               "an armature in the surface")
-    results.add_argument("--no-picture", dest="picture", action="store_false", help="draw nothing")
+    results.add_argument("--no-picture", dest="picture", action="store_false", help="draw nothing; the picture takes most of the time")
     results.add_argument("--colour", choices=["radius", "branch"], default="radius",
                          help="what the skeleton's colour means in the picture")
     results.add_argument("--up", choices=["auto", "x", "y", "z"], default="auto",
                          help="the axis that points upwards in the picture")
     results.add_argument("--verbose", action="store_true", help="print the plugin's log")
     parser.add_argument("--plugin", type=Path, help=argparse.SUPPRESS)
+    parser.add_argument("--only-check", action="store_true", help=argparse.SUPPRESS)
     options = parser.parse_args(arguments)
     if options.keep_stages is not None and options.keep_stages < 1:
         parser.error("argument --keep-stages: must be at least 1")
     if options.spacing is not None and len(options.spacing) not in (1, 3):
         parser.error("argument --spacing: one number, or three")
     return options
+
+
+def check_files(options: argparse.Namespace) -> None:
+    """Finds out before the work what cannot be read or written."""
+    if options.mesh.is_dir():
+        raise UserError(f"'{options.mesh}' is a folder, not a mesh: examples/skeletonize_folder.py does "
+                        "folders")
+    if not options.mesh.is_file():
+        raise UserError(f"there is no file '{options.mesh}'")
+    output = options.output.absolute()
+    there = next(folder for folder in [output, *output.parents] if folder.exists())
+    try:
+        with tempfile.TemporaryFile(dir=there):
+            pass
+    except OSError as error:
+        raise UserError(f"nothing can be written into '{options.output}': {error.strerror}") from None
 
 
 def filter_parameters(options: argparse.Namespace) -> dict[str, Any]:
@@ -161,15 +195,6 @@ def run_filter(options: argparse.Namespace) -> tuple[Any, dict[str, float]]:
 
     from host_progress import host_output, terminal
 
-    if options.mesh.is_dir():
-        raise UserError(f"'{options.mesh}' is a folder, not a mesh: examples/skeletonize_folder.py does "
-                        "folders")
-    if not options.mesh.is_file():
-        raise UserError(f"there is no file '{options.mesh}'")
-    output = options.output.absolute()
-    there = next(folder for folder in [output, *output.parents] if folder.exists())
-    with tempfile.TemporaryFile(dir=there):
-        pass  # what cannot be written is found out before the work
     pymeshlab.load_plugin(str(options.plugin))
     layers = pymeshlab.MeshSet(verbose=True)
     messages: list[str] = []
@@ -192,8 +217,10 @@ def run_filter(options: argparse.Namespace) -> tuple[Any, dict[str, float]]:
                 results = layers.apply_filter(FILTER, **parameters)
             except pymeshlab.PyMeshLabException as exception:
                 error = exception
-    if options.verbose or error is None and not results["converged"]:
-        print("\n".join(messages), file=sys.stderr)
+    if not options.verbose and (error is not None or results["converged"]):
+        messages = [text for text in messages if any(words in text for words in LESS_THAN_ASKED)]
+    for text in messages:
+        print(text, file=sys.stderr)
     if error is not None:
         raise UserError(f"{options.mesh}: {reason(str(error))}")
     return layers, results
@@ -247,17 +274,36 @@ def write_obj(path: Path, nodes: Any, edges: Any) -> None:
     write_whole(path, "".join(lines).encode())
 
 
-def write_results(options: argparse.Namespace, layers: Any) -> list[Path]:
-    """Writes every file and returns their names."""
+def name_of_results(mesh: Path, folder: Path) -> str:
+    """What the files of a mesh begin with: y of y.stl; y_stl where those of another mesh begin with y."""
+    from ply_files import mesh_of_skeleton
+
+    name, other = mesh.stem, f"{mesh.stem}_{mesh.suffix[1:]}"
+    skeleton = folder / f"{name}_skeleton.ply"
+    made_of = mesh_of_skeleton(skeleton)
+    if made_of in (None, mesh.name):
+        return name
+    print(f"{skeleton} is of {made_of}: the files of {mesh.name} begin with {other}", file=sys.stderr)
+    return other
+
+
+def write_results(options: argparse.Namespace, layers: Any) -> dict[Path, str]:
+    """Writes every file; returns their names, and for each whether it was "wrote" or "replaced"."""
     import pymeshlab
 
     from host_progress import host_output
     from picture import draw
     from ply_files import write_skeleton, write_surface
 
-    folder, name = options.output, options.mesh.stem
+    folder = options.output
     folder.mkdir(parents=True, exist_ok=True)
-    written = []
+    name = name_of_results(options.mesh, folder)
+    written = {}
+
+    def place(ending: str) -> Path:
+        path = folder / f"{name}{ending}"
+        written[path] = "replaced" if path.exists() else "wrote"
+        return path
 
     skeleton = layer_named(layers, "_skeleton")
     nodes, edges = skeleton.vertex_matrix(), skeleton.edge_matrix()
@@ -266,16 +312,12 @@ def write_results(options: argparse.Namespace, layers: Any) -> list[Path]:
         mesh for mesh in layers if vertex_attribute(mesh, "mcfskel_node") is not None)
     vertices, faces = surface.vertex_matrix(), surface.face_matrix()
 
-    path = folder / f"{name}_skeleton.ply"
-    write_skeleton(path, nodes, edges, radius)
-    written.append(path)
+    write_skeleton(place("_skeleton.ply"), nodes, edges, radius, options.mesh.name)
     if "obj" in options.formats:
-        path = folder / f"{name}_skeleton.obj"
-        write_obj(path, nodes.tolist(), edges)
-        written.append(path)
+        write_obj(place("_skeleton.obj"), nodes.tolist(), edges)
     layers.set_current_mesh(skeleton.id())
     for kind in sorted(set(options.formats) - {"ply", "obj"}):
-        path = folder / f"{name}_skeleton.{kind}"
+        path = place(f"_skeleton.{kind}")
         messages: list[str] = []
         failure: Exception | None = None
         with host_output(lambda percent, what: None, messages.append):
@@ -289,25 +331,19 @@ def write_results(options: argparse.Namespace, layers: Any) -> list[Path]:
         for message in messages:
             if "Warning:" in message:  # a cycle was cut, say
                 print(message[message.index("Warning:"):], file=sys.stderr)
-        written.append(path)
-    path = folder / f"{name}_surface.ply"
-    write_surface(path, vertices, faces, surface_attributes(surface))
-    written.append(path)
+    write_surface(place("_surface.ply"), vertices, faces, surface_attributes(surface))
     if options.keep_stages:
         for mesh in layers:
             base, _, iteration = mesh.label().rpartition("_meso_")
             if base:
-                path = folder / f"{name}_meso_{iteration}.ply"
-                write_surface(path, mesh.vertex_matrix(), mesh.face_matrix(), surface_attributes(mesh))
-                written.append(path)
+                write_surface(place(f"_meso_{iteration}.ply"), mesh.vertex_matrix(), mesh.face_matrix(),
+                              surface_attributes(mesh))
     if options.picture:
-        path = folder / f"{name}.png"
-        draw(vertices, faces, nodes, edges, radius, path, options.colour, options.up)
-        written.append(path)
+        draw(vertices, faces, nodes, edges, radius, place(".png"), options.colour, options.up)
     return written
 
 
-def summary(results: dict[str, float], written: list[Path]) -> str:
+def summary(results: dict[str, float], written: dict[Path, str]) -> str:
     seconds = sum(value for key, value in results.items() if key.startswith("seconds_"))
     ending = "converged" if results["converged"] else "did NOT converge"
     lines = [
@@ -316,12 +352,15 @@ def summary(results: dict[str, float], written: list[Path]) -> str:
         f"{results['components']} components, {results['cycles']} cycles",
         f"contraction: {ending} after {results['iterations']} iterations; {seconds:.2f} s in all",
     ]
-    return "\n".join(lines + [f"wrote {path}" for path in written])
+    return "\n".join(lines + [f"{verb} {path}" for path, verb in written.items()])
 
 
 def main() -> int:
     options = parse_arguments()
     try:
+        check_files(options)
+        if options.only_check:
+            return 0
         layers, results = run_filter(options)
         written = write_results(options, layers)
     except UserError as error:

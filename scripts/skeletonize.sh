@@ -14,14 +14,13 @@ set -euo pipefail
 # shellcheck source=lib/python_env.sh
 . "$ROOT/scripts/lib/python_env.sh"
 
+need_packages python3
 for argument in "$@"; do
 	case "$argument" in
-	-h | --help)
-		need_packages python3
-		exec /usr/bin/python3 "$ROOT/scripts/skeletonize.py" --help
-		;;
+	-h | --help) exec /usr/bin/python3 "$ROOT/scripts/skeletonize.py" --help ;;
 	esac
 done
+/usr/bin/python3 "$ROOT/scripts/skeletonize.py" --only-check "$@"
 plugin="$(build_host pymeshlab)"
 python="$(python_env)"
 exec "$python" "$ROOT/scripts/skeletonize.py" --plugin "$plugin" "$@"

@@ -10,9 +10,8 @@ from pathlib import Path
 
 import pymeshlab
 
-#: The plugin's file: the one in this package, or the one that the environment variable
-#: MCFSKEL_PLUGIN names.
 PLUGIN = Path(os.environ.get("MCFSKEL_PLUGIN") or Path(__file__).with_name("libfilter_mcfskel.so"))
+"""The plugin's file: the one in this package, or the one that the environment variable MCFSKEL_PLUGIN names."""
 
 
 def _load() -> list[str]:
@@ -28,8 +27,8 @@ def _load() -> list[str]:
     return names
 
 
-#: The names of the plugin's filters, each a method of ``pymeshlab.MeshSet`` now.
-FILTERS = _load()
+FILTERS: list[str] = _load()
+"""The names of the plugin's filters, each a method of ``pymeshlab.MeshSet`` now."""
 
 
 def _library() -> ctypes.CDLL | None:

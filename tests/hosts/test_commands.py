@@ -1,18 +1,21 @@
 # SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""scripts/skeletonize.sh: the files it writes, what is in them, and how it fails."""
+"""scripts/skeletonize.sh: the files it writes, what is in them, and how it fails; --help of all commands."""
 
 import os
 import pty
+import re
 import subprocess
 import sys
 from pathlib import Path
 
 import numpy as np
+import pymeshlab
 import pytest
 from plyfile import PlyData
 
-from conftest import MESHES, ROOT, components
+from conftest import MESHES, ROOT, arrays, components, document
+from hostile.primitives import box
 
 sys.path.insert(0, str(ROOT / "scripts"))
 from ply_files import read_skeleton, read_surface  # noqa: E402
@@ -112,6 +115,44 @@ def test_a_built_plugin_is_not_built_again(plugin, tmp_path):
     assert plugin.stat().st_mtime_ns == before
 
 
+class TestFilesThatAreThere:
+    QUICK = ("--no-resample", "--no-picture")
+
+    def test_another_mesh_of_the_same_name_gets_names_of_its_own(self, tmp_path):
+        """y.stl and y.ply, into one folder: neither replaces the other's skeleton."""
+        vertices, faces = arrays("box8")
+        for ending, size in [("obj", 1), ("ply", 2)]:
+            layers = document((size * vertices, faces))
+            layers.save_current_mesh(str(tmp_path / f"y.{ending}"))
+            run = skeletonize(tmp_path / f"y.{ending}", tmp_path / "out", "--no-picture", "--target-length", "3%")
+            assert run.returncode == 0, run.stderr
+        out = tmp_path / "out"
+        assert sorted(path.name for path in out.iterdir()) == [
+            "y_ply_skeleton.ply", "y_ply_surface.ply", "y_skeleton.ply", "y_surface.ply"]
+        assert f"{out / 'y_skeleton.ply'} is of y.obj: the files of y.ply begin with y_ply" in run.stderr
+        assert "replaced" not in run.stdout
+        small, large = (read_skeleton(out / f"{name}_skeleton.ply")[0] for name in ["y", "y_ply"])
+        assert np.ptp(large, axis=0).max() > 1.5 * np.ptp(small, axis=0).max()
+
+    def test_what_is_replaced_is_said(self, tmp_path):
+        for verb in ["wrote", "replaced"]:
+            run = skeletonize(MESHES / "capsule.off", tmp_path, *self.QUICK)
+            assert run.returncode == 0, run.stderr
+            for ending in ["skeleton", "surface"]:
+                assert f"{verb} {tmp_path}/capsule_{ending}.ply" in run.stdout
+
+    @pytest.mark.parametrize("name", ["größe.off", "a b.off", "字" * 80 + ".off"])
+    def test_names_of_all_kinds(self, name, tmp_path):
+        (tmp_path / name).write_bytes((MESHES / "capsule.off").read_bytes())
+        for _ in range(2):
+            run = skeletonize(tmp_path / name, tmp_path, *self.QUICK)
+            assert run.returncode == 0 and not run.stderr, run.stderr
+        skeleton = tmp_path / name.replace(".off", "_skeleton.ply")
+        layers = pymeshlab.MeshSet()
+        layers.load_new_mesh(str(skeleton))
+        assert layers.current_mesh().vertex_number() == len(read_skeleton(skeleton)[0])
+
+
 class TestOptions:
     def test_without_resampling_the_surface_is_the_input(self, tmp_path):
         run = skeletonize(MESHES / "capsule.off", tmp_path, "--no-resample", "--no-picture")
@@ -128,6 +169,23 @@ class TestOptions:
         for option in ["--w-l", "--epsilon", "--no-resample", "--keep-stages", "--formats",
                        "--no-picture"]:
             assert option in run.stdout
+
+
+@pytest.mark.parametrize("command", sorted((ROOT / "scripts").glob("*.sh")), ids=lambda path: path.name)
+def test_help_is_answered_before_anything_is_prepared(command, tmp_path):
+    run = subprocess.run([str(command), "--help"], capture_output=True, text=True, timeout=60,
+                         env=os.environ | {"MCFSKEL_CACHE": str(tmp_path / "cache")})
+    assert run.returncode == 0 and f"usage: scripts/{command.name}" in run.stdout
+    assert not run.stderr and not (tmp_path / "cache").exists()
+
+
+def test_help_of_the_bench_names_every_study():
+    studies = (ROOT / "scripts" / "bench" / "studies.py").read_text()
+    names = re.findall(r'"([a-z ]+)": \w+[,}]', studies[studies.index("STUDIES = {"):])
+    run = subprocess.run([str(ROOT / "scripts" / "bench.sh"), "--help"], capture_output=True, text=True)
+    assert len(names) >= 8
+    text = " ".join(run.stdout.split())
+    assert "all studies, or " + ", ".join(name.replace(" ", "-") for name in names) in text
 
 
 def test_progress_goes_to_the_terminal_and_results_to_the_output(tmp_path):
@@ -172,10 +230,23 @@ class TestFailures:
         run = skeletonize(tmp_path / "text.off", tmp_path / "out")
         assert run.returncode == 1 and "Traceback" not in run.stderr
 
-    @pytest.mark.parametrize("option", [("--epsilon", "much"), ("--keep-stages", "0"), ("--nonsense",)])
+    @pytest.mark.parametrize("option", [("--epsilon", "much"), ("--keep-stages", "0"), ("--nonsense",),
+                                        ("--epsilon", "150%"), ("--target-length", "150%"),
+                                        ("--max-iterations", "99999999999")])
     def test_bad_option(self, tmp_path, option):
-        run = skeletonize(MESHES / "capsule.off", tmp_path, *option)
-        assert run.returncode == 2 and "usage:" in run.stderr
+        run = skeletonize(MESHES / "capsule.off", tmp_path / "out", *option)
+        assert run.returncode == 2 and "usage:" in run.stderr and "Traceback" not in run.stderr
+        assert option[0] in run.stderr.splitlines()[-1]
+        assert not (tmp_path / "out").exists()
+
+    def test_mistakes_are_told_before_anything_is_built(self, tmp_path):
+        environment = os.environ | {"MCFSKEL_CACHE": str(tmp_path / "cache")}
+        for arguments, code in [((MESHES / "capsule.off", "out", "--epsilon", "150%"), 2),
+                                ((tmp_path / "nothing.off", "out"), 1)]:
+            run = subprocess.run([str(SCRIPT), *map(str, arguments)], capture_output=True, text=True,
+                                 env=environment, timeout=60)
+            assert run.returncode == code and "==" not in run.stderr
+        assert not (tmp_path / "cache").exists()
 
     def test_parameter_out_of_range(self, tmp_path):
         run = skeletonize(MESHES / "capsule.off", tmp_path, "--w-l", "-1")
@@ -196,3 +267,21 @@ class TestFailures:
         run = skeletonize(MESHES / "capsule.off", tmp_path / "taken", "--no-picture",
                           "--target-length", "2%")
         assert run.returncode == 1 and "Traceback" not in run.stderr
+        assert f"nothing can be written into '{tmp_path / 'taken'}'" in run.stderr
+
+    def test_folder_that_cannot_be_made(self, tmp_path):
+        folder = "/proc/nothing"  # for root, too
+        run = skeletonize(MESHES / "capsule.off", folder)
+        assert run.returncode == 1 and f"nothing can be written into '{folder}'" in run.stderr
+
+
+def test_a_curve_that_is_not_refined_is_told(tmp_path):
+    """A needle too thin for that; the command says it without --verbose."""
+    vertices, faces = box((1, 1e-5, 1e-5))
+    layers = document((vertices, faces))
+    layers.save_current_mesh(str(tmp_path / "needle.off"))
+    run = skeletonize(tmp_path / "needle.off", tmp_path, "--no-resample", "--no-picture")
+    assert run.returncode == 0, run.stderr
+    assert "1 of 1 components are not refined" in run.stderr
+    run = skeletonize(MESHES / "capsule.off", tmp_path, "--no-resample", "--no-picture")
+    assert run.returncode == 0 and not run.stderr

@@ -136,6 +136,17 @@ def test_pages_lead_somewhere(page: Path):
             assert anchor in {re.sub(r"[^\w\- ]", "", h.lower()).replace(" ", "-") for h in headings}, link
 
 
+@pytest.mark.parametrize("page", [ROOT / "README.md", ROOT / "python" / "README.md",
+                                  *sorted((ROOT / "docs").rglob("*.md"))], ids=lambda path: path.name)
+def test_pip_comes_after_a_virtual_environment(page: Path):
+    """Debian 12's own Python refuses what pip would install."""
+    lines = re.findall(r"^(?:    |\t)?((?:pip|apt-get) install|python3 -m venv)\b.*$", page.read_text(), re.MULTILINE)
+    if "pip install" in lines:
+        before = lines[:lines.index("pip install")]
+        assert "python3 -m venv" in before and "apt-get install" in before
+    assert "$(which" not in page.read_text()
+
+
 TUTORIALS = sorted((ROOT / "docs" / "tutorials").glob("*.md"))
 
 

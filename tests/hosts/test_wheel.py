@@ -47,6 +47,9 @@ def test_gives_a_skeleton_in_a_fresh_environment(wheel, tmp_path):
                          capture_output=True, text=True)
     assert run.returncode == 0, run.stderr
     assert "mcfskel.Skeleton" in run.stdout
+    run = subprocess.run([str(python), "-c", "import mcfskel; print(mcfskel.__version__)"], cwd=tmp_path,
+                         env=environment, capture_output=True, text=True)
+    assert run.stdout.strip() == wheel.name.split("-")[1]
 
 
 def test_the_source_distribution_holds_what_the_plugin_is_built_from(wheel, tmp_path):
