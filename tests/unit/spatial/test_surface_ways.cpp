@@ -55,7 +55,8 @@ TEST(SurfaceWays, AroundTheEdgesOfABoxTheWayIsStraightOnceItIsUnfolded)
 
 TEST(SurfaceWays, WithinATriangleNothingIsCrossed)
 {
-	EXPECT_TRUE(wayBetween(shapes::tetrahedron(), {0.2, 0.1, 0}, {0.1, 0.2, 0}, 0.1).places.empty());
+	EXPECT_TRUE(
+		wayBetween(shapes::tetrahedron(), {0.2, 0.1, 0}, {0.1, 0.2, 0}, 0.1).places.empty());
 }
 
 TEST(SurfaceWays, OverFineTrianglesTheWayIsNearlyTheGeodesic)

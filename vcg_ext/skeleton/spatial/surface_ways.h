@@ -95,8 +95,7 @@ public:
 	 * @return empty within one triangle, or where there is no way.
 	 * Complexity: O(N log N), less for ends that are near each other.
 	 */
-	std::vector<Place> way(
-		int fromFace, const Point3d& from, int toFace, const Point3d& to) const
+	std::vector<Place> way(int fromFace, const Point3d& from, int toFace, const Point3d& to) const
 	{
 		if (fromFace == toFace)
 			return {};
@@ -152,10 +151,7 @@ private:
 
 	int nodeCount() const { return int(points.size() + edgeOfNode.size()); }
 	bool isVertex(int x) const { return size_t(x) < points.size(); }
-	const Edge& edgeAt(int x) const
-	{
-		return edges[size_t(edgeOfNode[size_t(x) - points.size()])];
-	}
+	const Edge& edgeAt(int x) const { return edges[size_t(edgeOfNode[size_t(x) - points.size()])]; }
 
 	Point3d pointOf(int x) const
 	{
