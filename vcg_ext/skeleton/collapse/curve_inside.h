@@ -500,6 +500,8 @@ private:
 struct CutCurves
 {
 	int components = 0;
+	/// Which these are, see connectedComponents().
+	std::vector<int> which;
 
 	/// One plain line; empty if there are none.
 	std::string text() const
@@ -580,6 +582,7 @@ inline CurveSkeleton broughtInside(CurveSkeleton skeleton, const std::vector<Poi
 		std::vector<int> ofComponent;
 		if (isCut) {
 			++found.components;
+			found.which.push_back(c);
 			ofComponent = curve.cutOff();
 		}
 		std::vector<std::array<int, 2>> remaining = curve.curveEdges();
@@ -618,6 +621,32 @@ inline CurveSkeleton broughtInside(CurveSkeleton skeleton, const std::vector<Poi
 }
 
 /**
+ * For each component of a resampled surface the one of the surface that it was made from; empty where they do
+ * not pair off. The nearest vertex may be a neighbouring body's: most of them tell.
+ * @param ofCurve    for each node of the curve the component of the resampled surface, of @param ofSurface of them.
+ * @param node       for each vertex of the other surface its node.
+ * @param component  of that vertex, of @param components.
+ */
+inline std::vector<int> resampledFrom(const std::vector<int>& ofCurve, int ofSurface,
+	const std::vector<int>& node, const std::vector<int>& component, int components)
+{
+	std::vector<std::map<int, int>> votes(static_cast<size_t>(components));
+	for (size_t v = 0; v < node.size(); ++v)
+		if (node[v] >= 0)
+			++votes[size_t(component[v])][ofCurve[size_t(node[v])]];
+	std::vector<int> partner(static_cast<size_t>(ofSurface), -1);
+	for (int c = 0; c < components; ++c) {
+		const auto& count = votes[size_t(c)];
+		const auto most = std::max_element(count.begin(), count.end(),
+			[](const auto& a, const auto& b) { return a.second < b.second; });
+		if (most == count.end() || most->first < 0 || partner[size_t(most->first)] >= 0)
+			return {};
+		partner[size_t(most->first)] = c;
+	}
+	return partner;
+}
+
+/**
  * Brings the curve of a resampled surface inside the one that was resampled, see broughtInside(): the edges of
  * the resampling cut its corners. Radii and significance are completed.
  *
@@ -634,20 +663,9 @@ inline void bringInsideInput(CurveSkeleton& curve, const SurfaceMesh& surface,
 	const std::vector<int> component = connectedComponents(input, &components, begin);
 	const std::vector<int> ofCurve =
 		componentOfNodes(curve, connectedComponents(surface, &ofSurface, begin));
-	// The nearest vertex may be a neighbouring body's: most of them tell.
-	std::vector<std::map<int, int>> votes(static_cast<size_t>(components));
-	for (size_t v = 0; v < node.size(); ++v)
-		if (node[v] >= 0)
-			++votes[size_t(component[v])][ofCurve[size_t(node[v])]];
-	std::vector<int> partner(static_cast<size_t>(ofSurface), -1);
-	for (int c = 0; c < components; ++c) {
-		const auto& count = votes[size_t(c)];
-		const auto most = std::max_element(count.begin(), count.end(),
-			[](const auto& a, const auto& b) { return a.second < b.second; });
-		if (most == count.end() || most->first < 0 || partner[size_t(most->first)] >= 0)
-			return;
-		partner[size_t(most->first)] = c;
-	}
+	const std::vector<int> partner = resampledFrom(ofCurve, ofSurface, node, component, components);
+	if (partner.empty())
+		return;
 	std::vector<int> ofNode;
 	for (int c : ofCurve) {
 		if (c < 0 || partner[size_t(c)] < 0)

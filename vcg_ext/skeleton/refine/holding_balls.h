@@ -36,8 +36,8 @@ public:
 			const Point3d& p = skeleton.position[known];
 			const double reach = skeleton.radius[known] * (1 + rounding) + rounding;
 			if (skeleton.radius[known] > 0)
-				boxes[known / blockSize].Add(Box3d(
-					p - Point3d(reach, reach, reach), p + Point3d(reach, reach, reach)));
+				boxes[known / blockSize].Add(
+					Box3d(p - Point3d(reach, reach, reach), p + Point3d(reach, reach, reach)));
 		}
 	}
 
