@@ -139,12 +139,23 @@ Results saveProject(FilterRun& run)
 	if (host::rasterCount(run.document) > 0)
 		run.log("The raster layers are not saved.");
 	const QByteArray text = projectText(run.document, layers);
+	const bool isNew = !QFileInfo::exists(place.filePath(folder));
 	if (!place.exists() || !place.mkpath(folder))
 		throw FileError("Cannot make the folder '" + place.filePath(folder).toStdString() + "'.");
-	for (size_t i = 0; i < layers.size(); ++i)
-		writeLayer(layers[i], place,
-			run.progress.part(
-				double(i) / double(layers.size()), double(i + 1) / double(layers.size())));
+	for (size_t i = 0; i < layers.size(); ++i) {
+		const mcf::Progress part = run.progress.part(
+			double(i) / double(layers.size()), double(i + 1) / double(layers.size()));
+		// From the first file that is replaced on there is no way back: of a project that was there before some
+		// layers would be the old ones.
+		try {
+			writeLayer(layers[i], place, i == 0 ? part : part.showOnly());
+		}
+		catch (...) {
+			if (isNew && i == 0)
+				place.rmdir(folder);
+			throw;
+		}
+	}
 	writeFile(project, [&](std::ostream& out) { out.write(text.constData(), text.size()); });
 	for (const SavedLayer& saved : layers) {
 		const QString label = saved.layer->label();

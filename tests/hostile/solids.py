@@ -117,10 +117,11 @@ def hair(rng: Rng) -> Hostile:
         widest = 0.03
     length = float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
     radius = log_uniform(rng, 1e-5, widest)
-    # Rings must not cross where the path bends.
+    # Rings must not cross where the path bends; where it bends more sharply than by a radian, they are turned
+    # against each other, and the walls between them cross.
     step = length / count
     bend = 2 * np.pi * turns / count
-    embedded = radius * bend < 0.3 * step
+    embedded = radius * bend < 0.3 * step and bend < 1
     return skeleton(turned(rng, tube(path, radius, int(rng.integers(3, 8)))), embedded=bool(embedded),
                     extent=length)
 

@@ -19,7 +19,9 @@
 #include <common/utilities/load_save.h>
 
 #include <QApplication>
+#include <QDir>
 #include <QFile>
+#include <QFileInfo>
 
 #include <cstdint>
 #include <cstdio>
@@ -64,15 +66,23 @@ std::string contents(const MeshDocument& document)
 	return text;
 }
 
-/// What is in the file that a step writes, if it writes one.
+std::string fileContents(const QString& path)
+{
+	QFile file(path);
+	return file.open(QIODevice::ReadOnly) ? file.readAll().toStdString() : "none";
+}
+
+/// What is in the file that a step writes, if it writes one, and in those beside it.
 std::string fileContents(const FilterNameParameterValuesPair& step)
 {
+	std::string text;
 	for (const RichParameter& given : step.second)
 		if (given.name() == "file") {
-			QFile file(given.value().getString());
-			return file.open(QIODevice::ReadOnly) ? file.readAll().toStdString() : "none";
+			const QDir folder = QFileInfo(given.value().getString()).dir();
+			for (const QString& name : folder.entryList(QDir::Files | QDir::Hidden, QDir::Name))
+				text += "; " + name.toStdString() + ' ' + fileContents(folder.filePath(name));
 		}
-	return "";
+	return text;
 }
 
 /// The number of a layer that is counted from the last one.

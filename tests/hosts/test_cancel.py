@@ -28,6 +28,13 @@ STEPS = {
         ("Contraction Step", {"steps": ("RichInt", 2)}),
         ("Save Stage", {"file": ("RichSaveFile", "FOLDER/s.ply")}),
         ("Load Stage", {"file": ("RichOpenFile", "FOLDER/s.ply")})]),
+    "tubes": ("bent_tube", [
+        ("Contraction Step", {"steps": ("RichInt", 40)}), ("Collapse to Curve", {}),
+        ("Skeleton to Tubes", {})]),
+    "solid": ("bent_tube", [("Make Solid", {})]),
+    "project": ("bent_tube", [
+        ("Contraction Step", {"steps": ("RichInt", 40)}), ("Collapse to Curve", {}),
+        ("Save Project", {"file": ("RichSaveFile", "FOLDER/p.mlp")})]),
     "at once": ("bent_tube", [("Full Skeletonize", {})]),
     "stages kept": ("bent_tube", [("Full Skeletonize", {"keep_stages": ("RichInt", 1)})]),
     "sheets": ("slab", [("Full Skeletonize", {"keep_sheets": ("RichBool", "true")})]),

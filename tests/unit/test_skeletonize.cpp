@@ -549,6 +549,54 @@ TEST(Skeletonize, APlateThinnerThanItsResampledEdgesIsContractedAsItIs)
 		}
 }
 
+TEST(Skeletonize, OfSeveralComponentsOnlyTheThinOneIsContractedAsItIs)
+{
+	shapes::Soup plate = shapes::box(1, 0.8, 0.001); // 0.08 % of the diagonal thick
+	for (int i = 0; i < 3; ++i)
+		plate = shapes::subdivided(plate);
+	const shapes::Soup soup = shapes::joined({shapes::capsule(2, 0.35, 24),
+		shapes::moved(plate, {3, 0, 0}), shapes::moved(shapes::torus(1, 0.3), {0, 4, 0})});
+	Observer observer;
+	std::string notes;
+	int startedOver = 0;
+	observer.onStartOver = [&] { ++startedOver; };
+	observer.onNote = [&](const std::string& note) { notes += note + "\n"; };
+	const Skeletonization result = run(soup, Parameters(), observer);
+	EXPECT_EQ(result.refined, 1);
+	EXPECT_EQ(result.refinement.refined, 3);
+	EXPECT_NE(notes.find("1 of 3 components is too thin"), std::string::npos) << notes;
+	EXPECT_EQ(startedOver, 0) << "the stages are those of the resampling";
+	EXPECT_EQ(statistics(result.curve).components, 3);
+	EXPECT_EQ(statistics(result.curve).cycles, 1);
+	EXPECT_EQ(result.curve.radius.size(), result.curve.position.size());
+	EXPECT_EQ(result.curve.significance.size(), result.curve.position.size());
+	EXPECT_TRUE(std::is_sorted(result.curve.edges.begin(), result.curve.edges.end()));
+
+	// The plate's curve is that of the plate alone, and comes last.
+	const CurveSkeleton alone = run(shapes::moved(plate, {3, 0, 0}), Parameters()).curve;
+	ASSERT_GT(result.curve.position.size(), alone.position.size());
+	const size_t first = result.curve.position.size() - alone.position.size();
+	EXPECT_TRUE(std::equal(alone.position.begin(), alone.position.end(),
+		result.curve.position.begin() + std::ptrdiff_t(first)));
+	EXPECT_TRUE(std::equal(alone.radius.begin(), alone.radius.end(),
+		result.curve.radius.begin() + std::ptrdiff_t(first)));
+
+	// All vertices, of the input and of what was contracted, belong to a node of their own body.
+	const auto isOfPlate = [](const Point3d& p) { return p[0] > 2; };
+	ASSERT_EQ(result.node.size(), soup.points.size());
+	for (size_t v = 0; v < soup.points.size(); ++v) {
+		ASSERT_GE(result.node[v], 0);
+		EXPECT_EQ(
+			isOfPlate(soup.points[v]), isOfPlate(result.curve.position[size_t(result.node[v])]));
+	}
+	ASSERT_EQ(int(result.curve.node.size()), result.surface->vertexSlots());
+	for (int v = 0; v < result.surface->vertexSlots(); ++v) {
+		ASSERT_GE(result.curve.node[size_t(v)], 0);
+		EXPECT_EQ(isOfPlate(result.surface->position[v]),
+			isOfPlate(result.curve.position[size_t(result.curve.node[size_t(v)])]));
+	}
+}
+
 TEST(Skeletonize, SheetsThatWouldLeaveAThicketAreGivenUp)
 {
 	constexpr double breadth = 1, depth = 1, thickness = 2.5e-4; // 0.018 % of the diagonal

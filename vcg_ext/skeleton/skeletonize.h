@@ -17,7 +17,9 @@
 #include <skeleton/flow/start_of_flow.h>
 #include <skeleton/graph/closest_curve.h>
 #include <skeleton/graph/join_pieces.h>
+#include <skeleton/graph/replaced_parts.h>
 #include <skeleton/input/check_input.h>
+#include <skeleton/mesh/component_meshes.h>
 #include <skeleton/mesh/components.h>
 #include <skeleton/mesh/surface_rounding.h>
 #include <skeleton/poles/poles.h>
@@ -25,6 +27,7 @@
 #include <skeleton/repair/make_solid.h>
 #include <skeleton/resample/resampled_surface.h>
 #include <skeleton/sheets/collapse_with_sheets.h>
+#include <skeleton/spatial/nearest_points.h>
 #include <skeleton/spatial/transferred_nodes.h>
 
 #include <algorithm>
@@ -93,7 +96,8 @@ struct Skeletonization
 	std::optional<SheetCollapse> sheets;
 	/// For each vertex of the input its node of the skeleton, -1 for vertices that no face uses.
 	std::vector<int> node;
-	/// The surface that was contracted: the resampled one, or the input; the skeleton's own `node` is of it.
+	/// The surface that was contracted: the resampled one, or the input; the skeleton's own `node` is of it. Of several
+	/// components some may have the curve of the input all the same, see skeletonize().
 	std::shared_ptr<const SurfaceMesh> surface;
 	/// Its medial poles.
 	std::shared_ptr<const PoleSet> poles;
@@ -114,6 +118,14 @@ struct Skeletonization
 	/// Between the skeletons of pieces, where they were to be joined.
 	Bridges bridges;
 	PhaseSeconds seconds;
+
+	/// Sets `refined` from the refinement and the cut curves.
+	void countRefined()
+	{
+		refined = cut.components == 0
+			? refinement.fraction()
+			: double(std::max(refinement.refined - cut.components, 0)) / refinement.components;
+	}
 
 	/// For each vertex of `surface` its node of the skeleton.
 	const std::vector<int>& nodeOfSurface() const
@@ -214,10 +226,7 @@ inline Skeletonization skeletonizeOnce(const SurfaceInput& input, const Paramete
 			parameters.poleMethod == PoleMethod::Balls ? result.poles.get() : nullptr);
 		result.curve = std::move(refined.skeleton);
 		result.refinement = refined.report;
-		result.refined = result.refinement.fraction();
-		if (result.cut.components > 0)
-			result.refined = double(std::max(result.refinement.refined - result.cut.components, 0))
-				/ result.refinement.components;
+		result.countRefined();
 	}
 	result.seconds.refine = clock.end(Phase::Refine);
 
@@ -317,21 +326,179 @@ private:
 	std::vector<Stage> stages;
 };
 
+/// The surface as it is is contracted only where it has no more vertices.
+constexpr int maxVerticesAsItIs = 100000;
+
+/// The components of the contracted surface whose curve is not refined, or not whole, ascending.
+inline std::vector<int> doubtfulComponents(const Skeletonization& result)
+{
+	std::vector<int> doubtful = result.cut.which;
+	for (const RefineReport::Kept& kept : result.refinement.kept)
+		doubtful.push_back(kept.component);
+	std::sort(doubtful.begin(), doubtful.end());
+	doubtful.erase(std::unique(doubtful.begin(), doubtful.end()), doubtful.end());
+	return doubtful;
+}
+
+/// One component of a surface alone, and what its vertices are called there.
+struct SingleComponent
+{
+	std::vector<int> ids;
+	std::shared_ptr<const SurfaceMesh> mesh;
+};
+
+inline SingleComponent singleComponent(
+	const SurfaceMesh& surface, const ComponentVertices& vertices, int c)
+{
+	SingleComponent own = {vertices.ids[size_t(c)], nullptr};
+	std::vector<Point3d> position;
+	std::vector<Triangle> triangles;
+	for (int v : own.ids) {
+		position.push_back(surface.position[v]);
+		surface.forEachOutgoing(v, [&](int h) {
+			if (h % 3 != 0) // each face once
+				return;
+			const Triangle t = surface.triangle(h / 3);
+			triangles.push_back({vertices.place[t[0]], vertices.place[t[1]], vertices.place[t[2]]});
+		});
+	}
+	own.mesh = std::make_shared<const SurfaceMesh>(std::move(position), triangles);
+	return own;
+}
+
+/// A component's curve, and how much of it is outside, as isBetter() asks for it.
+inline Skeletonization partOfComponent(
+	const Skeletonization& result, const std::vector<int>& ofCurve, int c)
+{
+	Skeletonization part;
+	std::vector<char> isGone;
+	for (int of : ofCurve)
+		isGone.push_back(of != c);
+	part.curve = withReplacedParts(result.curve, isGone, {}).curve;
+	for (const RefineReport::Kept& kept : result.refinement.kept)
+		if (kept.component == c)
+			part.refinement.nodesOutside = kept.nodesOutside;
+	return part;
+}
+
+/**
+ * Of a surface of several components, contracts those as they are whose curve could not be refined, and takes the
+ * curves that are better so, see isBetter(). The stages, the poles and the surface stay those of the resampling.
+ * @return whether the components could be told; if not, nothing is changed. @throws Cancelled
+ */
+inline bool replaceThinCurves(Skeletonization& result, const SurfaceInput& input,
+	const Parameters& asItIs, const std::vector<int>& doubtful, const std::vector<int>& component,
+	int components, const Progress& progress, const Observer& observer,
+	const RefineParameters& refinement)
+{
+	const Progress begin = progress.cancelOnly();
+	int ofInput = 0;
+	const std::vector<int> componentOfInput = connectedComponents(*input.mesh, &ofInput, begin);
+	const std::vector<int> ofCurve = componentOfNodes(result.curve, component);
+	const std::vector<int> partner =
+		resampledFrom(ofCurve, components, result.node, componentOfInput, ofInput);
+	if (partner.empty())
+		return false;
+	const ComponentVertices vertices(component, components, begin);
+	const ComponentVertices verticesOfInput(componentOfInput, ofInput, begin);
+	struct Replacement
+	{
+		int component;
+		std::vector<int> ids; ///< of the input's vertices
+		Skeletonization other;
+	};
+	std::vector<Replacement> taken;
+	for (size_t i = 0; i < doubtful.size(); ++i) {
+		const int c = doubtful[i];
+		if (partner[size_t(c)] < 0)
+			continue;
+		SingleComponent own = singleComponent(*input.mesh, verticesOfInput, partner[size_t(c)]);
+		if (own.mesh->vertexCount() > maxVerticesAsItIs)
+			continue;
+		try {
+			const Progress part = progress.part(
+				double(i) / double(doubtful.size()), double(i + 1) / double(doubtful.size()));
+			Skeletonization other =
+				skeletonizeOnce({own.mesh}, asItIs, part, Observer(), refinement);
+			result.seconds += other.seconds;
+			if (isBetter(*own.mesh, other, partOfComponent(result, ofCurve, c), begin))
+				taken.push_back({c, std::move(own.ids), std::move(other)});
+		}
+		catch (const SolverError&) {
+			// Then there is nothing to choose from.
+		}
+	}
+	if (taken.empty())
+		return true;
+	std::vector<char> isReplaced(size_t(components), 0), isGone;
+	std::vector<const CurveSkeleton*> curves;
+	for (const Replacement& one : taken) {
+		isReplaced[size_t(one.component)] = 1;
+		curves.push_back(&one.other.curve);
+	}
+	for (int c : ofCurve)
+		isGone.push_back(c >= 0 && isReplaced[size_t(c)]);
+	ReplacedParts replaced = withReplacedParts(result.curve, isGone, curves);
+	result.curve = std::move(replaced.curve);
+	const SurfaceMesh& surface = *result.surface;
+	for (size_t i = 0; i < taken.size(); ++i) {
+		const Skeletonization& other = taken[i].other;
+		const int c = taken[i].component, first = replaced.first[i];
+		const std::vector<int>& ids = vertices.ids[size_t(c)];
+		std::vector<Point3d> places;
+		for (int v : ids)
+			places.push_back(surface.position[v]);
+		const std::vector<int> nearest =
+			nearestPoints(other.surface->position, places, meanEdgeLength(*other.surface), begin);
+		for (size_t v = 0; v < ids.size(); ++v)
+			result.curve.node[size_t(ids[v])] = first + other.node[size_t(nearest[v])];
+		std::vector<int>& cut = result.cut.which;
+		cut.erase(std::remove(cut.begin(), cut.end(), c), cut.end());
+		if (other.cut.components > 0)
+			cut.push_back(c);
+		if (other.refinement.refined > 0)
+			result.refinement = result.refinement.withRefined(c);
+	}
+	result.cut.components = int(result.cut.which.size());
+	result.countRefined();
+	result.node = transferredNodes(surface, result.curve.node, *input.mesh, begin);
+	for (size_t i = 0; i < taken.size(); ++i)
+		for (size_t v = 0; v < taken[i].ids.size(); ++v)
+			result.node[size_t(taken[i].ids[v])] = replaced.first[i] + taken[i].other.node[v];
+	if (observer.onNote)
+		observer.onNote(std::to_string(taken.size()) + " of " + std::to_string(components)
+			+ (taken.size() == 1
+					? " components is too thin for its resampled surface: its skeleton is that of the "
+					  "surface as it is."
+					: " components are too thin for their resampled surfaces: their skeletons are those "
+					  "of the surface as it is."));
+	return true;
+}
+
 /// skeletonize(), on the surface as the parameters say or, where it is too thin for that, as it is.
 inline Skeletonization skeletonizeThin(const SurfaceInput& input, const Parameters& given,
 	const Progress& progress, const Observer& observer, const RefineParameters& refinement)
 {
-	constexpr int maxVerticesAsItIs = 100000;
 	Skeletonization result =
 		skeletonizeOnce(input, given, progress.part(0, once), observer, refinement);
 	const bool isStopped =
 		!result.stage->isDone() && given.maxIterations < Parameters().maxIterations;
 	const bool isDoubtful = given.resample && given.refine && !result.sheets && input.held.empty()
-		&& result.refined < 1 && !isStopped && input.mesh->vertexCount() <= maxVerticesAsItIs;
+		&& result.refined < 1 && !isStopped;
 	if (!isDoubtful)
 		return result;
 	Parameters asItIs = given;
 	asItIs.resample = asItIs.keepSheets = false;
+	int components = 0;
+	const std::vector<int> component =
+		connectedComponents(*result.surface, &components, progress.cancelOnly());
+	const std::vector<int> doubtful = doubtfulComponents(result);
+	if (int(doubtful.size()) < components
+		&& replaceThinCurves(result, input, asItIs, doubtful, component, components,
+			progress.part(once, 1), observer, refinement))
+		return result;
+	if (input.mesh->vertexCount() > maxVerticesAsItIs)
+		return result;
 	Alternative alternative(observer);
 	try {
 		Skeletonization other = skeletonizeOnce(
@@ -404,8 +571,9 @@ inline Skeletonization skeletonizeWithSheets(const SurfaceInput& input, const Pa
  *
  * A surface that is thinner than the edges of its resampling is cut off, or crosses itself, when it is resampled.
  * That shows in the end: its curve cannot be refined, since that would leave the surface. Then the surface is
- * contracted as it is as well, and the better curve is taken, see detail::isBetter(), which is said. Sheets that
- * would leave a thicket are given up, see detail::skeletonizeWithSheets().
+ * contracted as it is as well, and the better curve is taken, see detail::isBetter(), which is said. Of several
+ * components only those are whose curve cannot be refined, unless that is true of all. Sheets that would leave a
+ * thicket are given up, see detail::skeletonizeWithSheets().
  *
  * @param parameters all of them are read; the default epsilon is larger for more than 50 components, see
  *                   sharedAmong(). What is too thin for a resampled surface to follow, see

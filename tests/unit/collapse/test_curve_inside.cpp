@@ -143,6 +143,71 @@ TEST(CurveInside, AWayThatHalvingDoesNotFindGoesOverTheSurface)
 	EXPECT_GT(statistics(inside).length, 15) << "round the bend";
 }
 
+TEST(CurveInside, RoundTheCornerOfTwoThinPlatesTheWayIsShort)
+{
+	// Few triangles, as long as the plates: along their edges the way would be a hundred times as long.
+	shapes::Soup soup = shapes::cells(2, 1, 2, [](int x, int, int z) { return x == 0 || z == 0; });
+	const auto thin = [](double x) { return x <= 1 ? 0.01 * x : 0.01 + 0.99 * (x - 1); };
+	soup = shapes::transformed(
+		soup, [&](const Point3d& p) { return Point3d(thin(p[0]), 2 * p[1], thin(p[2])); });
+	for (double a : {0.03, 0.038, 0.05, 0.07, 0.1})
+		for (double b : {0.03, 0.04, 0.06, 0.08}) {
+			Curve curve(soup, {{0.005, 1, a}, {b, 1.01, 0.005}}, {{0, 1}});
+			const CurveSkeleton inside = curve.inside();
+			EXPECT_LT(outside(curve.surface, inside), 5e-7);
+			EXPECT_LT(statistics(inside).length, a + b + 0.02) << a << " " << b;
+		}
+}
+
+TEST(CurveInside, TheEndsOfAnEdgeInABentSheetTakeTheSameWall)
+{
+	// One is nearer to the outer wall of a bowl, the other to the inner one: the rim is far away.
+	const auto bent = [](double x, double y, double z) {
+		const double u = (x - 4) * M_PI / 16, v = (y - 4) * M_PI / 16;
+		return Point3d(std::sin(u), std::cos(u) * std::sin(v), std::cos(u) * std::cos(v))
+			* (1 - 0.002 * z);
+	};
+	const shapes::Soup bowl =
+		shapes::transformed(shapes::cells(8, 8, 1, [](int, int, int) { return true; }),
+			[&](const Point3d& p) { return bent(p[0], p[1], p[2]); });
+	for (int i = 1; i < 7; ++i)
+		for (int j = 1; j < 7; ++j) {
+			const Point3d from = bent(i, j, 0.1), to = bent(7 - j, i, 0.9);
+			if (from == to || Distance(from, to) < 0.1)
+				continue;
+			Curve curve(bowl, {from, to}, {{0, 1}});
+			const CurveSkeleton inside = curve.inside();
+			EXPECT_LT(outside(curve.surface, inside), 5e-7);
+			EXPECT_LT(statistics(inside).length, 1.5 * Distance(from, to)) << i << " " << j;
+		}
+}
+
+TEST(CurveInside, ANodeFarOutsideGoesToTheNearestPlaceOfTheTrianglesThatMergedIntoIt)
+{
+	// A long bar of two triangles a side: its vertices are far from the middle.
+	Curve curve(shapes::box(10, 0.02, 0.02), {{4, 0.01, 0.01}, {5, 0.3, 0.01}, {6, 0.01, 0.01}},
+		{{0, 1}, {1, 2}});
+	curve.skeleton.node.assign(curve.surface.position.size(), 1);
+	const CurveSkeleton inside = curve.inside();
+	EXPECT_LT(outside(curve.surface, inside), 5e-7);
+	EXPECT_NEAR(inside.position[1][0], 5, 0.01);
+	EXPECT_NEAR(statistics(inside).length, 2, 0.05);
+}
+
+TEST(CurveInside, BetweenThePlacesThatAreLookedAtNothingIsFartherOutsideThanPromised)
+{
+	// Edges that leave a box by a little more or less than the tolerance, at their middle or at an end.
+	const shapes::Soup box = shapes::box(1, 1, 1);
+	for (double beyond : {1.0, 1.5, 2.0, 3.0, 5.0, 8.0})
+		for (double depth : {-1.0, 0.0, 1.0}) {
+			const double unit = std::sqrt(3.0) * 1e-7;
+			const std::vector<Point3d> places = {
+				{0.2, 0.5, 1 + depth * unit}, {0.53, 0.5, 1 + beyond * unit}, {0.8, 0.5, 0.5}};
+			Curve curve(box, places, {{0, 1}, {1, 2}});
+			EXPECT_LE(outside(curve.surface, curve.inside()), 5e-7) << beyond << " " << depth;
+		}
+}
+
 namespace {
 
 /// A tight U, and a curve that goes up one arm and then ten times from arm to arm, outside.

@@ -75,6 +75,21 @@ TEST(Progress, CancelsWhenTheCallbackSaysSo)
 	EXPECT_EQ(calls, 3);
 }
 
+TEST(Progress, WhatMustNotEndHalfwayIsShownAndGoesOn)
+{
+	std::vector<int> percents;
+	const Progress progress([&](int percent, const char*) {
+		percents.push_back(percent);
+		return false;
+	});
+	const Progress shown = progress.part(0.5, 1).showOnly();
+	EXPECT_NO_THROW(shown.report(0, "Writing"));
+	EXPECT_NO_THROW(shown.report(1, "Writing"));
+	EXPECT_EQ(percents, (std::vector<int> {50, 100}));
+	EXPECT_THROW(progress.check(), Cancelled) << "it is the step's business only";
+	EXPECT_NO_THROW(Progress().showOnly().report(0.5, "Writing"));
+}
+
 TEST(Progress, IsSilentByDefault)
 {
 	EXPECT_NO_THROW(Progress().part(0, 0.5).report(1, "work"));

@@ -395,6 +395,26 @@ TEST(SurfaceMesh, CompactedIsTheMeshBuiltAnew)
 	}
 }
 
+TEST(SurfaceMesh, TrimmedIsTheSameMeshWithoutSpareMemory)
+{
+	std::mt19937 random(7);
+	SurfaceMesh mesh = shapes::plate(2).mesh();
+	mesh.position.reserve(4 * mesh.position.size());
+	shapes::changeAtRandom(mesh, 3000, random);
+	mesh.compact();
+	SurfaceMesh trimmed = mesh;
+	trimmed.position.reserve(4 * mesh.position.size());
+	trimmed.trim();
+	EXPECT_EQ(trimmed.position.capacity(), trimmed.position.size());
+	EXPECT_EQ(trimmed.position, mesh.position);
+	EXPECT_EQ(trimmed.triangles(), mesh.triangles());
+	shapes::changeAtRandom(trimmed, 300, random);
+	trimmed.compact();
+	const SurfaceMesh anew(trimmed.position, trimmed.triangles());
+	for (int h = 0; h < anew.halfEdgeSlots(); ++h)
+		EXPECT_EQ(anew.twin(h), trimmed.twin(h)) << "it goes on as before";
+}
+
 TEST(SurfaceMesh, AVertexOfVeryHighValenceIsBuiltInLinearTime)
 {
 	// Quadratic pairing would take minutes at this size.

@@ -1,11 +1,13 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+#include "mesh_checks.h"
 #include "shapes.h"
 #include "threads.h"
 
 #include <skeleton/spatial/inner_segments.h>
 #include <skeleton/poles/poles.h>
+#include <skeleton/spatial/solid_test.h>
 
 #include <gtest/gtest.h>
 
@@ -463,6 +465,53 @@ TEST(VoronoiPoles, TellWhatQhullSaysWhenItFails)
 		EXPECT_NE(std::string(error.what()).find("QH6150"), std::string::npos) << error.what();
 	}
 	EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST(Poles, AtTrianglesWithoutAreaAreInside)
+{
+	// Edges of a body are cut near their ends, again and again: some triangles have no normal to speak of.
+	int slivers = 0, found = 0;
+	for (unsigned seed = 0; seed < 60; ++seed) {
+		std::mt19937 random(seed);
+		std::uniform_real_distribution<double> unit(0, 1);
+		shapes::Soup soup =
+			shapes::transformed(shapes::sphere(int(seed % 2)), [](const Point3d& p) {
+				return Point3d(1.4 * p[0] + 0.2 * p[1], 1.1 * p[1], 0.9 * p[2] - 0.3 * p[0]);
+			});
+		for (int cut = 0; cut < 25; ++cut) {
+			const Triangle chosen = soup.triangles[random() % soup.triangles.size()];
+			const int a = chosen[0], b = chosen[1], middle = int(soup.points.size());
+			soup.points.push_back(soup.points[a]
+				+ (soup.points[b] - soup.points[a]) * std::pow(10, -9 * unit(random) - 0.3));
+			std::vector<Triangle> halves;
+			for (const Triangle& t : soup.triangles)
+				if (std::count(t.begin(), t.end(), a) && std::count(t.begin(), t.end(), b))
+					for (int end : {a, b}) {
+						Triangle half = t;
+						std::replace(half.begin(), half.end(), end, middle);
+						halves.push_back(half);
+					}
+				else
+					halves.push_back(t);
+			soup.triangles = halves;
+		}
+		const SurfaceMesh mesh = soup.mesh();
+		const double size = mesh.bounds().Diag();
+		for (int f = 0; f < mesh.faceSlots(); ++f)
+			slivers += mesh.areaVector(f).Norm() < 1e-7 * size * size;
+		const PoleSet poles = medialPoles(mesh, PoleMethod::Balls);
+		const SolidTest solid(mesh.position, mesh.triangles());
+		for (int v = 0; v < mesh.vertexSlots(); ++v)
+			if (poles.has(v)) {
+				++found;
+				const Point3d& centre = poles.centre[v];
+				EXPECT_TRUE(checks::windingNumber(mesh, centre) > 0.5
+					|| solid.closest(solid.in(centre)).distance < 1e-6)
+					<< "more than rounding: " << seed << " " << v;
+			}
+	}
+	EXPECT_GT(slivers, 100);
+	EXPECT_GT(found, 500);
 }
 
 } // namespace

@@ -58,9 +58,9 @@ TEST(SolidTest, RaysThroughVerticesAndEdgesAreCountedOnce)
 		return solid.isInside(p) == (checks::windingNumber(mesh, solid.out(p)) > 0.5);
 	};
 	for (int v = 0; v < int(soup.points.size()); ++v)
-		EXPECT_TRUE(agrees(solid.vertex(v))) << v;
+		EXPECT_TRUE(agrees(solid.vertices()[v])) << v;
 	for (const Triangle& t : soup.triangles)
-		EXPECT_TRUE(agrees((solid.vertex(t[0]) + solid.vertex(t[1])) / 2));
+		EXPECT_TRUE(agrees((solid.vertices()[t[0]] + solid.vertices()[t[1]]) / 2));
 }
 
 TEST(SolidTest, SegmentsThatLeaveTheSolidAreSeen)
@@ -87,13 +87,17 @@ TEST(SolidTest, TheClosestPointAndTheChordOfABoxAreKnown)
 	EXPECT_NEAR(Distance(solid.out(on.point), Point3d(0.5, 1, 4)), 0, 1e-12);
 	EXPECT_NEAR(on.distance, 3 / unit, 1e-12);
 	const Point3d down = solid.in(Point3d(0, 0, -1)) - solid.in(Point3d(0, 0, 0));
-	EXPECT_NEAR(solid.chord(on.point, down / down.Norm()), 4 / unit, 1e-9);
+	const SolidTest::Crossing across = solid.chord(on.point, down / down.Norm());
+	EXPECT_NEAR(across.distance, 4 / unit, 1e-9);
+	for (int v : solid.triangles()[across.face])
+		EXPECT_NEAR(solid.out(solid.vertices()[v])[2], 0, 1e-12) << "the face on the other side";
+	EXPECT_EQ(solid.chord(on.point, down / -down.Norm()).face, -1) << "away from the solid";
 	// Where there are many cells, too.
 	const SolidTest ball = solidOf(shapes::sphere(5));
 	for (const Point3d& p : shapes::sphere(1).points) {
 		const Point3d from = ball.closest(ball.in(p)).point;
 		const Point3d inward = (ball.in(Point3d(0, 0, 0)) - from).Normalize();
-		EXPECT_NEAR(ball.chord(from, inward), 1 / std::sqrt(3.0), 1e-3);
+		EXPECT_NEAR(ball.chord(from, inward).distance, 1 / std::sqrt(3.0), 1e-3);
 	}
 }
 

@@ -19,15 +19,15 @@
 #include <skeleton/mesh/components.h>
 #include <skeleton/mesh/surface_mesh.h>
 #include <skeleton/spatial/solid_test.h>
+#include <skeleton/spatial/surface_ways.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <map>
 #include <numeric>
-#include <queue>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -36,9 +36,11 @@ namespace vcg::tri::mcf {
 
 namespace detail {
 
-/// How far outside a point may be, of the diagonal: what rounding in the shape's coordinates makes, see
+/// How far outside a curve may be, of the diagonal: what rounding in the shape's coordinates makes, see
 /// PrincipalFrame::onGrid().
-constexpr double outsideTolerance = 5e-7;
+constexpr double promisedTolerance = 5e-7;
+/// How far outside the places may be that are looked at: those between them may be twice as far.
+constexpr double outsideTolerance = promisedTolerance / 2;
 
 /// A component of a curve on its way into its solid. Lengths and places are those of the SolidTest.
 class CurveIntoSolid
@@ -269,9 +271,8 @@ private:
 	const Progress& progress;
 	double tolerance;
 	std::vector<char> changed;
-	/// The neighbours of each vertex of the surface, and its inward unit normal; made when they are needed.
-	std::vector<std::vector<int>> around;
-	std::vector<Point3d> inward;
+	/// Made when they are needed.
+	std::optional<SurfaceWays> overSurface;
 
 	void report() const { progress.report(0, "Bringing the curve inside"); }
 
@@ -290,7 +291,7 @@ private:
 
 	HalfChord halfChord(const Point3d& from, const Point3d& direction) const
 	{
-		const HalfChord half = {from, direction * (solid.chord(from, direction) / 2)};
+		const HalfChord half = {from, direction * (solid.chord(from, direction).distance / 2)};
 		return solid.isInside(half.at(1)) ? half : HalfChord {from, Point3d(0, 0, 0)};
 	}
 
@@ -302,39 +303,31 @@ private:
 							   : HalfChord {on.point, Point3d(0, 0, 0)};
 	}
 
-	void findNeighbours()
+	/// The chord from the point of the surface that is closest to a point inside, through it.
+	HalfChord chordThrough(const Point3d& inside) const
 	{
-		if (!around.empty())
-			return;
-		size_t count = 0;
-		for (const Triangle& t : solid.triangles())
-			for (int v : t)
-				count = std::max(count, size_t(v) + 1);
-		around.resize(count);
-		inward.assign(count, Point3d(0, 0, 0));
-		for (const Triangle& t : solid.triangles()) {
-			const Point3d &a = solid.vertex(t[0]), &b = solid.vertex(t[1]), &c = solid.vertex(t[2]);
-			const Point3d n = (b - a) ^ (c - a);
-			for (int k = 0; k < 3; ++k) {
-				around[t[k]].push_back(t[(k + 1) % 3]); // the other half-edge adds the other way
-				inward[t[k]] -= n;
-			}
-		}
-		for (Point3d& n : inward)
-			if (const double length = n.Norm(); length > 0)
-				n /= length;
+		const SolidTest::Closest on = solid.closest(inside);
+		return on.distance > 0 ? halfChord(on.point, (inside - on.point) / on.distance)
+							   : HalfChord {inside, Point3d(0, 0, 0)};
 	}
 
-	HalfChord chordAt(int v)
+	const SurfaceWays& ways()
 	{
-		findNeighbours();
-		return inward[v].SquaredNorm() > 0 ? halfChord(solid.vertex(v), inward[v])
-										   : HalfChord {solid.vertex(v), Point3d(0, 0, 0)};
+		constexpr double spacing = 1.0 / 32; // of the diagonal
+		if (!overSurface)
+			overSurface.emplace(solid.vertices(), solid.triangles(), spacing);
+		return *overSurface;
+	}
+
+	HalfChord chordAt(const SurfaceWays::Place& place) const
+	{
+		return place.inward.SquaredNorm() > 0 ? halfChord(place.point, place.inward)
+											  : HalfChord {place.point, Point3d(0, 0, 0)};
 	}
 
 	/**
 	 * A node goes to the middle of a chord: from the nearest point of the surface where that is next to it,
-	 * else from one of the vertices that have merged into it, the one whose chord's middle is nearest.
+	 * else from the triangles at the vertices that have merged into it, the one whose chord's middle is nearest.
 	 */
 	void moveInside(int A, const std::vector<int>& neighbours)
 	{
@@ -344,14 +337,15 @@ private:
 		if (Distance(best.from, place[A]) > nextTo && !merged.empty() && !merged[A].empty()) {
 			const size_t step = (merged[A].size() + mostTried - 1) / mostTried;
 			double nearest = std::numeric_limits<double>::infinity();
-			for (size_t i = 0; i < merged[A].size(); i += step) {
-				const HalfChord candidate = chordAt(merged[A][i]);
-				const double distance = SquaredDistance(candidate.at(1), place[A]);
-				if (distance < nearest && candidate.along.SquaredNorm() > 0) {
-					nearest = distance;
-					best = candidate;
+			for (size_t i = 0; i < merged[A].size(); i += step)
+				for (int f : ways().facesAtVertex(merged[A][i])) {
+					const HalfChord candidate = chordAt(ways().closestIn(f, place[A]));
+					const double distance = SquaredDistance(candidate.at(1), place[A]);
+					if (distance < nearest && candidate.along.SquaredNorm() > 0) {
+						nearest = distance;
+						best = candidate;
+					}
 				}
-			}
 		}
 		double part = 1;
 		const auto isTaken = [&](int B) { return isSame(place[B], best.at(part)); };
@@ -366,15 +360,27 @@ private:
 	{
 		constexpr int deepest = 5;
 		Path between;
-		if (!bisected(p, q, deepest, between))
-			between = alongSurface(p, q);
+		for (const Halving halving : {Halving::MovesOutside, Halving::MovesAll}) {
+			between.clear();
+			if (bisected(p, q, halving, deepest, between)) {
+				simplify(p, q, between);
+				return between;
+			}
+		}
+		between = alongSurface(p, q);
 		simplify(p, q, between);
 		return between;
 	}
 
-	/// Halves the segment until its parts are inside, with points that are outside moved to the middle of the
-	/// chord behind. @return whether that is the case within so many levels.
-	bool bisected(const Point3d& p, const Point3d& q, int levels, Path& between) const
+	/// Which points of the segments that bisected() halves go to the middle of a chord.
+	enum class Halving {
+		MovesOutside,
+		MovesAll, ///< round a corner of two thin walls points that are inside come ever nearer to it
+	};
+
+	/// Halves the segment until its parts are inside. @return whether that is the case within so many levels.
+	bool bisected(
+		const Point3d& p, const Point3d& q, Halving halving, int levels, Path& between) const
 	{
 		if (segmentIsInside(p, q))
 			return true;
@@ -383,26 +389,68 @@ private:
 		Point3d middle = (p + q) / 2;
 		if (!solid.isInside(middle))
 			middle = chordBehind(middle).at(1);
-		if (middle == p || middle == q || !bisected(p, middle, levels - 1, between))
+		else if (halving == Halving::MovesAll)
+			middle = chordThrough(middle).at(1);
+		if (middle == p || middle == q || !bisected(p, middle, halving, levels - 1, between))
 			return false;
 		between.push_back(middle);
-		return bisected(middle, q, levels - 1, between);
+		return bisected(middle, q, halving, levels - 1, between);
+	}
+
+	/// A point of the surface, and its triangle.
+	struct OnSurface
+	{
+		Point3d point;
+		int face;
+	};
+
+	/// The nearest point of the surface, and for a point inside the one on the other side of it.
+	std::vector<OnSurface> wallsAt(const Point3d& p) const
+	{
+		const SolidTest::Closest on = solid.closest(p);
+		std::vector<OnSurface> walls(1, {on.point, on.face});
+		if (on.distance > 0 && solid.isInside(p)) {
+			const Point3d across = (p - on.point) / on.distance;
+			const SolidTest::Crossing other = solid.chord(on.point, across);
+			if (other.face >= 0)
+				walls.push_back({on.point + across * other.distance, other.face});
+		}
+		return walls;
 	}
 
 	/**
-	 * A way that always is there: straight to the nearest point of the surface, over its edges, and back. It
-	 * is lifted off the surface along the chords of the vertices as far as it stays inside.
+	 * A way that always is there: straight to the surface, over its triangles, and back. Of the two walls of a
+	 * sheet both ends take the same one: around the rim it may be far. Between them the way is lifted off the
+	 * surface, to the middle of the chords, but no higher than the ends are: from the rim of a sheet chords
+	 * lead far through it.
 	 */
 	Path alongSurface(const Point3d& p, const Point3d& q)
 	{
-		findNeighbours();
-		const SolidTest::Closest first = solid.closest(p), last = solid.closest(q);
-		const std::vector<int> way =
-			wayOnSurface(solid.triangles()[first.face][0], solid.triangles()[last.face][0]);
+		const OnSurface first = wallsAt(p).front();
+		const double height = Distance(p, first.point);
+		Path shortest;
+		double least = std::numeric_limits<double>::infinity();
+		for (const OnSurface& last : wallsAt(q)) {
+			Path path = alongSurface(first, last, std::max(height, Distance(q, last.point)));
+			const double length = lengthOf(path, p, q);
+			if (length < least) {
+				least = length;
+				shortest = std::move(path);
+			}
+		}
+		return shortest;
+	}
+
+	/// As above, lifted off the surface where it crosses edges as far as it stays inside.
+	Path alongSurface(const OnSurface& first, const OnSurface& last, double height)
+	{
 		Path path(1, first.point);
-		HalfChord before = {solid.vertex(way.front()), Point3d(0, 0, 0)};
-		for (int v : way) {
-			const HalfChord here = chordAt(v);
+		HalfChord before = {first.point, Point3d(0, 0, 0)};
+		for (const SurfaceWays::Place& place :
+			ways().way(first.face, first.point, last.face, last.point)) {
+			HalfChord here = chordAt(place);
+			if (const double length = here.along.Norm(); length > height)
+				here.along *= height / length;
 			double part = 1;
 			constexpr double lowest = 1e-3;
 			while (part > 0 && !segmentIsInside(before.at(part), here.at(part)))
@@ -415,36 +463,6 @@ private:
 		path.push_back(before.from);
 		path.push_back(last.point);
 		return path;
-	}
-
-	/// The shortest way over edges of the surface (Dijkstra), both ends included.
-	std::vector<int> wayOnSurface(int from, int to) const
-	{
-		using Entry = std::pair<double, int>;
-		std::vector<double> distance(around.size(), std::numeric_limits<double>::infinity());
-		std::vector<int> previous(around.size(), -1);
-		std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
-		distance[from] = 0;
-		queue.emplace(0, from);
-		while (!queue.empty() && queue.top().second != to) {
-			const auto [d, v] = queue.top();
-			queue.pop();
-			if (d > distance[v])
-				continue;
-			for (int w : around[v]) {
-				const double further = d + Distance(solid.vertex(v), solid.vertex(w));
-				if (further < distance[w]) {
-					distance[w] = further;
-					previous[w] = v;
-					queue.emplace(further, w);
-				}
-			}
-		}
-		std::vector<int> way;
-		for (int v = to; v >= 0; v = previous[v])
-			way.push_back(v);
-		std::reverse(way.begin(), way.end());
-		return way;
 	}
 
 	/// Whether two places are one in mesh units.
@@ -482,6 +500,8 @@ private:
 struct CutCurves
 {
 	int components = 0;
+	/// Which these are, see connectedComponents().
+	std::vector<int> which;
 
 	/// One plain line; empty if there are none.
 	std::string text() const
@@ -562,6 +582,7 @@ inline CurveSkeleton broughtInside(CurveSkeleton skeleton, const std::vector<Poi
 		std::vector<int> ofComponent;
 		if (isCut) {
 			++found.components;
+			found.which.push_back(c);
 			ofComponent = curve.cutOff();
 		}
 		std::vector<std::array<int, 2>> remaining = curve.curveEdges();
@@ -600,6 +621,32 @@ inline CurveSkeleton broughtInside(CurveSkeleton skeleton, const std::vector<Poi
 }
 
 /**
+ * For each component of a resampled surface the one of the surface that it was made from; empty where they do
+ * not pair off. The nearest vertex may be a neighbouring body's: most of them tell.
+ * @param ofCurve    for each node of the curve the component of the resampled surface, of @param ofSurface of them.
+ * @param node       for each vertex of the other surface its node.
+ * @param component  of that vertex, of @param components.
+ */
+inline std::vector<int> resampledFrom(const std::vector<int>& ofCurve, int ofSurface,
+	const std::vector<int>& node, const std::vector<int>& component, int components)
+{
+	std::vector<std::map<int, int>> votes(static_cast<size_t>(components));
+	for (size_t v = 0; v < node.size(); ++v)
+		if (node[v] >= 0)
+			++votes[size_t(component[v])][ofCurve[size_t(node[v])]];
+	std::vector<int> partner(static_cast<size_t>(ofSurface), -1);
+	for (int c = 0; c < components; ++c) {
+		const auto& count = votes[size_t(c)];
+		const auto most = std::max_element(count.begin(), count.end(),
+			[](const auto& a, const auto& b) { return a.second < b.second; });
+		if (most == count.end() || most->first < 0 || partner[size_t(most->first)] >= 0)
+			return {};
+		partner[size_t(most->first)] = c;
+	}
+	return partner;
+}
+
+/**
  * Brings the curve of a resampled surface inside the one that was resampled, see broughtInside(): the edges of
  * the resampling cut its corners. Radii and significance are completed.
  *
@@ -616,20 +663,9 @@ inline void bringInsideInput(CurveSkeleton& curve, const SurfaceMesh& surface,
 	const std::vector<int> component = connectedComponents(input, &components, begin);
 	const std::vector<int> ofCurve =
 		componentOfNodes(curve, connectedComponents(surface, &ofSurface, begin));
-	// The nearest vertex may be a neighbouring body's: most of them tell.
-	std::vector<std::map<int, int>> votes(static_cast<size_t>(components));
-	for (size_t v = 0; v < node.size(); ++v)
-		if (node[v] >= 0)
-			++votes[size_t(component[v])][ofCurve[size_t(node[v])]];
-	std::vector<int> partner(static_cast<size_t>(ofSurface), -1);
-	for (int c = 0; c < components; ++c) {
-		const auto& count = votes[size_t(c)];
-		const auto most = std::max_element(count.begin(), count.end(),
-			[](const auto& a, const auto& b) { return a.second < b.second; });
-		if (most == count.end() || most->first < 0 || partner[size_t(most->first)] >= 0)
-			return;
-		partner[size_t(most->first)] = c;
-	}
+	const std::vector<int> partner = resampledFrom(ofCurve, ofSurface, node, component, components);
+	if (partner.empty())
+		return;
 	std::vector<int> ofNode;
 	for (int c : ofCurve) {
 		if (c < 0 || partner[size_t(c)] < 0)

@@ -84,6 +84,20 @@ public:
 		return hidden;
 	}
 
+	/// A progress that is shown and cannot be cancelled: for steps that must not end halfway.
+	Progress showOnly() const
+	{
+		Progress shown = *this;
+		if (job)
+			shown.job = std::make_shared<Job>(Job {[job = job](int percent, const char* what) {
+				job->percent = percent;
+				job->what = what;
+				job->callback(percent, what);
+				return true;
+			}});
+		return shown;
+	}
+
 	/**
 	 * Reports that `fraction` of this window's work is done.
 	 * @throws Cancelled if the callback answers false.

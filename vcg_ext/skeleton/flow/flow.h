@@ -115,6 +115,7 @@ inline Stage step(Stage stage, const Parameters& given, const Progress& progress
 	frames.enter(stage);
 	detail::stepInFrames(stage, frames, parameters, progress);
 	frames.leave(stage);
+	stage.mesh.trim();
 	return stage;
 }
 

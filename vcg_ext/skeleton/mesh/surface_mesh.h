@@ -508,6 +508,14 @@ public:
 		--liveVertices;
 	}
 
+	/// Gives back the memory that splits and removed elements have left spare: for meshes that are kept.
+	void trim()
+	{
+		position.shrink_to_fit();
+		for (std::vector<int>* array : {&origins, &twins, &outgoings, &stamps})
+			array->shrink_to_fit();
+	}
+
 	/**
 	 * Closes the holes in the numbering, order kept, and makes each vertex's outgoing half-edge its
 	 * lowest one, so that the mesh equals one built from its triangles.

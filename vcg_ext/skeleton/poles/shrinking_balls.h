@@ -19,11 +19,13 @@
 #include <skeleton/spatial/inner_segments.h>
 #include <skeleton/spatial/maximal_ball.h>
 #include <skeleton/spatial/point_tree.h>
+#include <skeleton/spatial/solid_test.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <vector>
 
 namespace vcg::tri::mcf {
@@ -215,6 +217,30 @@ inline OsculatingNormals osculatingNormals(const SurfaceMesh& mesh, const Progre
 	return found;
 }
 
+/**
+ * 1 for the vertices of triangles that are thinner than rounding leaves them a normal: such a triangle does not
+ * tell on which side of it the inside is. Empty if there are none.
+ * @throws Cancelled
+ */
+inline std::vector<char> cornersOfSlivers(
+	const SurfaceMesh& mesh, const UnitFrame& frame, const Progress& progress)
+{
+	constexpr double thinnest = 1e-6; // of the diagonal: a few steps of PrincipalFrame::onGrid()
+	std::vector<char> isCorner;
+	reportedLoop(mesh.faceSlots(), progress, "Measuring the surface", [&](int f) {
+		double longest = 0;
+		for (int h = 3 * f; h < 3 * f + 3; ++h)
+			longest = std::max(longest, mesh.squaredLength(h));
+		longest = std::sqrt(longest);
+		if (frame.lengthIn(mesh.areaVector(f).Norm()) > thinnest * frame.diagonal() * longest)
+			return;
+		isCorner.resize(size_t(mesh.vertexSlots()), 0);
+		for (int v : mesh.triangle(f))
+			isCorner[size_t(v)] = 1;
+	});
+	return isCorner;
+}
+
 } // namespace detail
 
 /**
@@ -252,7 +278,8 @@ inline PoleSet shrinkingBalls(const std::vector<Point3d>& points,
  *
  * A ball whose centre cannot be seen from its vertex through the inside reached out through a coarse
  * triangle, or through a wall thinner than its tolerance: then it is searched again without tolerance,
- * and if that reaches out as well, there is no pole.
+ * and if that reaches out as well, there is no pole. At triangles that are too thin to tell the inside, the
+ * winding number of the centre must.
  * @param vertices  ids, each at most once.
  * @param delta     as in shrinkingBalls().
  * @pre mesh is compact.
@@ -280,12 +307,18 @@ inline PoleSet shrinkingBallPoles(const SurfaceMesh& mesh, const std::vector<int
 			return;
 		touches.push_back({tree.point(slot), normals.normal[v], tolerance, place[v], slot});
 	});
-	const InnerSegments segments(mesh, tree, progress.part(0.25, 0.4));
+	const InnerSegments segments(mesh, tree, progress.part(0.25, 0.35));
+	const std::vector<char> isUnclear =
+		detail::cornersOfSlivers(mesh, frame, progress.part(0.35, 0.4));
+	std::optional<SolidTest> solid;
+	if (!isUnclear.empty())
+		solid.emplace(mesh.position, mesh.triangles(begin), begin);
 	return detail::maximalBalls(
 		touches, vertices.size(), frame, tree, progress.part(0.4, 1),
 		[&](int i, const Point3d& centre, double, double depth) {
 			const int v = vertices[i];
-			return segments.staysInside(v, centre, depth, normals.leadsInside[v]);
+			return segments.staysInside(v, centre, depth, normals.leadsInside[v])
+				&& (isUnclear.empty() || !isUnclear[v] || solid->isInside(solid->in(centre)));
 		},
 		[&](int i, const Point3d& normal, double depth) {
 			return segments.isThinner(vertices[i], normal * -depth);

@@ -239,6 +239,43 @@ struct RefineReport
 	int outside = 0, tooLong = 0, otherTopology = 0, notFinite = 0;
 	/// Nodes of curves that were kept which are outside the surface, and how many curves have such nodes.
 	int nodesOutside = 0, curvesOutside = 0;
+	/// A component that keeps the curve that it had.
+	struct Kept
+	{
+		int component; ///< of the surface, see connectedComponents()
+		refining::Defect defect;
+		int nodesOutside;
+	};
+	std::vector<Kept> kept;
+
+	/// Counts a component.
+	void add(int component, refining::Defect defect, int outside)
+	{
+		using refining::Defect;
+		++components;
+		switch (defect) {
+		case Defect::None: ++refined; return;
+		case Defect::NotFinite: ++notFinite; break;
+		case Defect::TooLong: ++tooLong; break;
+		case Defect::Topology: ++otherTopology; break;
+		case Defect::Outside: ++this->outside; break;
+		}
+		nodesOutside += outside;
+		curvesOutside += outside > 0;
+		kept.push_back({component, defect, outside});
+	}
+
+	/// The report where a component is refined all the same.
+	RefineReport withRefined(int component) const
+	{
+		RefineReport result;
+		for (const Kept& one : kept)
+			if (one.component != component)
+				result.add(one.component, one.defect, one.nodesOutside);
+		result.components = components;
+		result.refined = components - int(result.kept.size());
+		return result;
+	}
 
 	/// Fraction of the components that are refined; 1 for a skeleton without components.
 	double fraction() const { return components > 0 ? double(refined) / components : 1; }
@@ -352,18 +389,6 @@ inline NestedBranches nestedIn(
 			skeleton.radius[v] = std::max(surface.clearance(skeleton.position[v]), 0.0);
 		});
 	return nestedBranches(skeleton, progress);
-}
-
-inline void addTo(RefineReport& report, Defect defect)
-{
-	++report.components;
-	switch (defect) {
-	case Defect::None: ++report.refined; break;
-	case Defect::NotFinite: ++report.notFinite; break;
-	case Defect::TooLong: ++report.tooLong; break;
-	case Defect::Topology: ++report.otherTopology; break;
-	case Defect::Outside: ++report.outside; break;
-	}
 }
 
 /**
@@ -589,14 +614,11 @@ inline Refinement refineChecked(const CurveSkeleton& curve, const SurfaceMesh& s
 			scale.setLeast(refining::leastScale(part, closest, scale, parameters.spacing));
 		const refining::Defect defect = refining::refineChecked(part, closest, own,
 			isThin(c) ? scale : refining::sameEverywhere, parameters, ofComponent.part(0.1, 0.95));
-		refining::addTo(report, defect);
 		const bool isRefined = defect == refining::Defect::None;
-		if (!isRefined) {
-			const int outside =
-				refining::InsideCheck(closest, own).countOutside(part, ofComponent.cancelOnly());
-			report.nodesOutside += outside;
-			report.curvesOutside += outside > 0;
-		}
+		report.add(c, defect,
+			isRefined
+				? 0
+				: refining::InsideCheck(closest, own).countOutside(part, ofComponent.cancelOnly()));
 
 		const std::vector<std::vector<int>> neighbours = part.neighbours();
 		const std::vector<int>& ids = vertices.ids[c];

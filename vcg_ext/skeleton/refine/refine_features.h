@@ -7,6 +7,7 @@
 #ifndef VCG_MCF_REFINE_FEATURES_H
 #define VCG_MCF_REFINE_FEATURES_H
 
+#include "holding_balls.h"
 #include "refine_centre.h"
 #include "refine_graph.h"
 #include "refine_peaks.h"
@@ -139,8 +140,9 @@ struct FeatureBranch
  * a limb leads to its body, and where that is flat towards a node, kept in the middle.
  * @param towards  a node next to the feature.
  */
-inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const ClosestSurface& surface,
-	const Point3d& start, int towards, double spacing, const LocalScale& scale)
+inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const HoldingBalls& balls,
+	const ClosestSurface& surface, const Point3d& start, int towards, double spacing,
+	const LocalScale& scale)
 {
 	constexpr int mostSteps = 400;
 	// Of the next direction; the slope is 1 where the way leads straight away from the surface.
@@ -166,8 +168,8 @@ inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const ClosestSur
 			const std::vector<Point3d> wide = widePlaces(surface, x, hit, ball.contact, direction);
 			flat += wide.size() == 2;
 			rim += wide.size() == 1;
-			bare += std::any_of(wide.begin(), wide.end(),
-				[&](const Point3d& p) { return holdingNode(skeleton, p) < 0; });
+			bare += std::any_of(
+				wide.begin(), wide.end(), [&](const Point3d& p) { return balls.deepest(p) < 0; });
 		}
 		if (i > 0
 			&& !isSegmentInside(
@@ -175,7 +177,7 @@ inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const ClosestSur
 			return branch;
 		branch.points.push_back(x);
 		branch.radii.push_back(hit.distance);
-		branch.joint = holdingNode(skeleton, x);
+		branch.joint = balls.deepest(x);
 		if (branch.joint >= 0) {
 			branch.flat = double(flat) / double(branch.points.size());
 			branch.rim = double(rim) / double(branch.points.size());
@@ -282,14 +284,14 @@ inline int nearestInView(const CurveSkeleton& skeleton, const ClosestSurface& su
  * @throws Cancelled
  */
 inline FeatureBranch branchInto(const Peak& peak, const CurveSkeleton& skeleton,
-	const SurfaceComponent& component, const Heights& heights, const ClosestSurface& surface,
-	const FeatureRule& rule, const Progress& progress)
+	const HoldingBalls& balls, const SurfaceComponent& component, const Heights& heights,
+	const ClosestSurface& surface, const FeatureRule& rule, const Progress& progress)
 {
 	// Down from the peak until what is above encloses a point with a way to the curve.
 	const auto branchTowards = [&](int node) {
 		FeatureBranch branch;
 		for (double down = rule.leastRise; branch.joint < 0 && down < peak.height; down *= 2)
-			branch = traceBranch(skeleton, surface,
+			branch = traceBranch(skeleton, balls, surface,
 				middleOfTip(component, heights, peak.vertex, peak.height - down, progress), node,
 				rule.spacing, rule.scale);
 		return branch;
@@ -343,13 +345,16 @@ inline void growFeatures(CurveSkeleton& skeleton, const SurfaceComponent& compon
 		}
 	};
 	const int nodes = int(skeleton.position.size());
+	HoldingBalls balls(skeleton);
 	std::vector<Feature> features;
 	for (const Peak& peak : peaks(skeleton, component, heights, rule, progress.part(0.4, 0.8))) {
-		FeatureBranch branch =
-			branchInto(peak, skeleton, component, heights, surface, rule, progress.cancelOnly());
+		FeatureBranch branch = branchInto(
+			peak, skeleton, balls, component, heights, surface, rule, progress.cancelOnly());
 		const bool grown = leadsIntoLimb(branch, peak, rule);
-		if (grown)
+		if (grown) {
 			add(branch);
+			balls.addNew();
+		}
 		features.push_back({peak, std::move(branch), grown});
 	}
 	// A corner whose way ends in a branch that has just grown is one beside a limb.

@@ -360,20 +360,6 @@ inline CurveSkeleton withWholeJunctions(CurveSkeleton skeleton, double least)
 		});
 }
 
-/// The node whose ball a point is deepest in, in radii; -1 outside of all. O(V).
-inline int holdingNode(const CurveSkeleton& skeleton, const Point3d& point)
-{
-	int holding = -1;
-	double least = 1;
-	for (size_t v = 0; v < skeleton.position.size(); ++v)
-		if (const double r = skeleton.radius[v]; r > 0)
-			if (const double depth = Distance(skeleton.position[v], point) / r; depth < least) {
-				least = depth;
-				holding = int(v);
-			}
-	return holding;
-}
-
 /// Length of a polyline up to each of its points.
 inline std::vector<double> lengthsAlong(const std::vector<Point3d>& line)
 {
@@ -483,6 +469,31 @@ inline BallChain withShortEdges(const BallChain& line, const std::vector<double>
 	return finer;
 }
 
+/**
+ * A polyline without nodes that follow another one in less than a quarter of the spacing there, as the short
+ * steps of a way that was traced through a thin limb do, where the straight way past them is inside.
+ * @param spacings at its points; on return at those that are left.
+ */
+inline BallChain withoutCrowdedNodes(
+	const BallChain& line, std::vector<double>& spacings, const ClosestSurface& surface)
+{
+	constexpr double crowded = 0.25;
+	BallChain kept = {{line.points.front()}, {line.radii.front()}};
+	std::vector<double> ofKept(1, spacings.front());
+	for (size_t i = 1; i < line.points.size(); ++i) {
+		const bool isLast = i + 1 == line.points.size();
+		if (!isLast && Distance(kept.points.back(), line.points[i]) < crowded * spacings[i]
+			&& isSegmentInside(surface, kept.points.back(), kept.radii.back(), line.points[i + 1],
+				line.radii[i + 1]))
+			continue;
+		kept.points.push_back(line.points[i]);
+		kept.radii.push_back(line.radii[i]);
+		ofKept.push_back(spacings[i]);
+	}
+	spacings = std::move(ofKept);
+	return kept;
+}
+
 /// Whether a chain is inside; measures the radii where the bounds are not enough to tell.
 inline bool isInside(BallChain& chain, const ClosestSurface& surface)
 {
@@ -504,7 +515,7 @@ inline bool isInside(BallChain& chain, const ClosestSurface& surface)
 /**
  * Samples each branch evenly, about `spacing` apart, less where the scale is smaller. Junctions and tips keep their places, what had
  * merged into a node goes to the one nearest along the branch. Where a chord would leave the
- * surface, the branch keeps its nodes and only its long edges are cut.
+ * surface, the branch keeps its nodes, but for crowded ones, and only its long edges are cut.
  * @pre radius holds the distances from the surface, or lower bounds. @post lower bounds.
  */
 inline CurveSkeleton evenlySampled(const CurveSkeleton& skeleton, const ClosestSurface& surface,
@@ -538,12 +549,13 @@ inline CurveSkeleton evenlySampled(const CurveSkeleton& skeleton, const ClosestS
 			line.radii.push_back(skeleton.radius[v]);
 		}
 		const double length = branchLength(skeleton, branch);
-		const std::vector<double> spacings = spacingsAlong(line, surface, spacing, scale);
+		std::vector<double> spacings = spacingsAlong(line, surface, spacing, scale);
 		BallChain chain = scale.isUniform()
 			? evenPoints(line, std::max(least, int(std::lround(length / spacing))))
 			: gradedPoints(line, spacings, least);
 		if (!isInside(chain, surface)) {
-			const BallChain kept = withShortEdges(line, spacings);
+			const BallChain thinned = withoutCrowdedNodes(line, spacings, surface);
+			const BallChain kept = withShortEdges(thinned, spacings);
 			if (int(kept.points.size()) > least)
 				chain = kept;
 		}

@@ -7,6 +7,7 @@
 #ifndef VCG_MCF_REFINE_TIPS_H
 #define VCG_MCF_REFINE_TIPS_H
 
+#include "holding_balls.h"
 #include "local_scale.h"
 #include "refine_centre.h"
 #include "refine_graph.h"
@@ -70,6 +71,7 @@ inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, c
 	constexpr double thinnestLimb = 1e-4; // diagonals; a cusp goes on to nothing
 	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
 	const int count = int(neighbours.size());
+	HoldingBalls balls(skeleton);
 	for (int v = 0; v < count; ++v) {
 		if (neighbours[v].size() != 1 || skeleton.radius[v] <= 0)
 			continue;
@@ -101,7 +103,7 @@ inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, c
 			const double gain = (s + reached - r) / s;
 			const bool isTooThin = reached < least
 				&& (gain < gainOfLimb || reached < std::max(skeleton.radius[v] / 2, thinnestLimb));
-			if (isTooThin || gain < rule.leastGain || holdingNode(skeleton, front) >= 0
+			if (isTooThin || gain < rule.leastGain || balls.deepest(front) >= 0
 				|| !isSegmentInside(surface, x, r, y, reached))
 				break;
 			left -= isWide ? s : 0;
@@ -109,6 +111,7 @@ inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, c
 			skeleton.position.push_back(y);
 			skeleton.radius.push_back(reached);
 			skeleton.edges.push_back({tip, next});
+			balls.addNew();
 			// The branch may bend, but turns slowly: a quarter of the way in each step.
 			direction = direction * 0.75 + (y - x) * (0.25 / s);
 			direction /= direction.Norm();

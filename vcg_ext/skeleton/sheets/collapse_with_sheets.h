@@ -23,17 +23,26 @@ namespace vcg::tri::mcf {
 
 namespace detail {
 
-/// Whether the nodes and the curves of a skeleton are inside a surface; sheets by their nodes.
-/// @throws Cancelled. Complexity: about O(F + nodes).
+/// Whether a skeleton is inside a surface: nodes, curves, the sides and the middles of the faces.
+/// @throws Cancelled. Complexity: about O((F + nodes) log F).
 inline bool isInside(const MesoSkeleton& skeleton, const std::vector<Point3d>& surface,
 	const std::vector<Triangle>& triangles, const Progress& progress)
 {
 	const SolidTest solid(surface, triangles, progress);
 	const auto place = [&](int v) { return solid.in(skeleton.position[size_t(v)]); };
+	const auto isSegmentInside = [&](int v, int w) {
+		progress.report(1, "Collapsing to curves");
+		return solid.segmentIsInside(place(v), place(w), outsideTolerance);
+	};
 	return std::all_of(skeleton.position.begin(), skeleton.position.end(), [&](const Point3d& p) {
 		return solid.isInside(solid.in(p), outsideTolerance);
 	}) && std::all_of(skeleton.edges.begin(), skeleton.edges.end(), [&](const auto& edge) {
-		return solid.segmentIsInside(place(edge[0]), place(edge[1]), outsideTolerance);
+		return isSegmentInside(edge[0], edge[1]);
+	}) && std::all_of(skeleton.faces.begin(), skeleton.faces.end(), [&](const Triangle& t) {
+		for (int k = 0; k < 3; ++k)
+			if (!isSegmentInside(t[k], t[(k + 1) % 3]))
+				return false;
+		return solid.isInside((place(t[0]) + place(t[1]) + place(t[2])) / 3, outsideTolerance);
 	});
 }
 

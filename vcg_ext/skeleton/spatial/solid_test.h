@@ -69,8 +69,8 @@ public:
 	{
 		return middle + (axis(0) * p[0] + axis(1) * p[1] + axis(2) * p[2]) * unit;
 	}
-	/// A vertex of the surface, in the coordinates of the test.
-	const Point3d& vertex(int v) const { return corner[v]; }
+	/// The vertices of the surface, in the coordinates of the test.
+	const std::vector<Point3d>& vertices() const { return corner; }
 	const std::vector<Triangle>& triangles() const { return faces; }
 
 	/**
@@ -119,15 +119,22 @@ public:
 		return true;
 	}
 
-	/// How far the ray from a point of the surface goes until it meets another part of it, at most 1.
+	/// Where a ray meets the surface.
+	struct Crossing
+	{
+		double distance;
+		int face; ///< -1: nowhere
+	};
+
+	/// Where the ray from a point of the surface meets another part of it, no farther than 1.
 	/// @param direction of unit length.
-	double chord(const Point3d& from, const Point3d& direction) const
+	Crossing chord(const Point3d& from, const Point3d& direction) const
 	{
 		constexpr double start = 1e-9;
-		double nearest = 1;
-		tree->forEachCrossing(from, from + direction, [&](int, double t, bool) {
-			if (t > start)
-				nearest = std::min(nearest, t);
+		Crossing nearest = {1, -1};
+		tree->forEachCrossing(from, from + direction, [&](int face, double t, bool) {
+			if (t > start && t < nearest.distance)
+				nearest = {t, face};
 		});
 		return nearest;
 	}
