@@ -448,7 +448,8 @@ struct PrintedEnergy
 
 	PrintedEnergy(const Stage& start, double wL) :
 			start(start), wL(wL), weight(cotangentSums(start.mesh))
-	{}
+	{
+	}
 
 	double operator()(const std::vector<Point3d>& x) const
 	{

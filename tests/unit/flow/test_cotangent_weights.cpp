@@ -81,8 +81,7 @@ TEST(CotangentLaplacian, HasTheCotangentsOfTheAnglesTimesItsFactors)
 			 shapes::joined({shapes::torus(1, 0.3, 12, 8), shapes::box()})}) {
 		const SurfaceMesh mesh = soup.mesh();
 		// cot(alpha) + cot(beta) of each edge, at least 0.002, and minus their sum on the diagonal.
-		Eigen::MatrixXd expected =
-			Eigen::MatrixXd::Zero(mesh.vertexSlots(), mesh.vertexSlots());
+		Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(mesh.vertexSlots(), mesh.vertexSlots());
 		for (int f = 0; f < mesh.faceSlots(); ++f) {
 			const Triangle t = mesh.triangle(f);
 			for (int k = 0; k < 3; ++k) {

@@ -882,6 +882,31 @@ TEST(Refine, MovesLongEdgesThatLeaveTheSurfaceIn)
 	EXPECT_TRUE(isInside(s, mesh));
 }
 
+TEST(Refine, NodesGoBackWhoseEdgesWouldCutACorner)
+{
+	const SurfaceMesh mesh =
+		shapes::cells(5, 5, 1, [](int i, int j, int) { return i == 0 || j == 0; }).mesh();
+	CurveSkeleton before, moved;
+	before.position = {{0.5, 4.5, 0.5}, {0.5, 0.6, 0.5}, {0.6, 0.5, 0.5}, {4.5, 0.5, 0.5}};
+	before.edges = {{0, 1}, {1, 2}, {2, 3}};
+	before.radius.assign(4, 0.4);
+	moved = before;
+	moved.position[0] = {0.6, 4.5, 0.5};
+	moved.position[1] = {0.5, 1.8, 0.5}; // each inside, but not what is between them
+	moved.position[2] = {1.8, 0.5, 0.5};
+	const std::vector<Point3d> wanted = moved.position;
+	ASSERT_TRUE(isInside(before, mesh));
+	ASSERT_FALSE(isInside(moved, mesh));
+	std::vector<int> vertices(mesh.position.size());
+	std::iota(vertices.begin(), vertices.end(), 0);
+	refining::keepEdgesInside(moved, before, ClosestSurface(mesh, vertices, 0.1));
+	EXPECT_TRUE(isInside(moved, mesh));
+	EXPECT_EQ(moved.position[0], wanted[0]) << "has done no harm";
+	EXPECT_EQ(moved.position[1], before.position[1]);
+	EXPECT_EQ(moved.position[2], before.position[2]);
+	EXPECT_EQ(moved.position[3], wanted[3]);
+}
+
 TEST(Refine, NeverCutsThroughThinWalls)
 {
 	// A tube in the shape of a U: the straight way between its legs is outside. The tube and what its legs are apart
@@ -916,7 +941,8 @@ TEST(Refine, NeverCutsThroughThinWalls)
 			int outside = 0;
 			for (const auto& [v, w] : s.edges)
 				for (int i = 0; i <= 20; ++i)
-					outside += !isInTube(s.position[v] + (s.position[w] - s.position[v]) * (i / 20.0));
+					outside +=
+						!isInTube(s.position[v] + (s.position[w] - s.position[v]) * (i / 20.0));
 			EXPECT_EQ(outside, 0);
 			// What belongs to one leg stays there.
 			const double middle = (last + 1) / 2.0;

@@ -289,8 +289,8 @@ TEST(Resample, ThinWallsStayApart)
 		for (int f = 0; f < surface.faceSlots(); ++f) {
 			const Triangle t = surface.triangle(f);
 			Point3d normal = surface.areaVector(f);
-			if (std::all_of(
-					t.begin(), t.end(), [&](int v) { return surface.position[v].Norm() > 1 - 1e-6; }))
+			if (std::all_of(t.begin(), t.end(),
+					[&](int v) { return surface.position[v].Norm() > 1 - 1e-6; }))
 				sphere = std::min(sphere, normal.Normalize() * surface.position[t[0]]);
 		}
 		ASSERT_GT(sphere, 1 - thickness);

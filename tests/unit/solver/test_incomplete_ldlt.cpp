@@ -71,7 +71,8 @@ Range preconditionedEigenvalues(
 	double rz = r.dot(z);
 	const double start = rz;
 	int k = 0;
-	for (double fromLast = 0; k < steps && rz > 1e-10 * start; ++k) { // single precision has no more
+	for (double fromLast = 0; k < steps && rz > 1e-10 * start;
+		 ++k) { // single precision has no more
 		const Eigen::VectorXd Ap = M * (M * p) + diagonal * p;
 		const double alpha = rz / p.dot(Ap);
 		r -= alpha * Ap;
@@ -110,9 +111,8 @@ TEST(IncompleteFactor, PreconditionsAsTheSolverExpects)
 	// ((sqrt k + 1) / (sqrt k - 1))^2 in each iteration, where k is the quotient of the extreme ones.
 	// The solver counts on a tenth.
 	const double root = std::sqrt(0.1), expected = std::pow((1 + root) / (1 - root), 2); // 3.7
-	for (const shapes::Soup& soup :
-		{shapes::jittered(shapes::torus(1, 0.3, 90, 30), 0.005), shapes::capsule(), shapes::sphere(4),
-			shapes::plate(3)}) {
+	for (const shapes::Soup& soup : {shapes::jittered(shapes::torus(1, 0.3, 90, 30), 0.005),
+			 shapes::capsule(), shapes::sphere(4), shapes::plate(3)}) {
 		const SymmetricRows L = systems::orderedLaplacian(soup.mesh());
 		std::vector<float> velocity(size_t(L.size()), 0.01f), withPoles = velocity;
 		for (size_t i = 0; i < withPoles.size(); ++i)
