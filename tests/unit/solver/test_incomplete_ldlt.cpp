@@ -37,14 +37,14 @@ double relativeError(const SymmetricRows& M, const std::vector<float>& shift, fl
 	return (X - exact).norm() / exact.norm();
 }
 
-struct Range
+struct Extremes
 {
-	double least, largest;
+	double min, max;
 };
 
 /// The extreme eigenvalues of (L D L^T)^-2 (M^2 + D) for the factor of M + sqrt D, by the tridiagonal matrix of
 /// conjugate gradients (Lanczos).
-Range preconditionedEigenvalues(
+Extremes preconditionedEigenvalues(
 	const SymmetricRows& rows, const std::vector<float>& D, float dropTolerance)
 {
 	constexpr int steps = 25;
@@ -117,12 +117,12 @@ TEST(IncompleteFactor, PreconditionsAsTheSolverExpects)
 		std::vector<float> velocity(size_t(L.size()), 0.01f), withPoles = velocity;
 		for (size_t i = 0; i < withPoles.size(); ++i)
 			withPoles[i] += i % 3 ? 0.04f : 0;
-		const Range exact = preconditionedEigenvalues(L, velocity, 0);
-		EXPECT_GT(exact.least, 0.5 * (1 - 1e-3));
-		EXPECT_LT(exact.largest, 1 + 1e-3);
+		const Extremes exact = preconditionedEigenvalues(L, velocity, 0);
+		EXPECT_GT(exact.min, 0.5 * (1 - 1e-3));
+		EXPECT_LT(exact.max, 1 + 1e-3);
 		for (const std::vector<float>& D : {velocity, withPoles}) {
-			const Range range = preconditionedEigenvalues(L, D, detail::dropTolerance);
-			EXPECT_LT(range.largest, expected * range.least) << L.size();
+			const Extremes range = preconditionedEigenvalues(L, D, detail::dropTolerance);
+			EXPECT_LT(range.max, expected * range.min) << L.size();
 		}
 	}
 }
@@ -131,12 +131,12 @@ TEST(IncompleteFactor, DroppingSmallEntriesHardlyChangesTheSolution)
 {
 	// The eigenvalues of the exact preconditioner are within a factor of 2. For them to stay within one of 3.7 after
 	// dropping, those of this factor, which is applied twice, may lie sqrt(3.7 / 2) = 1.36 apart: 1 / 1.17 to 1.17.
-	constexpr double most = 0.17;
+	constexpr double maxError = 0.17;
 	const SymmetricRows L =
 		systems::orderedLaplacian(shapes::jittered(shapes::torus(1, 0.3, 90, 30), 0.005).mesh());
 	const std::vector<float> shift(size_t(L.size()), 0.1f);
 	const double shipped = relativeError(L, shift, detail::dropTolerance);
-	EXPECT_LT(shipped, most);
+	EXPECT_LT(shipped, maxError);
 	EXPECT_LT(2 * relativeError(L, shift, detail::dropTolerance / 4), shipped);
 	EXPECT_LT(shipped, relativeError(L, shift, 4 * detail::dropTolerance));
 	EXPECT_GT(shipped, 100 * relativeError(L, shift, 0)) << "nothing was dropped";
@@ -146,7 +146,7 @@ TEST(IncompleteFactor, DroppingSmallEntriesHardlyChangesTheSolution)
 	IncompleteFactor(L, shift, detail::dropTolerance).solve(x);
 	for (const FloatQuad& xi : x)
 		for (int k = 0; k < 3; ++k)
-			EXPECT_NEAR(xi[k] * (k == 1 ? -1 : 1), k + 1, most * (k + 1));
+			EXPECT_NEAR(xi[k] * (k == 1 ? -1 : 1), k + 1, maxError * (k + 1));
 }
 
 TEST(IncompleteFactor, AnyNumberingIsRight)

@@ -177,11 +177,11 @@ inline SheetCollapse collapseOneKeepingSheets(
 	};
 	const auto fits = [&](const MesoSkeleton& skeleton, size_t first, size_t end) {
 		// Walls that have met leave half of their area: 0.40 to 0.51 of it where they have, from 0.79 where not.
-		constexpr double largestPart = 0.65;
+		constexpr double maxPart = 0.65;
 		double walls = 0;
 		for (size_t i = first; i < end; ++i)
 			walls += areaOf(parts[i], area);
-		return skeleton.sheetArea() < largestPart * walls && skeleton.betti() == solid;
+		return skeleton.sheetArea() < maxPart * walls && skeleton.betti() == solid;
 	};
 	bool found = false;
 	if (!parts.empty()) {
