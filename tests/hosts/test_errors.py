@@ -245,16 +245,24 @@ class TestHardButRight:
         node = soup.mesh(0).vertex_custom_scalar_attribute_array("mcfskel_node")
         assert (node[:-1] >= 0).all() and node[-1] == -1
 
-    @pytest.mark.parametrize("create", ["create_sphere", "create_cube"])
-    def test_bodies_without_a_limb(self, create):
+    @pytest.mark.parametrize("create, inradius, circumradius", [
+        ("create_sphere", 1, 1), ("create_cube", 1 / 2, 3**0.5 / 2)])
+    def test_bodies_without_a_limb(self, create, inradius, circumradius):
         layers = pymeshlab.MeshSet()
         getattr(layers, create)()
         vertices = layers.current_mesh().vertex_matrix()
         results = layers.apply_filter(FULL)
         assert (results["components"], results["cycles"], results["converged"]) == (1, 0, 1)
         assert results["skeleton_edges"] >= 1
-        nodes = layers.current_mesh().vertex_matrix()
-        assert np.linalg.norm(nodes - vertices.mean(axis=0), axis=1).max() < 0.5 * diagonal(vertices)
+        curve = layers.current_mesh()
+        centre = (vertices.min(axis=0) + vertices.max(axis=0)) / 2
+        # One short curve around the centre: the largest ball within the body holds it, and half of that one.
+        assert np.linalg.norm(curve.vertex_matrix() - centre, axis=1).max() < inradius / 2
+        assert results["skeleton_length"] < inradius
+        assert results["junctions"] == 0
+        # The radius is a mean distance from the surface.
+        radius = curve.vertex_scalar_array()
+        assert 0.9 * inradius < np.median(radius) < 1.01 * circumradius
 
     def test_copies_of_faces_and_a_degenerate_one(self):
         vertices, faces = capsule()

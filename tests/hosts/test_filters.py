@@ -459,6 +459,41 @@ def surfaces():
     return result
 
 
+def distances(points: np.ndarray, nodes: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """The distance of each point from a graph."""
+    start, way = nodes[edges[:, 0]], nodes[edges[:, 1]] - nodes[edges[:, 0]]
+    along = ((points[:, None] - start) * way).sum(axis=2) / (way**2).sum(axis=1)
+    foot = start + np.clip(along, 0, 1)[..., None] * way
+    return np.linalg.norm(points[:, None] - foot, axis=2).min(axis=1)
+
+
+class TestKnownSkeletons:
+    """Shapes of tubes whose axes are known: all of the axis is met, and nothing else is there."""
+
+    @pytest.mark.parametrize("name", [
+        "bent_tube", "horn", "knot", "torus_capsule", "tree", "y_tube"])
+    def test_are_met(self, name):
+        shape = json.loads((MESHES / f"{name}.json").read_text())
+        axis = shape["skeleton"]
+        assert axis["complete"]
+        nodes, edges = np.array(axis["nodes"]), np.array(axis["edges"])
+        layers = opened(name)
+        layers.apply_filter(FULL, refine=False)
+        for mean, refined in [(0.01, False), (0.0015, True)]:  # of the diagonal
+            if refined:
+                layers.apply_filter(REFINE)
+            curve = layers.current_mesh()
+            assert curve.label().endswith("_refined" if refined else "_skeleton")
+            own, pairs = curve.vertex_matrix(), curve.edge_matrix()
+            degree = np.bincount(pairs.ravel(), minlength=len(own))
+            assert (degree == 1).sum() == shape["expected_tips"]
+            assert len(pairs) - len(own) + shape["components"] == shape["expected_cycles"]
+            away, missed = distances(own, nodes, edges), distances(nodes, own, pairs)
+            for distance in (away, missed):
+                assert distance.mean() < mean * shape["diagonal"]
+                assert distance.max() < 0.01 * shape["diagonal"]
+
+
 class TestDenoise:
     def test_brings_a_noisy_surface_nearer_to_the_clean_one(self, surfaces):
         record = json.loads((MESHES / "torus.json").read_text())["skeleton"]

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Meso-skeletons as users see them: kinds of vertices, vertices that are held, sheets that are kept."""
 
+import json
 import re
 import subprocess
 import sys
@@ -11,7 +12,7 @@ import numpy as np
 import pymeshlab
 import pytest
 
-from conftest import (COLLAPSE, FULL, RESAMPLE, ROOT, STEP, failing, fingerprint, layer, opened,
+from conftest import (COLLAPSE, FULL, MESHES, RESAMPLE, ROOT, STEP, failing, fingerprint, layer, opened,
                       scalars)
 
 COARSE = {"target_length": pymeshlab.PercentageValue(1.2)}
@@ -176,6 +177,9 @@ class TestKeepSheets:
             plain.current_mesh().vertex_matrix(), sheets.current_mesh().vertex_matrix())
 
     def test_the_threshold_decides(self):
+        shape = json.loads((MESHES / "cup.json").read_text())["parameters"]
+        wide, high, wall = shape["radius"], shape["height"], shape["wall"]
+        whole = np.pi * wide**2 + 2 * np.pi * wide * high  # of the bottom and the wall, in their middle
         areas = []
         for threshold in [0.5, 0.85, 1]:
             layers = opened("cup")
@@ -183,7 +187,14 @@ class TestKeepSheets:
                 FULL, keep_sheets=True, sheet_threshold=threshold, **QUICK)
             assert [results[b] for b in ("b0", "b1", "b2")] == [1, 1, 0]
             areas.append(results["sheet_area"])
-        assert areas[0] >= areas[1] > areas[2] == 0
+            cup = layers.current_mesh()
+            x, y, z = cup.vertex_matrix()[np.unique(cup.face_matrix()).astype(int)].T
+            aside = np.hypot(x, y) - wide
+            off = np.minimum(np.hypot(np.maximum(aside, 0), z),
+                             np.hypot(aside, np.maximum(z - high, 0) + np.minimum(z, 0)))
+            assert len(off) == 0 or off.mean() < wall / 20
+        assert whole > areas[0] > areas[1] > areas[2] == 0
+        assert areas[1] > 0.85 * whole, "but for a thickness along the rim"
 
     def test_steps_carry_sheets_along(self):
         at_once, singly = opened("slab"), opened("slab")

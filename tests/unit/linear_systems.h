@@ -12,7 +12,7 @@
 #include <skeleton/mesh/breadth_first_numbering.h>
 #include <skeleton/solver/symmetric_csr.h>
 #include <skeleton/flow/cotangent_weights.h>
-#include <skeleton/flow/fill_reducing_order.h>
+#include <skeleton/flow/flow_system.h>
 
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
@@ -42,23 +42,34 @@ inline std::vector<double> cotangentWeights(const SurfaceMesh& mesh)
 	return weight;
 }
 
+/// The flow's own matrix M for the published w_L = 1, of which nothing is fixed: L, in the order of elimination.
+/// @pre mesh is compact.
+inline FlowSystem flowLaplacian(const SurfaceMesh& mesh)
+{
+	return flowSystem(initialStage(mesh, checks::noPoles(mesh)), Parameters());
+}
+
 /**
- * The positive semi-definite Laplacian of the whole mesh: (L x)_i = sum_j w_ij (x_i - x_j).
- * Constants are its null space. @pre mesh is compact. Complexity: O(V).
+ * The same in the order of the vertices: the positive semi-definite (L x)_i = sum_j w_ij (x_i - x_j), with
+ * constants as its null space. @pre mesh is compact. Complexity: that of the system, O(V).
  */
 inline SymmetricRows cotangentLaplacian(const SurfaceMesh& mesh)
 {
-	const std::vector<double> weight = cotangentWeights(mesh);
+	const FlowSystem system = flowLaplacian(mesh);
+	const int n = system.M.size();
+	std::vector<int> row(system.vertex.size());
+	for (int i = 0; i < n; ++i)
+		row[size_t(system.vertex[size_t(i)])] = i;
 	SymmetricRows L;
 	L.start.push_back(0);
-	for (int v = 0; v < mesh.vertexSlots(); ++v) {
-		double sum = 0;
-		mesh.forEachOutgoing(v, [&](int h) {
-			sum += weight[h];
-			L.entries.push_back({mesh.target(h), float(-weight[h])});
-		});
-		L.excess.push_back(0);
-		L.diagonal.push_back(float(sum));
+	for (const int i : row) {
+		for (int k = system.M.start[i]; k < system.M.start[i + 1]; ++k) {
+			const SparseEntry& entry = system.M.entries[k];
+			if (entry.value != 0) // what rows are filled up with
+				L.entries.push_back({system.vertex[size_t(entry.index)], entry.value});
+		}
+		L.excess.push_back(system.M.excess[i]);
+		L.diagonal.push_back(system.M.diagonal[i]);
 		L.endRow();
 	}
 	return L;
@@ -89,29 +100,11 @@ Sparse diagonal(const std::vector<Scalar>& values)
 	return S;
 }
 
-/// The Laplacian of a mesh, numbered in the flow's elimination order.
+/// The Laplacian of a mesh that is numbered as the flow does.
 inline SymmetricRows orderedLaplacian(SurfaceMesh mesh)
 {
 	renumberBreadthFirst(mesh);
-	const Stage stage = initialStage(mesh, checks::noPoles(mesh));
-	const std::vector<int> order = eliminationOrder(stage);
-	std::vector<int> number(order.size());
-	for (size_t i = 0; i < order.size(); ++i)
-		number[order[i]] = int(i);
-	const std::vector<double> weight = cotangentWeights(mesh);
-	SymmetricRows L;
-	L.start.push_back(0);
-	for (int v : order) {
-		double sum = 0;
-		mesh.forEachOutgoing(v, [&](int h) {
-			sum += weight[h];
-			L.entries.push_back({number[mesh.target(h)], float(-weight[h])});
-		});
-		L.excess.push_back(0);
-		L.diagonal.push_back(float(sum));
-		L.endRow();
-	}
-	return L;
+	return flowLaplacian(mesh).M;
 }
 
 inline std::vector<Point3d> randomColumns(int n, unsigned seed)

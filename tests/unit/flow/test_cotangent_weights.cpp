@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <utility>
 #include <vector>
 
 using namespace vcg::tri::mcf;
@@ -73,19 +74,48 @@ TEST(CotangentLaplacian, WeightsAreTheMeansOfTheOppositeCotangents)
 	}
 }
 
-/// What the tests below find of the Laplacian is true of the one that the flow solves with.
-TEST(CotangentLaplacian, IsTheMatrixOfTheFlow)
+/// The matrix that the flow solves with: so are all of this file.
+TEST(CotangentLaplacian, HasTheCotangentsOfTheAnglesTimesItsFactors)
 {
 	for (const shapes::Soup& soup : {shapes::jittered(shapes::sphere(2), 0.02),
 			 shapes::joined({shapes::torus(1, 0.3, 12, 8), shapes::box()})}) {
 		const SurfaceMesh mesh = soup.mesh();
-		const FlowSystem system =
-			flowSystem(initialStage(mesh, checks::noPoles(mesh)), Parameters());
-		const Eigen::MatrixXd L = dense(cotangentLaplacian(mesh)), M = dense(system.M);
-		ASSERT_EQ(M.rows(), L.rows());
-		for (int i = 0; i < M.rows(); ++i)
-			for (int j = 0; j < M.rows(); ++j)
-				EXPECT_NEAR(M(i, j), L(system.vertex[size_t(i)], system.vertex[size_t(j)]), 1e-5);
+		// cot(alpha) + cot(beta) of each edge, at least 0.002, and minus their sum on the diagonal.
+		Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(mesh.vertexSlots(), mesh.vertexSlots());
+		for (int f = 0; f < mesh.faceSlots(); ++f) {
+			const Triangle t = mesh.triangle(f);
+			for (int k = 0; k < 3; ++k) {
+				const int i = t[size_t((k + 1) % 3)], j = t[size_t((k + 2) % 3)];
+				const double cotangent = 1
+					/ std::tan(
+						angle(mesh.position[t[size_t(k)]], mesh.position[i], mesh.position[j]));
+				expected(i, j) -= cotangent;
+				expected(j, i) -= cotangent;
+			}
+		}
+		for (int h = 0; h < mesh.halfEdgeSlots(); ++h) {
+			double& entry = expected(mesh.origin(h), mesh.target(h));
+			entry = std::min(entry, -0.002);
+		}
+		for (int i = 0; i < expected.rows(); ++i)
+			expected(i, i) = -expected.row(i).sum();
+
+		Parameters parameters;
+		for (const auto& [factor, wL] : {std::pair {0.5, 1.0}, {1.0, 1.0}, {0.5, 6.0}}) {
+			parameters.cotangentFactor = factor;
+			parameters.wL = wL;
+			const FlowSystem system =
+				flowSystem(initialStage(mesh, checks::noPoles(mesh)), parameters);
+			const Eigen::MatrixXd M = dense(system.M);
+			ASSERT_EQ(M.rows(), expected.rows());
+			for (int i = 0; i < M.rows(); ++i)
+				EXPECT_NEAR(system.M.diagonal[size_t(i)], M(i, i), 1e-5 * M(i, i));
+			for (int i = 0; i < M.rows(); ++i)
+				for (int j = 0; j < M.rows(); ++j)
+					EXPECT_NEAR(M(i, j),
+						factor * wL * expected(system.vertex[size_t(i)], system.vertex[size_t(j)]),
+						1e-5 * wL);
+		}
 	}
 }
 

@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -94,20 +95,97 @@ TEST(Sheetness, OfAComponentIsWhatItIsAlone)
 	EXPECT_EQ(sheetnessOf(shapes::joined({plate, ball}).mesh()), alone);
 }
 
-TEST(MarkSheets, TheThresholdSaysHowMuch)
+TEST(MarkSheets, AreTheVerticesAboveTheThreshold)
 {
 	const SurfaceMesh mesh = slab();
 	const PoleSet poles = medialPoles(mesh, PoleMethod::Balls);
+	std::vector<double>
+		s; // grows along the plate, whose vertices have places that are multiples of 1/32
+	for (const Point3d& p : mesh.position)
+		s.push_back(p[0]);
+	for (double threshold : {0.25, 0.5, 0.75}) {
+		Stage stage = initialStage(mesh, poles);
+		stage.poleRadius[0] = -1;
+		stage.poleRadius.back() = -1;
+		markSheets(stage, s, threshold);
+		for (int v = 0; v < mesh.vertexSlots(); ++v)
+			EXPECT_EQ(bool(stage.sheet[v]), s[size_t(v)] > threshold && stage.poleRadius[v] >= 0);
+	}
+	Stage stage = initialStage(mesh, poles);
+	markSheets(stage, std::vector<double>(s.size(), 1), 1);
+	EXPECT_FALSE(stage.hasSheets()) << "none is above 1";
+}
+
+TEST(MarkSheets, SmallHolesAreFilledAndSmallMarksDropped)
+{
+	// Vertices are 1/32 and 1/40 apart, so that each has 7.8e-4 of the area of a face of 1 by 0.8. Of the squared
+	// diagonal, 1.65, a hole of 0.1 % is as large as two of them, and marks of 0.5 % as ten and a half.
+	const SurfaceMesh mesh = slab();
+	const PoleSet poles = medialPoles(mesh, PoleMethod::Balls);
+	const auto block = [](const Point3d& p, double x, double y, int width, int height) {
+		return p[2] > 0.05 && p[0] > x - 0.01 && p[0] < x + (width - 0.5) / 32 && p[1] > y - 0.01
+			&& p[1] < y + (height - 0.5) / 40;
+	};
+	Stage stage = initialStage(mesh, poles);
+	std::vector<double> s;
+	for (const Point3d& p : mesh.position) {
+		const bool hole = block(p, 0.125, 0.3, 1, 1) || block(p, 0.25, 0.3, 3, 3);
+		const bool mark = block(p, 0.625, 0.3, 3, 3) || block(p, 0.8125, 0.3, 4, 4);
+		s.push_back((p[0] < 0.5 && !hole) || mark ? 1 : 0);
+	}
+	markSheets(stage, s, 0.5);
+	int inHole = 0, inLargeHole = 0, inMark = 0, inLargeMark = 0;
+	for (int v = 0; v < mesh.vertexSlots(); ++v) {
+		const Point3d& p = mesh.position[v];
+		const int isSheet = stage.sheet[v];
+		if (block(p, 0.125, 0.3, 1, 1))
+			inHole += isSheet;
+		else if (block(p, 0.25, 0.3, 3, 3))
+			inLargeHole += isSheet;
+		else if (block(p, 0.625, 0.3, 3, 3))
+			inMark += isSheet;
+		else if (block(p, 0.8125, 0.3, 4, 4))
+			inLargeMark += isSheet;
+		else
+			EXPECT_EQ(bool(isSheet), p[0] < 0.5);
+	}
+	EXPECT_EQ(inHole, 1) << "filled";
+	EXPECT_EQ(inLargeHole, 0);
+	EXPECT_EQ(inMark, 0) << "dropped";
+	EXPECT_EQ(inLargeMark, 16);
+}
+
+TEST(MarkSheets, TheUsualThresholdTakesPlatesAndNoTubes)
+{
+	// A plate and, apart from it, a ring: as round as can be, and as flat.
+	const shapes::Soup plate = {slab().position, slab().triangles()};
+	const SurfaceMesh mesh =
+		shapes::joined({plate, shapes::moved(shapes::torus(1, 0.2, 120, 24), {5, 0, 0})}).mesh();
+	const PoleSet poles = medialPoles(mesh, PoleMethod::Balls);
 	const std::vector<double> s = sheetness(mesh, poles);
-	size_t last = size_t(mesh.vertexSlots()) + 1;
-	for (double threshold : {0.0, 0.7, 0.85, 1.0}) {
+	const auto marked = [&](double threshold) {
 		Stage stage = initialStage(mesh, poles);
 		markSheets(stage, s, threshold);
-		const size_t count = size_t(std::count(stage.sheet.begin(), stage.sheet.end(), 1));
-		EXPECT_LE(count, last);
-		last = count;
-		EXPECT_EQ(stage.hasSheets(), threshold < 1);
-	}
+		std::array<double, 2> area = {0, 0}; // of the faces all of whose vertices are marked
+		for (int f = 0; f < mesh.faceSlots(); ++f) {
+			const Triangle t = mesh.triangle(f);
+			if (stage.sheet[t[0]] && stage.sheet[t[1]] && stage.sheet[t[2]])
+				area[mesh.position[t[0]][0] > 2] += mesh.areaVector(f).Norm() / 2;
+		}
+		return area;
+	};
+	const double walls = 2 * 1 * 0.8, sides = 2 * (1 + 0.8) * 0.1, ring = 4 * M_PI * M_PI * 0.2;
+	const auto [low, lowRing] = marked(0);
+	EXPECT_NEAR(low, walls + sides, 0.02 * walls);
+	EXPECT_NEAR(lowRing, ring, 0.02 * ring);
+	const auto [usual, usualRing] = marked(Parameters().sheetThreshold);
+	EXPECT_EQ(usualRing, 0);
+	// But for half a thickness along the rim, whose balls touch its sides, and three edges of averaging.
+	const double rim = 0.1 / 2 + 3.0 / 32;
+	EXPECT_GT(usual, 2 * (1 - 2 * rim) * (0.8 - 2 * rim));
+	EXPECT_LT(usual, low);
+	const auto [none, noRing] = marked(1);
+	EXPECT_EQ(none + noRing, 0);
 }
 
 TEST(MarkSheets, TheFlowStopsWithTheSheetBetweenTheWalls)

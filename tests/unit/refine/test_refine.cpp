@@ -882,25 +882,78 @@ TEST(Refine, MovesLongEdgesThatLeaveTheSurfaceIn)
 	EXPECT_TRUE(isInside(s, mesh));
 }
 
+TEST(Refine, NodesGoBackWhoseEdgesWouldCutACorner)
+{
+	const SurfaceMesh mesh =
+		shapes::cells(5, 5, 1, [](int i, int j, int) { return i == 0 || j == 0; }).mesh();
+	CurveSkeleton before, moved;
+	before.position = {{0.5, 4.5, 0.5}, {0.5, 0.6, 0.5}, {0.6, 0.5, 0.5}, {4.5, 0.5, 0.5}};
+	before.edges = {{0, 1}, {1, 2}, {2, 3}};
+	before.radius.assign(4, 0.4);
+	moved = before;
+	moved.position[0] = {0.6, 4.5, 0.5};
+	moved.position[1] = {0.5, 1.8, 0.5}; // each inside, but not what is between them
+	moved.position[2] = {1.8, 0.5, 0.5};
+	const std::vector<Point3d> wanted = moved.position;
+	ASSERT_TRUE(isInside(before, mesh));
+	ASSERT_FALSE(isInside(moved, mesh));
+	std::vector<int> vertices(mesh.position.size());
+	std::iota(vertices.begin(), vertices.end(), 0);
+	refining::keepEdgesInside(moved, before, ClosestSurface(mesh, vertices, 0.1));
+	EXPECT_TRUE(isInside(moved, mesh));
+	EXPECT_EQ(moved.position[0], wanted[0]) << "has done no harm";
+	EXPECT_EQ(moved.position[1], before.position[1]);
+	EXPECT_EQ(moved.position[2], before.position[2]);
+	EXPECT_EQ(moved.position[3], wanted[3]);
+}
+
 TEST(Refine, NeverCutsThroughThinWalls)
 {
-	// A thin tube in the shape of a U: the straight way between its legs is outside.
-	const SurfaceMesh mesh = shapes::cells(7, 24, 1, [](int i, int j, int) {
-		return i == 0 || i == 6 || j == 0;
-	}).mesh();
-	const CurveSkeleton s = refine(CurveMaker()
-									   .line({0.5, 23.2, 0.5}, {0.5, 0.5, 0.5}, 9)
-									   .line({0.5, 0.5, 0.5}, {6.5, 0.5, 0.5}, 3)
-									   .line({6.5, 0.5, 0.5}, {6.5, 23.2, 0.5}, 9)
-									   .in(mesh),
-		mesh);
-	EXPECT_TRUE(isInside(s, mesh));
-	EXPECT_EQ(statistics(s).terminals, 2);
-	// What belongs to one leg stays there.
-	for (size_t i = 0; i < s.node.size(); ++i)
-		if (mesh.position[i][1] > 4) {
-			EXPECT_EQ(s.position[s.node[i]][0] > 3.5, mesh.position[i][0] > 3.5);
+	// A tube in the shape of a U: the straight way between its legs is outside. The tube and what its legs are apart
+	// are 4 and 20 % of the diagonal, then both 0.14 %; the curve is aside of the axis, and outside along one leg.
+	const struct
+	{
+		int gap, length;
+	} cases[] = {{5, 24}, {1, 700}};
+	for (const auto& [gap, length] : cases) {
+		SCOPED_TRACE(length);
+		const int last = gap + 1;
+		const SurfaceMesh mesh = shapes::cells(last + 1, length, 1, [&](int i, int j, int) {
+			return i == 0 || i == last || j == 0;
+		}).mesh();
+		const auto isInTube = [&](const Point3d& p) {
+			return p[2] > 0 && p[2] < 1 && p[0] > 0 && p[0] < last + 1 && p[1] > 0 && p[1] < length
+				&& (p[0] < 1 || p[0] > last || p[1] < 1);
+		};
+		const double left = -0.1, right = last + 0.3, end = length - 0.8;
+		const int pieces = std::max(9, length / 10);
+		const CurveSkeleton curve = CurveMaker()
+										.line({left, end, 0.6}, {left, 0.5, 0.6}, pieces)
+										.line({left, 0.5, 0.6}, {right, 0.5, 0.6}, 3)
+										.line({right, 0.5, 0.6}, {right, end, 0.6}, pieces)
+										.in(mesh);
+		const Refinement checked = refineChecked(curve, mesh);
+		EXPECT_EQ(checked.report.refined, 1) << checked.report.text();
+		for (const CurveSkeleton& s : {refine(curve, mesh), checked.skeleton}) {
+			EXPECT_EQ(statistics(s).components, 1);
+			EXPECT_EQ(statistics(s).terminals, 2);
+			EXPECT_EQ(statistics(s).cycles, 0);
+			int outside = 0;
+			for (const auto& [v, w] : s.edges)
+				for (int i = 0; i <= 20; ++i)
+					outside +=
+						!isInTube(s.position[v] + (s.position[w] - s.position[v]) * (i / 20.0));
+			EXPECT_EQ(outside, 0);
+			// What belongs to one leg stays there.
+			const double middle = (last + 1) / 2.0;
+			int across = 0;
+			for (size_t i = 0; i < s.node.size(); ++i)
+				if (mesh.position[i][1] > 4)
+					across += (s.position[size_t(s.node[i])][0] > middle)
+						!= (mesh.position[i][0] > middle);
+			EXPECT_EQ(across, 0);
 		}
+	}
 }
 
 TEST(Refine, VerticesGoToTheNearestNodeAround)

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -277,23 +278,46 @@ TEST(Resample, KeepsTheRimOfACylinder)
 
 TEST(Resample, ThinWallsStayApart)
 {
-	// The wall is a third of an edge thick: a search in space would find the wrong side.
-	const double thickness = 0.02, length = 0.06;
-	const SurfaceMesh surface = checked(shellBowl(thickness));
-	const SurfaceMesh mesh = resample(surface, {length}, 5);
-	EXPECT_EQ(mesh.eulerCharacteristic(), 2);
-	EXPECT_NEAR(mesh.volume() / surface.volume(), 1, 0.05);
-	int turned = 0;
-	for (int f = 0; f < mesh.faceSlots(); ++f) {
-		const Triangle t = mesh.triangle(f);
-		const Point3d middle =
-			(mesh.position[t[0]] + mesh.position[t[1]] + mesh.position[t[2]]) / 3.0;
-		if (middle[0] > -0.1)
-			continue; // the rim
-		const double outwards = mesh.areaVector(f) * middle;
-		turned += (middle.Norm() > 1 - thickness / 2) != (outwards > 0);
+	// A search in space would find the wrong side: what moves half an edge along a sphere leaves it by as much
+	// as half of the thinnest wall.
+	constexpr double length = 0.06, rim = 0.2;
+	for (double edges : {3.0, 7.0, 70.0}) { // as long as the wall is thick
+		SCOPED_TRACE(edges);
+		const double thickness = length / edges;
+		const SurfaceMesh surface = checked(shellBowl(thickness, 240));
+		double sphere = 1; // the largest within the outer wall's polygons
+		for (int f = 0; f < surface.faceSlots(); ++f) {
+			const Triangle t = surface.triangle(f);
+			Point3d normal = surface.areaVector(f);
+			if (std::all_of(t.begin(), t.end(),
+					[&](int v) { return surface.position[v].Norm() > 1 - 1e-6; }))
+				sphere = std::min(sphere, normal.Normalize() * surface.position[t[0]]);
+		}
+		ASSERT_GT(sphere, 1 - thickness);
+		const SurfaceMesh mesh = resample(surface, {length}, 5);
+		EXPECT_EQ(mesh.eulerCharacteristic(), 2);
+		EXPECT_EQ(componentCount(mesh), 1);
+		const auto isOuter = [&](int v) { return mesh.position[v].Norm() > sphere - 1e-6; };
+		int mixed = 0, turned = 0;
+		double outer = 0, inner = 0;
+		for (int f = 0; f < mesh.faceSlots(); ++f) {
+			const Triangle t = mesh.triangle(f);
+			const Point3d middle =
+				(mesh.position[t[0]] + mesh.position[t[1]] + mesh.position[t[2]]) / 3.0;
+			if (middle[0] > -rim)
+				continue;
+			const bool side = isOuter(t[0]);
+			mixed += side != isOuter(t[1]) || side != isOuter(t[2]);
+			turned += side != (mesh.areaVector(f) * middle > 0);
+			(side ? outer : inner) += mesh.areaVector(f).Norm() / 2;
+		}
+		EXPECT_EQ(mixed, 0) << "faces from wall to wall";
+		EXPECT_EQ(turned, 0);
+		// Both walls are whole: the area of a zone of a sphere is 2 pi r times its height.
+		const double r = 1 - thickness;
+		EXPECT_NEAR(outer / (2 * M_PI * (1 - rim)), 1, 0.03);
+		EXPECT_NEAR(inner / (2 * M_PI * r * (r - rim)), 1, 0.03);
 	}
-	EXPECT_EQ(turned, 0);
 }
 
 TEST(Resample, TrianglesWithoutAreaDoNoHarm)

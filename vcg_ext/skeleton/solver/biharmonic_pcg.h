@@ -23,6 +23,14 @@
 
 namespace vcg::tri::mcf {
 
+namespace detail {
+
+/// Of the preconditioner. From 4e-3 to 5.7e-3 all are as good on average, but single tips of large bodies come and
+/// go with the last bits: see docs/quality.md.
+constexpr float dropTolerance = 5.28e-3f;
+
+} // namespace detail
+
 /**
  * Solves (M^2 + D) x = b by conjugate gradients from x = 0, preconditioned by (M + sqrt D)^-2.
  *
@@ -51,13 +59,10 @@ inline std::vector<Point3d> solveBiharmonic(const SymmetricRows& M, const std::v
 			largest = std::max(largest, std::abs(bi[k]));
 	if (largest == 0)
 		return x;
-	// From 4e-3 to 5.7e-3 all are as good on average, but single tips of large bodies come and go with the last
-	// bits: see docs/quality.md.
-	constexpr float dropTolerance = 5.28e-3f;
 	std::vector<float> rootD(n);
 	for (int i = 0; i < n; ++i)
 		rootD[i] = std::sqrt(D[i]);
-	const IncompleteFactor factor(M, rootD, dropTolerance, progress.part(0, 0.5));
+	const IncompleteFactor factor(M, rootD, detail::dropTolerance, progress.part(0, 0.5));
 	progress.report(0.5, "Contracting");
 
 	using Sum = Eigen::Array4d; // of each column by itself
@@ -91,10 +96,10 @@ inline std::vector<Point3d> solveBiharmonic(const SymmetricRows& M, const std::v
 	Sum rz = precondition();
 	std::swap(p, z);
 	const double target = tolerance * tolerance * rz.sum();
-	// r . z falls to a tenth in each iteration but the first, where it falls further. An iteration that
-	// reaches the target so is the last one, and what is left is not measured. There are two at least: where
-	// slivers have nearly all of the residual, one may reach the target and leave a vertex between soft
-	// triangles far from its place.
+	// r . z falls to a tenth in each iteration but the first, where it falls further: so it does where the
+	// eigenvalues lie within a factor of 3.7. An iteration that reaches the target so is the last one, and what
+	// is left is not measured. There are two at least: where slivers have nearly all of the residual, one may
+	// reach the target and leave a vertex between soft triangles far from its place.
 	double fall = 0.1;
 	FloatQuad alpha; // the step along p, which y has not made yet
 	constexpr int mostIterations = 200;
