@@ -30,7 +30,12 @@ FILTER = "generate_curve_skeleton_mcf"
 
 
 class Surface(NamedTuple):
-    """A triangle mesh: vertices, (V, 3), and faces, (F, 3)."""
+    """A triangle mesh.
+
+    Attributes:
+        vertices: Positions, (V, 3).
+        faces: Triangles as vertex ids, (F, 3).
+    """
 
     vertices: npt.NDArray[np.float64]
     faces: npt.NDArray[np.int32]
@@ -129,21 +134,23 @@ class Skeleton:
     def branch_measures(self, *, sections: int = 9) -> dict[str, npt.NDArray[Any]]:
         """What is tabulated of centrelines: for each of ``branches`` a value in each column.
 
-        Columns: first and last (nodes); length and chord, mesh units; tortuosity, length / chord - 1,
-        infinite where a branch ends where it begins; curvature, the angle by which the branch turns
-        over its length, radians a mesh unit (of an unrefined curve much of it is roughness); torsion, the
-        angle by which the plane of its turns twists over its length, positive as in a right-handed screw
-        (of a nearly straight or a rough branch it means nothing);
-        radius_min, radius_mean (over the length), radius_max; significance, NaN where it is not known;
-        angle_first and angle_last, degrees, the
-        smallest angle to another branch at that junction, each taken towards the point where it leaves
-        the junction's ball, NaN at other ends; strahler, the order after Strahler (1957) with the
-        thickest end of a branch as the root, 0 in a component with cycles; section_area,
-        section_perimeter, section_diameter_min and section_diameter_max, means over the sections of
-        ``surface`` by planes normal to the branch: the outline around the curve, and the smallest and the
-        largest distance of parallel lines that touch it. Between the balls at the branch's ends, or in its
-        middle if they leave nothing; NaN where the surface is not known or no outline is closed. For a table:
-        ``pandas.DataFrame(skeleton.branch_measures())``.
+        - first, last: nodes.
+        - length, chord: mesh units. tortuosity: length / chord - 1, infinite where a branch ends where it
+          begins.
+        - curvature: the angle by which the branch turns over its length, radians a mesh unit; of an unrefined
+          curve much of it is roughness. torsion: the angle by which the plane of its turns twists over its
+          length, positive as in a right-handed screw; of a nearly straight or a rough branch it means nothing.
+        - radius_min, radius_mean (over the length), radius_max. significance: NaN where it is not known.
+        - angle_first, angle_last: degrees, the smallest angle to another branch at that junction, each taken
+          towards the point where it leaves the junction's ball; NaN at other ends.
+        - strahler: the order after Strahler (1957) with the thickest end of a branch as the root; 0 in a
+          component with cycles.
+        - section_area, section_perimeter, section_diameter_min, section_diameter_max: means over the sections of
+          ``surface`` by planes normal to the branch: the outline around the curve, and the smallest and the
+          largest distance of parallel lines that touch it. Between the balls at the branch's ends, or in its
+          middle if they leave nothing; NaN where the surface is not known or no outline is closed.
+
+        For a table: ``pandas.DataFrame(skeleton.branch_measures())``.
 
         Args:
             sections: Of each branch, evenly spread; 0 measures none.
@@ -242,8 +249,8 @@ def skeletonize(vertices: Any, faces: npt.ArrayLike | None = None, *,
         The skeleton.
 
     Raises:
-        SkeletonError: The mesh is not a closed two-manifold, there is no such file, or an option does
-            not exist or is out of its range.
+        SkeletonError: The mesh bounds no solid and cannot be made one (see the option ``repair``), there is no such
+            file, or an option does not exist or is out of its range.
 
     Warns:
         SkeletonWarning: The contraction has not converged within ``max_iterations``, or components could
