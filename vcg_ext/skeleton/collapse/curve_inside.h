@@ -623,9 +623,9 @@ inline CurveSkeleton broughtInside(CurveSkeleton skeleton, const std::vector<Poi
 /**
  * For each component of a resampled surface the one of the surface that it was made from; empty where they do
  * not pair off. The nearest vertex may be a neighbouring body's: most of them tell.
- * @param ofCurve    for each node of the curve the component of the resampled surface, of @param ofSurface of them.
+ * @param ofCurve    for each node of the curve the component of the resampled surface, which has `ofSurface`.
  * @param node       for each vertex of the other surface its node.
- * @param component  of that vertex, of @param components.
+ * @param component  of that vertex; there are `components`.
  */
 inline std::vector<int> resampledFrom(const std::vector<int>& ofCurve, int ofSurface,
 	const std::vector<int>& node, const std::vector<int>& component, int components)

@@ -91,7 +91,8 @@ public:
 
 	/**
 	 * Where a short way from one point of the surface to another crosses edges, in order.
-	 * @param fromFace the triangle with @param from; @param toFace the one with @param to.
+	 * @param fromFace the triangle with `from`.
+	 * @param toFace   the one with `to`.
 	 * @return empty within one triangle, or where there is no way.
 	 * Complexity: O(N log N), less for ends that are near each other.
 	 */
