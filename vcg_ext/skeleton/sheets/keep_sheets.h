@@ -30,8 +30,8 @@ namespace vcg::tri::mcf {
 struct SheetCollapse
 {
 	MesoSkeleton skeleton;
-	/// Connected sheets of the stage, and those of them that had to become curves, since their walls had not met, or
-	/// since with them the result would not have had the topology of the shape, or would not have been inside it.
+	/// Connected sheets of the stage, and those of them that had to become curves, since with them the
+	/// result would not have had the topology of the shape, or would not have been inside it.
 	int sheets = 0, givenUp = 0;
 };
 
@@ -175,28 +175,21 @@ inline SheetCollapse collapseOneKeepingSheets(
 				marks[v] = 1;
 		return collapseAround(stage, marks, epsilon, progress);
 	};
-	const auto fits = [&](const MesoSkeleton& skeleton, size_t first, size_t end) {
-		// Walls that have met leave half of their area: 0.40 to 0.51 of it where they have, from 0.79 where not.
-		constexpr double maxPart = 0.65;
-		double walls = 0;
-		for (size_t i = first; i < end; ++i)
-			walls += areaOf(parts[i], area);
-		return skeleton.sheetArea() < maxPart * walls && skeleton.betti() == solid;
-	};
+	const auto fits = [&](const MesoSkeleton& skeleton) { return skeleton.betti() == solid; };
 	bool found = false;
 	if (!parts.empty()) {
 		result.skeleton = collapsed(0, parts.size());
-		found = fits(result.skeleton, 0, parts.size());
+		found = fits(result.skeleton);
 	}
 	if (!found && parts.size() > 1) {
 		std::vector<std::vector<int>> sound;
 		for (size_t i = 0; i < parts.size(); ++i)
-			if (fits(collapsed(i, i + 1), i, i + 1))
+			if (fits(collapsed(i, i + 1)))
 				sound.push_back(parts[i]);
 		parts = std::move(sound);
 		for (size_t first = 0; first < parts.size() && !found; ++first) {
 			result.skeleton = collapsed(first, parts.size());
-			found = fits(result.skeleton, first, parts.size());
+			found = fits(result.skeleton);
 			result.givenUp = result.sheets - int(parts.size() - first);
 		}
 	}
@@ -268,8 +261,7 @@ inline Stage stageOfComponent(const Stage& stage, int c, const SurfaceMesh& own,
  *
  * Each component is treated as if the others were not there, and its nodes stand together.
  *
- * Walls that are far apart are not joined: such a sheet would be the surface itself, with its whole area. And joining
- * walls may close or open loops, where they touch elsewhere or are not close enough: so the
+ * Joining walls may close or open loops, where they touch elsewhere or are not close enough. So the
  * Betti numbers over GF(2) are compared with those of the solid, (components, genus, 0). A sheet that
  * fails alone becomes curves; where they fail together, the smallest does, and so on. The result always
  * has the topology of the shape: at worst it is a curve skeleton.
