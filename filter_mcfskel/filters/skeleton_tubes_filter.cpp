@@ -27,6 +27,8 @@ Results skeletonTubes(FilterRun& run)
 	if (run.parameters.flag("local_radius"))
 		for (size_t v = 0; v < radius.size(); ++v)
 			radius[v] = std::max(thinnest, curve.skeleton.radius[v]);
+	const char* const what = "Making tubes";
+	run.progress.report(0.1, what);
 	const mcf::SkeletonTubes tubes =
 		mcf::skeletonTubes(curve.skeleton, radius, run.parameters.integer("sides"));
 	std::vector<double> thickness;
@@ -34,10 +36,12 @@ Results skeletonTubes(FilterRun& run)
 		thickness.push_back(curve.skeleton.radius[size_t(node)]);
 	const auto [least, greatest] = std::minmax_element(thickness.begin(), thickness.end());
 
+	run.progress.report(0.5, what);
 	MeshModel& source = run.layer();
 	DocumentEdit edit(run.document);
 	MeshModel& layer = edit.addPoints(source, baseName(source) + "_tubes", tubes.points);
 	addFaces(layer, tubes.triangles);
+	run.progress.report(0.8, what);
 	setVertexQuality(layer, thickness);
 	setVertexColours(layer, thickness, *least, *greatest);
 	run.log(QString(

@@ -19,7 +19,7 @@
 #include <common/utilities/load_save.h>
 
 #include <QApplication>
-#include <QDir>
+#include <QDirIterator>
 #include <QFile>
 #include <QFileInfo>
 
@@ -72,16 +72,22 @@ std::string fileContents(const QString& path)
 	return file.open(QIODevice::ReadOnly) ? file.readAll().toStdString() : "none";
 }
 
-/// What is in the file that a step writes, if it writes one, and in those beside it.
+/// What is in the folder that a step writes a file to, and in those below, if it writes one.
 std::string fileContents(const FilterNameParameterValuesPair& step)
 {
-	std::string text;
+	QStringList found;
 	for (const RichParameter& given : step.second)
 		if (given.name() == "file") {
-			const QDir folder = QFileInfo(given.value().getString()).dir();
-			for (const QString& name : folder.entryList(QDir::Files | QDir::Hidden, QDir::Name))
-				text += "; " + name.toStdString() + ' ' + fileContents(folder.filePath(name));
+			const QString folder = QFileInfo(given.value().getString()).path();
+			QDirIterator all(folder, QDir::AllEntries | QDir::Hidden | QDir::NoDotAndDotDot,
+				QDirIterator::Subdirectories);
+			while (all.hasNext())
+				found.push_back(all.next());
 		}
+	found.sort();
+	std::string text;
+	for (const QString& path : found)
+		text += "; " + path.toStdString() + ' ' + fileContents(path);
 	return text;
 }
 

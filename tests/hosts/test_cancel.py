@@ -34,7 +34,8 @@ STEPS = {
     "solid": ("bent_tube", [("Make Solid", {})]),
     "project": ("bent_tube", [
         ("Contraction Step", {"steps": ("RichInt", 40)}), ("Collapse to Curve", {}),
-        ("Save Project", {"file": ("RichSaveFile", "FOLDER/p.mlp")})]),
+        ("Save Project", {"file": ("RichSaveFile", "FOLDER/p.mlp")}),
+        ("Save Project", {"file": ("RichSaveFile", "FOLDER/new.mlp")})]),
     "at once": ("bent_tube", [("Full Skeletonize", {})]),
     "stages kept": ("bent_tube", [("Full Skeletonize", {"keep_stages": ("RichInt", 1)})]),
     "sheets": ("slab", [("Full Skeletonize", {"keep_sheets": ("RichBool", "true")})]),
@@ -57,7 +58,8 @@ def script(filters: list[tuple[str, dict]], path: Path) -> Path:
 def test_nothing_is_changed(name, tmp_path):
     meshlab = host("meshlab-2025.07")
     mesh, filters = STEPS[name]
-    for file in ["s.json", "s.glb", "s.ply"]:
+    (tmp_path / "p_layers").mkdir()
+    for file in ["s.json", "s.glb", "s.ply", "p.mlp", "p_layers/bent_tube.ply", "p_layers/other.ply"]:
         (tmp_path / file).write_text("what was there before")
     run = subprocess.run(
         [meshlab.plugin.parents[1] / "tests/hosts/run_script",
@@ -72,4 +74,4 @@ def test_nothing_is_changed(name, tmp_path):
     assert all(count > 0 for step, count in counts if step != "Save Skeleton")
     # A skeleton is written at once, but for the weights of a .glb file.
     assert [count > 0 for step, count in counts if step == "Save Skeleton"] in ([], [False, True])
-    assert not list(tmp_path.glob(".mcfskel-*"))
+    assert not list(tmp_path.rglob(".mcfskel-*"))
