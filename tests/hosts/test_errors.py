@@ -93,7 +93,7 @@ class TestRefusals:
     @pytest.mark.parametrize("name, options", UNREPAIRED)
     def test_one_triangle(self, name, options):
         text = refused(document((np.eye(3), [[0, 1, 2]])), name, **options)
-        assert "3 border edges" in text
+        assert ("3 border edges" if name == POLES else "The mesh is flat") in text
 
     @pytest.mark.parametrize("name", [RESAMPLE, STEP, FULL])
     @pytest.mark.parametrize("mesh, words", [

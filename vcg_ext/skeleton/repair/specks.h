@@ -81,8 +81,10 @@ inline Specks specksOf(const std::vector<Point3d>& points, const std::vector<Tri
 		return p.box.Diag() <= smallest * largest
 			|| (p.box.Diag() <= small * largest && std::abs(p.volume) <= thin * fullest);
 	};
+	// Smaller ones may be what is left of the surface where faces are missing all over.
 	const auto isFlat = [&](const Piece& p) {
-		return p.open && p.area <= flatSheet * whole && p.normal.Norm() > flatAsSheet * p.area;
+		return p.open && p.area > sheet * whole && p.area <= flatSheet * whole
+			&& p.normal.Norm() > flatAsSheet * p.area;
 	};
 	double specks = 0, flats = 0;
 	for (const auto& [first, p] : pieces) {
