@@ -293,8 +293,8 @@ def check_options(**options: Any) -> None:
     layers = pymeshlab.MeshSet()
     layers.create_octahedron()
     values = filter_options("skeletonize()", options, layers.filter_parameter_values(FILTER))
-    of_the_mesh = {name for name, value in values.items() if isinstance(value, pymeshlab.PureValue)}
-    values = {name: value for name, value in values.items() if name not in of_the_mesh | {"fix_selected"}}
+    values = {name: value for name, value in values.items()
+              if name != "fix_selected" and not isinstance(value, pymeshlab.PureValue)}
     # The filter checks them before it begins; an octahedron as it is takes no time.
     apply(layers, FILTER, values | {"resample": False, "refine": False})
 

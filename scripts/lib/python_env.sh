@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
-# The Python environment with pymeshlab, in the cache. Source after common.sh.
+# Python environments, in the cache. Source after common.sh.
 
 # shellcheck shell=bash
 

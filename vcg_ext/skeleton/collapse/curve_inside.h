@@ -295,20 +295,13 @@ private:
 		return solid.isInside(half.at(1)) ? half : HalfChord {from, Point3d(0, 0, 0)};
 	}
 
-	/// The chord that goes on inside where the way from a point outside to the surface ends.
-	HalfChord chordBehind(const Point3d& outside) const
+	/// The chord from the closest point of the surface, on the line through it and the point.
+	HalfChord closestChord(const Point3d& point, bool isOutside) const
 	{
-		const SolidTest::Closest on = solid.closest(outside);
-		return on.distance > 0 ? halfChord(on.point, (on.point - outside) / on.distance)
-							   : HalfChord {on.point, Point3d(0, 0, 0)};
-	}
-
-	/// The chord from the point of the surface that is closest to a point inside, through it.
-	HalfChord chordThrough(const Point3d& inside) const
-	{
-		const SolidTest::Closest on = solid.closest(inside);
-		return on.distance > 0 ? halfChord(on.point, (inside - on.point) / on.distance)
-							   : HalfChord {inside, Point3d(0, 0, 0)};
+		const SolidTest::Closest on = solid.closest(point);
+		return on.distance > 0
+			? halfChord(on.point, (isOutside ? on.point - point : point - on.point) / on.distance)
+			: HalfChord {on.point, Point3d(0, 0, 0)};
 	}
 
 	const SurfaceWays& ways()
@@ -333,7 +326,7 @@ private:
 	{
 		constexpr double nextTo = 0.004; // two of the default epsilon
 		constexpr size_t mostTried = 32;
-		HalfChord best = chordBehind(place[A]);
+		HalfChord best = closestChord(place[A], true);
 		if (Distance(best.from, place[A]) > nextTo && !merged.empty() && !merged[A].empty()) {
 			const size_t step = (merged[A].size() + mostTried - 1) / mostTried;
 			double nearest = std::numeric_limits<double>::infinity();
@@ -387,10 +380,9 @@ private:
 		if (levels == 0)
 			return false;
 		Point3d middle = (p + q) / 2;
-		if (!solid.isInside(middle))
-			middle = chordBehind(middle).at(1);
-		else if (halving == Halving::MovesAll)
-			middle = chordThrough(middle).at(1);
+		const bool isOutside = !solid.isInside(middle);
+		if (isOutside || halving == Halving::MovesAll)
+			middle = closestChord(middle, isOutside).at(1);
 		if (middle == p || middle == q || !bisected(p, middle, halving, levels - 1, between))
 			return false;
 		between.push_back(middle);

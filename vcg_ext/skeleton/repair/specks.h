@@ -41,9 +41,9 @@ inline Specks specksOf(const std::vector<Point3d>& points, const std::vector<Tri
 	constexpr double likeASheet = 0.25, flatAsSheet = 0.999;
 	constexpr double smallest = 0.01, small = 0.05; // diagonal, of that of the largest piece
 	constexpr double thin = 1e-4; // volume, of that of the largest piece, of what is small
-	constexpr double mostAll = 0.05,
-					 mostFlat = 0.2; // of the whole area: beyond, they are the surface
-	constexpr double flat = 1e-10;   // volume over area^1.5
+	// Of the whole area, all of them: beyond, they are the surface.
+	constexpr double mostAll = 0.05, mostFlat = 0.2;
+	constexpr double flat = 1e-10; // volume over area^1.5
 	const std::vector<int> piece = pieceOfFaces(partner);
 	struct Piece
 	{

@@ -30,18 +30,13 @@ inline bool isInside(const MesoSkeleton& skeleton, const std::vector<Point3d>& s
 {
 	const SolidTest solid(surface, triangles, progress);
 	const auto place = [&](int v) { return solid.in(skeleton.position[size_t(v)]); };
-	const auto isSegmentInside = [&](int v, int w) {
-		progress.report(1, "Collapsing to curves");
-		return solid.segmentIsInside(place(v), place(w), outsideTolerance);
-	};
+	const std::vector<EdgeOfComplex> edges = allEdges(skeleton.edges, skeleton.faces);
 	return std::all_of(skeleton.position.begin(), skeleton.position.end(), [&](const Point3d& p) {
 		return solid.isInside(solid.in(p), outsideTolerance);
-	}) && std::all_of(skeleton.edges.begin(), skeleton.edges.end(), [&](const auto& edge) {
-		return isSegmentInside(edge[0], edge[1]);
+	}) && std::all_of(edges.begin(), edges.end(), [&](const EdgeOfComplex& edge) {
+		progress.report(1, "Collapsing to curves");
+		return solid.segmentIsInside(place(edge[0]), place(edge[1]), outsideTolerance);
 	}) && std::all_of(skeleton.faces.begin(), skeleton.faces.end(), [&](const Triangle& t) {
-		for (int k = 0; k < 3; ++k)
-			if (!isSegmentInside(t[k], t[(k + 1) % 3]))
-				return false;
 		return solid.isInside((place(t[0]) + place(t[1]) + place(t[2])) / 3, outsideTolerance);
 	});
 }

@@ -26,7 +26,7 @@ namespace vcg::tri::mcf {
 namespace detail {
 
 /// Of the preconditioner. From 4e-3 to 5.7e-3 all are as good on average, but single tips of large bodies come and
-/// go with the last bits: see docs/quality.md.
+/// go with the last bits: see docs/design.md.
 constexpr float dropTolerance = 5.28e-3f;
 
 } // namespace detail
