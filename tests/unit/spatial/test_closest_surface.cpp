@@ -166,6 +166,35 @@ TEST(ClosestSurface, FollowingGivesWhatSearchingGives)
 	EXPECT_NEAR(ball.radius, 0.3, 0.01);
 }
 
+// Walls that are nearer to each other than their vertices are precise: those of a slit and of a blade.
+TEST(ClosestSurface, WallsAsNearAsRoundingTellNoSide)
+{
+	constexpr double gap = 1e-9, rounding = 1e-8;
+	const auto block = [&](bool isSlit) {
+		const shapes::Soup wide =
+			shapes::cells(3, 2, 2, [&](int i, int, int k) { return k == 0 || (i == 1) != isSlit; });
+		return shapes::jittered(shapes::transformed(wide,
+									[&](const Point3d& p) {
+										const double x = p[0] < 1.5 ? p[0] : p[0] - 1 + gap;
+										return Point3d(x, p[1], p[2]);
+									}),
+			rounding)
+			.mesh();
+	};
+	const SurfaceMesh slit = block(true), blade = block(false);
+	const ClosestSurface around(slit, allVertices(slit), 0.05),
+		beside(blade, allVertices(blade), 0.05);
+	for (int i = 1; i < 20; ++i)
+		for (double distance : {0.01, 0.1, 0.3})
+			for (double aside : {-0.5, 0.0, 0.3}) {
+				const double y = 0.1 * i;
+				EXPECT_GT(around.clearance(Point3d(1 + aside * distance, y, 1 - distance)), 0)
+					<< "under the bottom of the slit";
+				EXPECT_LT(beside.clearance(Point3d(1 + aside * distance, y, 2 + distance)), 0)
+					<< "above the edge of the blade";
+			}
+}
+
 TEST(ClosestSurface, LooksOnlyAtTheGivenComponents)
 {
 	const SurfaceMesh mesh =

@@ -9,6 +9,7 @@
 
 #include "maximal_ball.h"
 #include "point_tree.h"
+#include "solid_test.h"
 #include "triangle_tree.h"
 
 #include <skeleton/core/progress.h>
@@ -107,6 +108,7 @@ public:
 
 	/// From now on closest() is closestExactly(), whatever asks for it.
 	void makeExact() { alwaysExact = true; }
+	bool isExact() const { return alwaysExact; }
 
 	/// A lower bound of the distance to the surface, on whichever side: as far as no sample is, less what
 	/// triangles reach beyond their samples. Cheap, and near the surface 0.
@@ -138,7 +140,9 @@ public:
 	/**
 	 * Whether a query is inside, given its closest point: by the normal there, which at an edge is the
 	 * sum of both faces' and at a vertex is weighted by the angles (Baerentzen and Aanaes, "Signed
-	 * distance computation using the angle weighted pseudonormal", IEEE TVCG 11(3), 2005).
+	 * distance computation using the angle weighted pseudonormal", IEEE TVCG 11(3), 2005). Where nearly nothing is
+	 * left of that sum, or a face is thinner than rounding leaves it a normal, as at the bottom of a slit or the edge
+	 * of a blade whose walls are as near as coordinates are precise, the winding number tells.
 	 */
 	bool isInside(const Point3d& query, const Hit& hit) const
 	{
@@ -146,18 +150,30 @@ public:
 		const detail::TrianglePoint on = detail::closestOnTriangle(
 			surface.position[surface.origin(h)], surface.position[surface.origin(h + 1)],
 			surface.position[surface.origin(h + 2)], query);
+		constexpr double leastNormal = 0.01; // part of the sum of the lengths
 		Point3d normal(0, 0, 0);
-		if (on.part == detail::TrianglePoint::interior)
-			normal = unitNormal(h / 3);
-		else if (on.part >= 3)
-			normal = unitNormal(h / 3) + unitNormal(surface.twin(h + on.part - 3) / 3);
-		else
+		double weights = 0;
+		bool isClear = true;
+		const auto add = [&](int face, double weight) {
+			normal += unitNormal(face) * weight;
+			weights += weight;
+			isClear = isClear && !isSliver(face);
+		};
+		if (on.part >= 3) {
+			add(h / 3, 1);
+			if (on.part != detail::TrianglePoint::interior)
+				add(surface.twin(h + on.part - 3) / 3, 1);
+		}
+		else {
 			surface.forEachOutgoing(surface.origin(h + on.part), [&](int out) {
 				const Point3d& v = surface.position[surface.origin(out)];
 				const Point3d a = surface.position[surface.target(out)] - v;
 				const Point3d b = surface.position[surface.apex(out)] - v;
-				normal += unitNormal(out / 3) * std::atan2((a ^ b).Norm(), a * b);
+				add(out / 3, std::atan2((a ^ b).Norm(), a * b));
 			});
+		}
+		if (!isClear || normal.Norm() < leastNormal * weights)
+			return solid().isInside(solid().in(query));
 		return (query - on.point) * normal < 0;
 	}
 
@@ -240,6 +256,27 @@ private:
 	};
 	mutable Triangles triangles;
 	mutable std::once_flag trianglesOnce;
+	/// What only unclear places need; made by the first.
+	mutable std::optional<SolidTest> bounded;
+	mutable std::once_flag boundedOnce;
+
+	const SolidTest& solid() const
+	{
+		std::call_once(boundedOnce, [&] {
+			std::vector<Point3d> corners;
+			std::vector<Triangle> own;
+			corners.reserve(3 * faces.size());
+			own.reserve(faces.size());
+			for (int face : faces) {
+				const int first = int(corners.size());
+				own.push_back({first, first + 1, first + 2});
+				for (int v : surface.triangle(face))
+					corners.push_back(surface.position[v]);
+			}
+			bounded.emplace(corners, own);
+		});
+		return *bounded;
+	}
 
 	std::vector<Point3d> samples(
 		const std::vector<int>& vertices, double spacing, const Progress& progress)
@@ -344,6 +381,18 @@ private:
 		const Point3d centre = hit.point - outward * radius;
 		const Point3d a = hit.point - centre, b = contact - centre;
 		return {centre, radius, face, std::atan2((a ^ b).Norm(), a * b), contact};
+	}
+
+	/// Whether a triangle is thinner than rounding leaves it a normal.
+	bool isSliver(int face) const
+	{
+		constexpr double thinnest =
+			1e-6; // of the diagonal: a few steps of PrincipalFrame::onGrid()
+		double longest = 0;
+		for (int h = 3 * face; h < 3 * face + 3; ++h)
+			longest = std::max(longest, surface.squaredLength(h));
+		const double thin = thinnest * box.Diag();
+		return surface.areaVector(face).SquaredNorm() <= thin * thin * longest;
 	}
 
 	Point3d unitNormal(int face) const
