@@ -144,6 +144,21 @@ TEST(Noise, OfThinPartsIsMeasuredByTheirThickness)
 	}
 }
 
+TEST(Noise, WhatDeviatesByMoreThanTheThicknessIsShape)
+{
+	// A hair that bends at every ring, finely and coarsely.
+	const double minor = 1e-4;
+	for (const int around : {800, 12}) {
+		const SurfaceMesh hair = meshOf(shapes::torus(1, minor, around, 3));
+		const std::vector<double> thickness(hair.position.size(), minor);
+		for (const double part : {3.0, 100.0}) {
+			const NoiseReport report =
+				measureNoise(noisy(hair, part * minor), Progress(), thickness);
+			EXPECT_EQ(report.roundsWhereThin[0], 0) << around << " rings, " << part;
+		}
+	}
+}
+
 TEST(Noise, OnlyTheNoisyComponentIsSmoothed)
 {
 	const SurfaceMesh clean = meshOf(shapes::sphere(5));

@@ -324,13 +324,14 @@ struct NoiseReport
  * Measures the noise and chooses the smoothing: none below 0.03 % of the diagonal or 5 % of the
  * mean edge (clean surfaces show up to 0.04 % or 4 %), 10 rounds up to 0.15 %, 40 above. So treated,
  * models with 0.1 to 0.5 % of noise give the clean model's branches. Where the mean edge is longer
- * than 3 % of the diagonal, noise cannot be told from shape, and nothing is done; nor where the whiteness,
+ * than 3 % of the diagonal, noise cannot be told from shape, and nothing is done, thin or not; nor where the whiteness,
  * see NoiseMeasure, is below 0.6: clean surfaces whose facets deviate that much have up to 0.5, those with
  * noise of 0.5 % of the diagonal 0.72 to 1.
  *
  * Thin parts are left out of that and judged by themselves, since neither their facets nor what noise does to them
  * depends on the diagonal: none below 5 % of the local thickness (clean trees show up to 2.5 %, with a whiteness of at
- * most 0.1), then 10 rounds, 40 above 15 %.
+ * most 0.1), then 10 rounds, 40 above 15 %, and none above 100 %: no surface is left of a tube whose noise is as
+ * large as it is thick, so that what deviates by that much are the bends of a coarse one.
  * @param thickness local thickness of each vertex, mesh units, infinite where the shape is not thin; empty: nowhere.
  * @pre mesh is compact. @throws Cancelled. Complexity: O(V).
  */
@@ -338,7 +339,7 @@ inline NoiseReport measureNoise(const MeasuredSurface& surface,
 	const Progress& progress = Progress(), const std::vector<double>& thickness = {})
 {
 	constexpr double least = 3e-4, leastOfEdge = 0.05, strong = 1.5e-3;
-	constexpr double leastOfThickness = 0.05, strongOfThickness = 0.15;
+	constexpr double leastOfThickness = 0.05, strongOfThickness = 0.15, mostOfThickness = 1;
 	constexpr double coarsestEdge = 0.03, leastWhiteness = 0.6;
 	constexpr int fewRounds = 10, manyRounds = 40;
 	const SurfaceMesh& mesh = surface.mesh();
@@ -370,18 +371,22 @@ inline NoiseReport measureNoise(const MeasuredSurface& surface,
 		const double edge = edgeSum[c] / edgeCount[c] / surface.diagonal(c);
 		const auto isClean = [&](const NoiseLevel& own) {
 			const double level = own.deviation / surface.diagonal(c);
-			return edge > coarsestEdge || level < least || level < leastOfEdge * edge
-				|| own.whiteness < leastWhiteness;
+			return level < least || level < leastOfEdge * edge || own.whiteness < leastWhiteness;
 		};
-		const double level =
-			edge > coarsestEdge ? 0 : whereThick[c].deviation / surface.diagonal(c);
+		if (edge > coarsestEdge) {
+			report.rounds.push_back(0);
+			report.roundsWhereThin.push_back(0);
+			continue;
+		}
+		const double level = whereThick[c].deviation / surface.diagonal(c);
 		// Both: what is left where most is thin are the few vertices of its thickest part.
 		const bool clean = isClean(all[c]) || isClean(whereThick[c]);
-		const double relative = whereThin[c].relative;
+		const bool isShape = whereThin[c].relative > mostOfThickness;
+		const double relative = isShape ? 0 : whereThin[c].relative;
 		const bool cleanWhereThin =
 			relative < leastOfThickness || whereThin[c].whiteness < leastWhiteness;
-		report.level =
-			std::max({report.level, level, whereThin[c].deviation / surface.diagonal(c)});
+		report.level = std::max(
+			{report.level, level, isShape ? 0 : whereThin[c].deviation / surface.diagonal(c)});
 		report.ofThickness = std::max(report.ofThickness, relative);
 		report.rounds.push_back(clean ? 0 : level < strong ? fewRounds : manyRounds);
 		report.roundsWhereThin.push_back(cleanWhereThin ? 0
