@@ -203,6 +203,46 @@ TEST(Refine, SamplesEvenlyAtTheSpacing)
 	}
 }
 
+TEST(Refine, ACurveAroundACornerIsSampledAboutAsSparselyAsOthers)
+{
+	const SurfaceMesh mesh = shapes::subdivided(shapes::cells(10, 10, 1, [](int i, int j, int) {
+		return i == 0 || j == 0;
+	})).mesh();
+	std::vector<int> all(size_t(mesh.vertexSlots()));
+	std::iota(all.begin(), all.end(), 0);
+	const ClosestSurface surface(mesh, all, 0.1);
+	const Point3d corner(0.5, 0.5, 0.5);
+	CurveSkeleton fine = CurveMaker()
+							 .line(Point3d(9.5, 0.5, 0.5), corner, 200)
+							 .line(corner, Point3d(0.5, 9.5, 0.5), 200)
+							 .in(mesh);
+	for (size_t v = 0; v < fine.position.size(); ++v)
+		fine.radius[v] = surface.clearance(fine.position[v]);
+	const CurveSkeleton even = refining::evenlySampled(fine, surface, 2.5);
+	EXPECT_TRUE(isInside(even, mesh));
+	for (const auto& [a, b] : even.edges)
+		EXPECT_LE(Distance(even.position[a], even.position[b]), 1.5 * 2.5);
+	EXPECT_LE(even.edges.size(), 10u) << "not the 400 that the curve had: 7, were there no corner";
+}
+
+TEST(Refine, ANeedlesEndsGetNoMoreNodesThanItsMiddle)
+{
+	// A double cone of a thousandth; the curve that is given ends where it is thick.
+	std::vector<std::pair<double, double>> profile;
+	for (int i = 0; i <= 200; ++i) {
+		const double x = i / 100.0 - 1;
+		profile.emplace_back(x, 1e-3 * (1 - std::abs(x)));
+	}
+	const SurfaceMesh mesh = shapes::revolved(profile, 8).mesh();
+	const CurveSkeleton curve =
+		CurveMaker().line(Point3d(-0.5, 0, 0), Point3d(0.5, 0, 0), 100).in(mesh);
+	const Refinement refined = refineChecked(curve, mesh);
+	EXPECT_EQ(refined.report.refined, 1);
+	EXPECT_GT(statistics(refined.skeleton).length, 1.8) << "into both ends";
+	// 1500 for each diagonal of its length and one besides; the last extension of the tips may add a few.
+	EXPECT_LE(refined.skeleton.position.size(), 1.1 * 3000);
+}
+
 TEST(Refine, KeepsARing)
 {
 	const SurfaceMesh mesh = shapes::torus(1, 0.3, 120, 40).mesh();

@@ -66,6 +66,7 @@ public:
 
 	/// The factor below which it does not fall from now on; 0: it follows the thickness wherever.
 	void setLeast(double least) { leastScale = least; }
+	double least() const { return leastScale; }
 
 private:
 	const SurfaceMesh* surface = nullptr;

@@ -117,12 +117,53 @@ private:
 
 namespace refining {
 
+/// The most nodes of a curve whose length is so many diagonals.
+inline double mostNodes(double length)
+{
+	constexpr double nodesOfDiagonal = 1500;
+	return nodesOfDiagonal * (1 + length);
+}
+
+/**
+ * The smallest scale with which a curve has no more than mostNodes(): where it is thin all along, as in a
+ * needle, it needs no node every half radius.
+ * Complexity: O(E log V).
+ */
+inline double leastScale(const CurveSkeleton& curve, const ClosestSurface& closest,
+	const LocalScale& scale, double spacing)
+{
+	constexpr int halvings = 30;
+	std::vector<std::pair<double, double>> pieces; // length, scale
+	double length = 0;
+	for (const auto& [a, b] : curve.edges) {
+		const Point3d &from = curve.position[a], &to = curve.position[b];
+		pieces.emplace_back(Distance(from, to), scale.at((from + to) / 2, closest));
+		length += pieces.back().first;
+	}
+	const auto nodes = [&](double least) {
+		double sum = 0;
+		for (const auto& [piece, own] : pieces)
+			sum += piece / (spacing * std::max(own, least));
+		return sum;
+	};
+	const double most = mostNodes(length);
+	if (nodes(0) <= most)
+		return 0;
+	double low = 0, high = 1;
+	for (int i = 0; i < halvings; ++i) {
+		const double middle = (low + high) / 2;
+		(nodes(middle) > most ? low : high) = middle;
+	}
+	return high;
+}
+
 /**
  * Refines the skeleton of one component, in coordinates where the component's diagonal is 1. Stops early
- * where the curve grows out of CurveBounds: that it cannot be the result is for the caller to find.
+ * where the curve grows out of CurveBounds, or where nodes are outside and cannot be moved in by exact closest
+ * points: that it cannot be the result is for the caller to find.
  */
 inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurface& surface,
-	const SurfaceComponent& component, const LocalScale& scale, const RefineParameters& parameters,
+	const SurfaceComponent& component, LocalScale scale, const RefineParameters& parameters,
 	const Progress& progress)
 {
 	const char* what = "Refining the skeleton";
@@ -160,6 +201,13 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 		}
 		skeleton = withWholeJunctions(std::move(skeleton), parameters.junctionProminence);
 		skeleton = evenlySampled(skeleton, surface, parameters.spacing, scale);
+		// A tip may have been extended to where the shape is far thinner than along the curve that was given.
+		if (!scale.isUniform()
+			&& double(skeleton.position.size()) > mostNodes(statistics(skeleton).length)) {
+			scale.setLeast(
+				std::max(scale.least(), leastScale(skeleton, surface, scale, parameters.spacing)));
+			skeleton = evenlySampled(skeleton, surface, parameters.spacing, scale);
+		}
 		moveInside(skeleton, surface); // long edges of a coarse shape's curve may have left it
 		progress.report(double(done) / total, what);
 	};
@@ -196,8 +244,15 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 		[&] { centreRounds(parameters.lastRounds, kappa, true); },
 		[&] { tidy(parameters.spurProminence, parameters.tipDistinctness); },
 	};
+	// A few may be in branches that are removed yet.
+	constexpr size_t fewOutside = 2, partOutside = 500;
+	const auto isHopeless = [&] {
+		const size_t outside = size_t(std::count_if(skeleton.radius.begin(), skeleton.radius.end(),
+			[](double radius) { return !(radius > 0); }));
+		return surface.isExact() && outside > fewOutside + skeleton.radius.size() / partOutside;
+	};
 	for (const std::function<void()>& step : steps) {
-		if (!bounds.hold(skeleton))
+		if (!bounds.hold(skeleton) || (&step == steps + 1 && isHopeless()))
 			return skeleton;
 		step();
 	}
@@ -343,40 +398,6 @@ inline std::vector<double> scaleOfVertices(const SurfaceMesh& surface,
 	for (size_t v = 0; v < field.size(); ++v)
 		scale.push_back(std::min(1.0, field[v] / bound[component[v]]));
 	return scale;
-}
-
-/**
- * The smallest scale with which a curve has no more than 1500 nodes for each diagonal of its length and one
- * besides: where it is thin all along, as in a needle, it needs no node every half radius.
- * Complexity: O(E log V).
- */
-inline double leastScale(const CurveSkeleton& curve, const ClosestSurface& closest,
-	const LocalScale& scale, double spacing)
-{
-	constexpr double nodesOfDiagonal = 1500;
-	constexpr int halvings = 30;
-	std::vector<std::pair<double, double>> pieces; // length, scale
-	double length = 0;
-	for (const auto& [a, b] : curve.edges) {
-		const Point3d &from = curve.position[a], &to = curve.position[b];
-		pieces.emplace_back(Distance(from, to), scale.at((from + to) / 2, closest));
-		length += pieces.back().first;
-	}
-	const auto nodes = [&](double least) {
-		double sum = 0;
-		for (const auto& [piece, own] : pieces)
-			sum += piece / (spacing * std::max(own, least));
-		return sum;
-	};
-	const double most = nodesOfDiagonal * (1 + length);
-	if (nodes(0) <= most)
-		return 0;
-	double low = 0, high = 1;
-	for (int i = 0; i < halvings; ++i) {
-		const double middle = (low + high) / 2;
-		(nodes(middle) > most ? low : high) = middle;
-	}
-	return high;
 }
 
 /// The branches of a component's skeleton, see nestedBranches(), from its distances to the surface.

@@ -87,10 +87,15 @@ public:
 		const auto measured = [&](int v) {
 			return empty[v] = closest.closestExactly(curve.position[v]).distance;
 		};
+		const auto isCovered = [&](int a, int b) {
+			const double radiusA = measured(a), radiusB = measured(b);
+			int queries = mostQueries();
+			return this->isCovered(
+				curve.position[a], radiusA, curve.position[b], radiusB, 0, queries);
+		};
 		for (const auto& [a, b] : curve.edges) {
 			const Point3d &from = curve.position[a], &to = curve.position[b];
-			if (Distance(from, to) > empty[a] + empty[b]
-				&& !isCovered(from, measured(a), to, measured(b), 0)
+			if (Distance(from, to) > empty[a] + empty[b] && !isCovered(a, b)
 				&& !isEnclosed(from, to, progress))
 				return false;
 		}
@@ -116,19 +121,27 @@ private:
 	const ClosestSurface& closest;
 	SurfaceComponent component; ///< refers to what its maker keeps
 
-	/// Whether empty balls cover the segment; not if it comes nearer to the surface than its length / 2^16.
-	bool isCovered(
-		const Point3d& a, double radiusA, const Point3d& b, double radiusB, int depth) const
+	/// So many closest points take as long as isEnclosed().
+	int mostQueries() const
+	{
+		constexpr int least = 64, verticesOfQuery = 8;
+		return least + int(component.vertices.size()) / verticesOfQuery;
+	}
+
+	/// Whether empty balls cover the segment; not if it comes nearer to the surface than its length / 2^16, or
+	/// if that takes more queries. @param queries that are left.
+	bool isCovered(const Point3d& a, double radiusA, const Point3d& b, double radiusB, int depth,
+		int& queries) const
 	{
 		constexpr int deepest = 16;
-		if (!(radiusA > 0) || !(radiusB > 0) || depth > deepest)
+		if (!(radiusA > 0) || !(radiusB > 0) || depth > deepest || --queries < 0)
 			return false;
 		if (Distance(a, b) <= radiusA + radiusB)
 			return true;
 		const Point3d middle = (a + b) / 2;
 		const double radius = closest.closestExactly(middle).distance;
-		return isCovered(a, radiusA, middle, radius, depth + 1)
-			&& isCovered(middle, radius, b, radiusB, depth + 1);
+		return isCovered(a, radiusA, middle, radius, depth + 1, queries)
+			&& isCovered(middle, radius, b, radiusB, depth + 1, queries);
 	}
 
 	/// The first node of each part of the curve.

@@ -470,19 +470,19 @@ inline BallChain withShortEdges(const BallChain& line, const std::vector<double>
 }
 
 /**
- * A polyline without nodes that follow another one in less than a quarter of the spacing there, as the short
- * steps of a way that was traced through a thin limb do, where the straight way past them is inside.
+ * A polyline without nodes that crowd: where the straight way from the node before one to the one after it is no longer than
+ * five quarters of the spacing, and inside.
  * @param spacings at its points; on return at those that are left.
  */
 inline BallChain withoutCrowdedNodes(
 	const BallChain& line, std::vector<double>& spacings, const ClosestSurface& surface)
 {
-	constexpr double crowded = 0.25;
+	constexpr double longest = 1.25; // spacings
 	BallChain kept = {{line.points.front()}, {line.radii.front()}};
 	std::vector<double> ofKept(1, spacings.front());
 	for (size_t i = 1; i < line.points.size(); ++i) {
 		const bool isLast = i + 1 == line.points.size();
-		if (!isLast && Distance(kept.points.back(), line.points[i]) < crowded * spacings[i]
+		if (!isLast && Distance(kept.points.back(), line.points[i + 1]) < longest * spacings[i]
 			&& isSegmentInside(surface, kept.points.back(), kept.radii.back(), line.points[i + 1],
 				line.radii[i + 1]))
 			continue;
