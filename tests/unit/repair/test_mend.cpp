@@ -82,6 +82,50 @@ TEST(Mend, FillsTheHolesOfFacesMissingAtRandom)
 	}
 }
 
+TEST(Mend, AWingsOpenEndAndTheSlitsOfItsTrailingEdgeAreHolesOfTheirOwn)
+{
+	// Two sides that meet at the leading edge, at the tip, and at every other vertex of the trailing edge.
+	constexpr int pieces = 8, across = 2;
+	constexpr double span = 8, chord = 1, gap = 0.03;
+	const double thickness[] = {0.1, 0.08, gap};
+	shapes::Soup wing;
+	int number[2][pieces + 1][across + 1];
+	for (int side = 0; side < 2; ++side)
+		for (int i = 0; i <= pieces; ++i)
+			for (int k = 0; k <= across; ++k) {
+				const bool isShared = k == across && i % 2 == 0;
+				if (side == 1 && isShared) {
+					number[1][i][k] = number[0][i][k];
+					continue;
+				}
+				number[side][i][k] = int(wing.points.size());
+				// The lower side ends a little before the upper one.
+				const double back = side == 1 && k == across ? gap : 0;
+				wing.points.emplace_back(span * i / pieces, chord * k / across - back,
+					isShared ? 0 : (side ? -1 : 1) * thickness[k] / 2);
+			}
+	const auto quad = [&](int a, int b, int c, int d) {
+		for (const Triangle& t : {Triangle {a, b, c}, Triangle {a, c, d}})
+			if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0])
+				wing.triangles.push_back(t);
+	};
+	const auto &up = number[0], &down = number[1];
+	for (int i = 0; i < pieces; ++i) {
+		for (int k = 0; k < across; ++k) {
+			quad(up[i][k], up[i + 1][k], up[i + 1][k + 1], up[i][k + 1]);
+			quad(down[i][k], down[i][k + 1], down[i + 1][k + 1], down[i + 1][k]);
+		}
+		quad(down[i][0], down[i + 1][0], up[i + 1][0], up[i][0]);
+	}
+	for (int k = 0; k < across; ++k)
+		quad(up[pieces][k], down[pieces][k], down[pieces][k + 1], up[pieces][k + 1]);
+	const MendedSurface surface = mendedOf(wing);
+	expectMended(surface, wing);
+	EXPECT_EQ(surface.report.holesClosed, 1 + pieces / 2);
+	const double section = chord / 2 * ((0.1 + 0.08) / 2 + 0.08 / 2); // between the shared vertices
+	EXPECT_NEAR(enclosedVolume(surface), span * section, 0.1 * span * section);
+}
+
 TEST(Mend, LeavesALargeHole)
 {
 	shapes::Soup soup = shapes::sphere(3);

@@ -158,7 +158,8 @@ private:
 /**
  * The loops of half-edges around the holes of a coherently oriented surface, as they run in the faces. Where
  * several fans of faces meet at a vertex, a loop goes on at the fan across the gap, so that the gap can be
- * filled and the vertex stays whole; where the fans face different ways, each is for itself.
+ * filled and the vertex stays whole; where the fans face different ways, each is for itself. What of a loop begins and
+ * ends at the same vertex is a hole of its own: the open end of a wing, and the slit along its trailing edge.
  */
 inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& points,
 	const std::vector<Triangle>& triangles, const std::vector<int>& partner)
@@ -227,11 +228,20 @@ inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& point
 		if (partner[size_t(h)] >= 0 || done[size_t(h)])
 			continue;
 		std::vector<int> loop;
+		std::map<int, size_t> placeOf; // in the loop, of the vertices that its half-edges come from
 		for (int at = h; !done[size_t(at)]; at = following[at]) {
 			done[size_t(at)] = 1;
 			loop.push_back(at);
+			placeOf[origin(at)] = loop.size() - 1;
+			const auto first = placeOf.find(origin(Fans::next(at)));
+			if (first == placeOf.end())
+				continue;
+			const auto begin = loop.begin() + std::ptrdiff_t(first->second);
+			for (auto inner = begin; inner != loop.end(); ++inner)
+				placeOf.erase(origin(*inner));
+			loops.emplace_back(begin, loop.end());
+			loop.erase(begin, loop.end());
 		}
-		loops.push_back(std::move(loop));
 	}
 	return loops;
 }
