@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <random>
 #include <vector>
@@ -82,27 +83,30 @@ TEST(Mend, FillsTheHolesOfFacesMissingAtRandom)
 	}
 }
 
-TEST(Mend, AWingsOpenEndAndTheSlitsOfItsTrailingEdgeAreHolesOfTheirOwn)
+/// Two sides that meet at the leading edge, at the tip, and at some vertices of the trailing edge; the other end
+/// and the gaps between these vertices are open. @param rise  by how much it bends upwards, times the squared length.
+constexpr int wingPieces = 8;
+constexpr double wingSpan = 8, wingSection = (0.1 + 0.08) / 4 + 0.08 / 4; // without its gap
+shapes::Soup openWing(const std::function<bool(int)>& meetAt, double gap, double rise)
 {
-	// Two sides that meet at the leading edge, at the tip, and at every other vertex of the trailing edge.
-	constexpr int pieces = 8, across = 2;
-	constexpr double span = 8, chord = 1, gap = 0.03;
+	constexpr int pieces = wingPieces, across = 2;
+	constexpr double span = wingSpan, chord = 1, shorter = 0.03;
 	const double thickness[] = {0.1, 0.08, gap};
 	shapes::Soup wing;
 	int number[2][pieces + 1][across + 1];
 	for (int side = 0; side < 2; ++side)
 		for (int i = 0; i <= pieces; ++i)
 			for (int k = 0; k <= across; ++k) {
-				const bool isShared = k == across && i % 2 == 0;
+				const bool isShared = k == across && meetAt(i);
 				if (side == 1 && isShared) {
 					number[1][i][k] = number[0][i][k];
 					continue;
 				}
 				number[side][i][k] = int(wing.points.size());
 				// The lower side ends a little before the upper one.
-				const double back = side == 1 && k == across ? gap : 0;
+				const double back = side == 1 && k == across ? shorter : 0;
 				wing.points.emplace_back(span * i / pieces, chord * k / across - back,
-					isShared ? 0 : (side ? -1 : 1) * thickness[k] / 2);
+					(isShared ? 0 : (side ? -1 : 1) * thickness[k] / 2) + rise * i * i);
 			}
 	const auto quad = [&](int a, int b, int c, int d) {
 		for (const Triangle& t : {Triangle {a, b, c}, Triangle {a, c, d}})
@@ -119,11 +123,25 @@ TEST(Mend, AWingsOpenEndAndTheSlitsOfItsTrailingEdgeAreHolesOfTheirOwn)
 	}
 	for (int k = 0; k < across; ++k)
 		quad(up[pieces][k], down[pieces][k], down[pieces][k + 1], up[pieces][k + 1]);
+	return wing;
+}
+
+TEST(Mend, AWingsOpenEndAndTheSlitsOfItsTrailingEdgeAreHolesOfTheirOwn)
+{
+	const shapes::Soup wing = openWing([](int i) { return i % 2 == 0; }, 0.03, 0);
 	const MendedSurface surface = mendedOf(wing);
 	expectMended(surface, wing);
-	EXPECT_EQ(surface.report.holesClosed, 1 + pieces / 2);
-	const double section = chord / 2 * ((0.1 + 0.08) / 2 + 0.08 / 2); // between the shared vertices
-	EXPECT_NEAR(enclosedVolume(surface), span * section, 0.1 * span * section);
+	EXPECT_EQ(surface.report.holesClosed, 1 + wingPieces / 2);
+	EXPECT_NEAR(enclosedVolume(surface), wingSpan * wingSection, 0.1 * wingSpan * wingSection);
+}
+
+TEST(Mend, AHoleWhoseFillingThatTurnsLeastCrossesTheSurfaceGetsTheSmallest)
+{
+	const shapes::Soup wing = openWing([](int i) { return i == wingPieces; }, 0.01, 0.02);
+	const MendedSurface surface = mendedOf(wing);
+	expectMended(surface, wing);
+	EXPECT_EQ(surface.report.holesClosed, 1);
+	EXPECT_NEAR(enclosedVolume(surface), wingSpan * wingSection, 0.2 * wingSpan * wingSection);
 }
 
 TEST(Mend, LeavesALargeHole)

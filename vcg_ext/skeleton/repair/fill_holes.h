@@ -72,16 +72,17 @@ public:
 	/**
 	 * @param polygon   corners in order; @param outside unit normal of the face at each side i, i + 1.
 	 * @param allowed   allowed(i, k): whether the filling may have the edge from corner i to corner k.
+	 * @param free      turns up to this one count alike, so that the area decides.
 	 */
 	template <class Allowed>
 	PolygonFilling(const std::vector<Point3d>& polygon, const std::vector<Point3d>& outside,
-		const Allowed& allowed) :
+		const Allowed& allowed, double free = 0) :
 			p(polygon),
 			outside(outside), n(int(polygon.size())), best(size_t(n) * size_t(n)),
 			apex(size_t(n) * size_t(n), -1)
 	{
 		for (int i = 0; i + 1 < n; ++i)
-			best[at(i, i + 1)] = {0, 0};
+			best[at(i, i + 1)] = {free, 0};
 		for (int span = 2; span < n; ++span)
 			for (int i = 0; i + span < n; ++i) {
 				const int k = i + span;
@@ -419,31 +420,40 @@ inline FilledHoles fillHoles(const std::vector<Point3d>& points, std::vector<Tri
 		if (n < 3 || n > limits.edges)
 			continue;
 		const detail::BorderPolygon border = detail::borderPolygon(points, triangles, piece, loop);
-		const detail::PolygonFilling best(border.points, border.outside,
-			[&](int a, int b) { return border.mayJoin(a, b, edges); });
 		double surface = 0, before = 0;
 		for (int p : border.pieces) {
 			surface += area[size_t(p)];
 			before += filled[size_t(p)];
 		}
-		const auto [turn, size] = best.weight();
 		const bool isMain = surface >= largest;
-		const bool anyhow = std::isfinite(turn) && size <= limits.anyhow * surface;
-		if (!(turn <= mostTurn || anyhow) || (isMain && size > limits.area * surface)
-			|| before + size > limits.allAreas * surface)
-			continue;
 		std::vector<Triangle> made;
 		std::set<std::pair<int, int>> chords;
-		bool fits = true;
-		for (const Triangle& t : best.triangles()) {
-			made.push_back(border.triangle(t));
-			for (const auto& [a, b] : {std::pair(t[0], t[1]), std::pair(t[1], t[2])})
-				if (b - a > 1)
-					fits &= chords.insert(border.edge(a, b))
-								.second; // a vertex may be on the loop twice
-			fits = fits && (anyhow || !detail::crossesOthers(tree, given, points, made.back()));
-		}
-		if (!fits)
+		double size = 0;
+		const auto isFilled = [&](double free) {
+			const detail::PolygonFilling best(
+				border.points, border.outside,
+				[&](int a, int b) { return border.mayJoin(a, b, edges); }, free);
+			const double turn = best.weight().turn;
+			size = best.weight().area;
+			const bool anyhow = std::isfinite(turn) && size <= limits.anyhow * surface;
+			if (!(turn <= mostTurn || anyhow) || (isMain && size > limits.area * surface)
+				|| before + size > limits.allAreas * surface)
+				return false;
+			made.clear();
+			chords.clear();
+			bool fits = true;
+			for (const Triangle& t : best.triangles()) {
+				made.push_back(border.triangle(t));
+				for (const auto& [a, b] : {std::pair(t[0], t[1]), std::pair(t[1], t[2])})
+					if (b - a > 1)
+						fits &= chords.insert(border.edge(a, b))
+									.second; // a vertex may be on the loop twice
+				fits = fits && (anyhow || !detail::crossesOthers(tree, given, points, made.back()));
+			}
+			return fits;
+		};
+		// The one that turns least; of all that turn little enough, the smallest.
+		if (!isFilled(0) && !isFilled(mostTurn))
 			continue;
 		edges.insert(chords.begin(), chords.end());
 		triangles.insert(triangles.end(), made.begin(), made.end());
