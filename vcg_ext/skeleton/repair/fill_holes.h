@@ -159,8 +159,8 @@ private:
 /**
  * The loops of half-edges around the holes of a coherently oriented surface, as they run in the faces. Where
  * several fans of faces meet at a vertex, a loop goes on at the fan across the gap, so that the gap can be
- * filled and the vertex stays whole; where the fans face different ways, each is for itself. What of a loop begins and
- * ends at the same vertex is a hole of its own: the open end of a wing, and the slit along its trailing edge.
+ * filled and the vertex stays whole; where the fans face different ways, each is for itself, and what of a loop
+ * begins and ends at such a vertex is a hole of its own: the open end of a wing, and the slit along its trailing edge.
  */
 inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& points,
 	const std::vector<Triangle>& triangles, const std::vector<int>& partner)
@@ -188,6 +188,7 @@ inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& point
 			fan->second.normal += (points[size_t(t[1])] - a) ^ (points[size_t(t[2])] - a);
 		}
 	std::map<int, int> following; // of the half-edge into a vertex
+	std::set<int> parting;        // vertices whose fans face different ways
 	for (const auto& [v, around] : fansAt) {
 		Point3d normal(0, 0, 0);
 		for (int fan : around)
@@ -195,6 +196,8 @@ inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& point
 		bool alike = true;
 		for (int fan : around)
 			alike &= fanOf[fan].normal * normal > 0;
+		if (!alike)
+			parting.insert(v);
 		// Seen from outside, each fan reaches counter-clockwise from its outgoing to its incoming border.
 		Point3d x, y;
 		vcg::GetUV(normal, x, y);
@@ -229,11 +232,12 @@ inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& point
 		if (partner[size_t(h)] >= 0 || done[size_t(h)])
 			continue;
 		std::vector<int> loop;
-		std::map<int, size_t> placeOf; // in the loop, of the vertices that its half-edges come from
+		std::map<int, size_t> placeOf; // in the loop, of the half-edge from a parting vertex
 		for (int at = h; !done[size_t(at)]; at = following[at]) {
 			done[size_t(at)] = 1;
 			loop.push_back(at);
-			placeOf[origin(at)] = loop.size() - 1;
+			if (parting.count(origin(at)))
+				placeOf[origin(at)] = loop.size() - 1;
 			const auto first = placeOf.find(origin(Fans::next(at)));
 			if (first == placeOf.end())
 				continue;
@@ -243,6 +247,8 @@ inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& point
 			loops.emplace_back(begin, loop.end());
 			loop.erase(begin, loop.end());
 		}
+		if (!loop.empty())
+			loops.push_back(std::move(loop));
 	}
 	return loops;
 }
