@@ -465,3 +465,17 @@ TEST(SurfaceMesh, ACopyIsTheSameMeshAndCanBeCancelled)
 	EXPECT_EQ(structureError(copy), "");
 	EXPECT_THROW(mesh.copied(Progress([](int, const char*) { return false; })), Cancelled);
 }
+
+TEST(SurfaceMesh, ASliverIsLowerThanAMillionthOfTheDiagonalHoweverShortItsEdges)
+{
+	for (const double scale : {1e-6, 1.0, 1e6})
+		for (const double length : {1e-3, 1.0})
+			for (const double height : {0.5e-6, 2e-6}) {
+				const shapes::Soup thin = {
+					{{0, 0, 0}, {length * scale, 0, 0}, {length * scale / 2, height * scale, 0},
+						{0, 0, scale}},
+					{{0, 1, 2}, {1, 0, 3}, {2, 1, 3}, {0, 2, 3}}};
+				const SurfaceMesh mesh = thin.mesh();
+				EXPECT_EQ(mesh.isSliver(0, scale), height < 1e-6);
+			}
+}

@@ -330,8 +330,8 @@ struct NoiseReport
  *
  * Thin parts are left out of that and judged by themselves, since neither their facets nor what noise does to them
  * depends on the diagonal: none below 5 % of the local thickness (clean trees show up to 2.5 %, with a whiteness of at
- * most 0.1), then 10 rounds, 40 above 15 %, and none above 100 %: no surface is left of a tube whose noise is as
- * large as it is thick, so that what deviates by that much are the bends of a coarse one.
+ * most 0.1), then 10 rounds, 40 above 15 %, and none above 100 %: noise as large as a
+ * tube is thick would leave no surface, so that deviations that large are the bends of a coarse tube.
  * @param thickness local thickness of each vertex, mesh units, infinite where the shape is not thin; empty: nowhere.
  * @pre mesh is compact. @throws Cancelled. Complexity: O(V).
  */

@@ -187,6 +187,17 @@ public:
 		return (position[origins[3 * f + 1]] - a) ^ (position[origins[3 * f + 2]] - a);
 	}
 
+	/// Whether triangle f is too thin for a reliable normal: its height is at most a millionth of the surface's
+	/// diagonal, a few steps of PrincipalFrame::onGrid().
+	bool isSliver(int f, double diagonal) const
+	{
+		constexpr double thinnest = 1e-6;
+		double longest = 0;
+		for (int h = 3 * f; h < 3 * f + 3; ++h)
+			longest = std::max(longest, squaredLength(h));
+		return areaVector(f).Norm() <= thinnest * diagonal * std::sqrt(longest);
+	}
+
 	double squaredLength(int h) const
 	{
 		return SquaredDistance(position[origin(h)], position[target(h)]);

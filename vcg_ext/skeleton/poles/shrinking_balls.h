@@ -218,21 +218,17 @@ inline OsculatingNormals osculatingNormals(const SurfaceMesh& mesh, const Progre
 }
 
 /**
- * 1 for the vertices of triangles that are thinner than rounding leaves them a normal: such a triangle does not
- * tell on which side of it the inside is. Empty if there are none.
+ * 1 for the vertices of slivers, see SurfaceMesh::isSliver(): such a triangle does not tell on which side of it the
+ * inside is. Empty if there are none.
  * @throws Cancelled
  */
 inline std::vector<char> cornersOfSlivers(
 	const SurfaceMesh& mesh, const UnitFrame& frame, const Progress& progress)
 {
-	constexpr double thinnest = 1e-6; // of the diagonal: a few steps of PrincipalFrame::onGrid()
+	const double diagonal = frame.lengthOut(frame.diagonal());
 	std::vector<char> isCorner;
 	reportedLoop(mesh.faceSlots(), progress, "Measuring the surface", [&](int f) {
-		double longest = 0;
-		for (int h = 3 * f; h < 3 * f + 3; ++h)
-			longest = std::max(longest, mesh.squaredLength(h));
-		longest = std::sqrt(longest);
-		if (frame.lengthIn(mesh.areaVector(f).Norm()) > thinnest * frame.diagonal() * longest)
+		if (!mesh.isSliver(f, diagonal))
 			return;
 		isCorner.resize(size_t(mesh.vertexSlots()), 0);
 		for (int v : mesh.triangle(f))

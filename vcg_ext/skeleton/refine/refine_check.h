@@ -87,15 +87,10 @@ public:
 		const auto measured = [&](int v) {
 			return empty[v] = closest.closestExactly(curve.position[v]).distance;
 		};
-		const auto isCovered = [&](int a, int b) {
-			const double radiusA = measured(a), radiusB = measured(b);
-			int queries = mostQueries();
-			return this->isCovered(
-				curve.position[a], radiusA, curve.position[b], radiusB, 0, queries);
-		};
 		for (const auto& [a, b] : curve.edges) {
 			const Point3d &from = curve.position[a], &to = curve.position[b];
-			if (Distance(from, to) > empty[a] + empty[b] && !isCovered(a, b)
+			if (Distance(from, to) > empty[a] + empty[b]
+				&& !isCovered(from, measured(a), to, measured(b))
 				&& !isEnclosed(from, to, progress))
 				return false;
 		}
@@ -121,15 +116,15 @@ private:
 	const ClosestSurface& closest;
 	SurfaceComponent component; ///< refers to what its maker keeps
 
-	/// So many closest points take as long as isEnclosed().
-	int mostQueries() const
+	/// Whether empty balls cover the segment; not if it comes nearer to the surface than its length / 2^16, or
+	/// if that takes more closest points than take as long as isEnclosed().
+	bool isCovered(const Point3d& a, double radiusA, const Point3d& b, double radiusB) const
 	{
 		constexpr int least = 64, verticesOfQuery = 8;
-		return least + int(component.vertices.size()) / verticesOfQuery;
+		int queries = least + int(component.vertices.size()) / verticesOfQuery;
+		return isCovered(a, radiusA, b, radiusB, 0, queries);
 	}
-
-	/// Whether empty balls cover the segment; not if it comes nearer to the surface than its length / 2^16, or
-	/// if that takes more queries. @param queries that are left.
+	/// @param queries that are left.
 	bool isCovered(const Point3d& a, double radiusA, const Point3d& b, double radiusB, int depth,
 		int& queries) const
 	{

@@ -470,8 +470,8 @@ inline BallChain withShortEdges(const BallChain& line, const std::vector<double>
 }
 
 /**
- * A polyline without nodes that crowd: where the straight way from the node before one to the one after it is no longer than
- * five quarters of the spacing, and inside.
+ * A polyline without crowded nodes: one goes if the straight segment from the node kept
+ * before it to the one after it is inside and shorter than 1.25 spacings.
  * @param spacings at its points; on return at those that are left.
  */
 inline BallChain withoutCrowdedNodes(

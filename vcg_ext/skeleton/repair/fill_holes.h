@@ -72,7 +72,7 @@ public:
 	/**
 	 * @param polygon   corners in order; @param outside unit normal of the face at each side i, i + 1.
 	 * @param allowed   allowed(i, k): whether the filling may have the edge from corner i to corner k.
-	 * @param free      turns up to this one count alike, so that the area decides.
+	 * @param free      turns up to this one cost nothing: among them the area decides.
 	 */
 	template <class Allowed>
 	PolygonFilling(const std::vector<Point3d>& polygon, const std::vector<Point3d>& outside,
@@ -159,8 +159,8 @@ private:
 /**
  * The loops of half-edges around the holes of a coherently oriented surface, as they run in the faces. Where
  * several fans of faces meet at a vertex, a loop goes on at the fan across the gap, so that the gap can be
- * filled and the vertex stays whole; where the fans face different ways, each is for itself, and what of a loop
- * begins and ends at such a vertex is a hole of its own: the open end of a wing, and the slit along its trailing edge.
+ * filled and the vertex stays whole. Where the fans face different ways, a loop stays with its fan, and is split where it
+ * returns to the vertex: the open end of a wing and the slit along its trailing edge are separate holes.
  */
 inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& points,
 	const std::vector<Triangle>& triangles, const std::vector<int>& partner)
@@ -188,7 +188,7 @@ inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& point
 			fan->second.normal += (points[size_t(t[1])] - a) ^ (points[size_t(t[2])] - a);
 		}
 	std::map<int, int> following; // of the half-edge into a vertex
-	std::set<int> parting;        // vertices whose fans face different ways
+	std::set<int> splitting;      // vertices whose fans face different ways
 	for (const auto& [v, around] : fansAt) {
 		Point3d normal(0, 0, 0);
 		for (int fan : around)
@@ -197,7 +197,7 @@ inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& point
 		for (int fan : around)
 			alike &= fanOf[fan].normal * normal > 0;
 		if (!alike)
-			parting.insert(v);
+			splitting.insert(v);
 		// Seen from outside, each fan reaches counter-clockwise from its outgoing to its incoming border.
 		Point3d x, y;
 		vcg::GetUV(normal, x, y);
@@ -232,11 +232,11 @@ inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& point
 		if (partner[size_t(h)] >= 0 || done[size_t(h)])
 			continue;
 		std::vector<int> loop;
-		std::map<int, size_t> placeOf; // in the loop, of the half-edge from a parting vertex
+		std::map<int, size_t> placeOf; // in the loop, of the half-edge from a splitting vertex
 		for (int at = h; !done[size_t(at)]; at = following[at]) {
 			done[size_t(at)] = 1;
 			loop.push_back(at);
-			if (parting.count(origin(at)))
+			if (splitting.count(origin(at)))
 				placeOf[origin(at)] = loop.size() - 1;
 			const auto first = placeOf.find(origin(Fans::next(at)));
 			if (first == placeOf.end())

@@ -140,9 +140,9 @@ public:
 	/**
 	 * Whether a query is inside, given its closest point: by the normal there, which at an edge is the
 	 * sum of both faces' and at a vertex is weighted by the angles (Baerentzen and Aanaes, "Signed
-	 * distance computation using the angle weighted pseudonormal", IEEE TVCG 11(3), 2005). Where nearly nothing is
-	 * left of that sum, or a face is thinner than rounding leaves it a normal, as at the bottom of a slit or the edge
-	 * of a blade whose walls are as near as coordinates are precise, the winding number tells.
+	 * distance computation using the angle weighted pseudonormal", IEEE TVCG 11(3), 2005). Where that sum nearly
+	 * cancels, or a face is a sliver, the winding number decides: at the bottom of a slit or the edge of a blade whose walls
+	 * are closer than the coordinates are precise.
 	 */
 	bool isInside(const Point3d& query, const Hit& hit) const
 	{
@@ -157,7 +157,7 @@ public:
 		const auto add = [&](int face, double weight) {
 			normal += unitNormal(face) * weight;
 			weights += weight;
-			isClear = isClear && !isSliver(face);
+			isClear = isClear && !surface.isSliver(face, box.Diag());
 		};
 		if (on.part >= 3) {
 			add(h / 3, 1);
@@ -256,7 +256,7 @@ private:
 	};
 	mutable Triangles triangles;
 	mutable std::once_flag trianglesOnce;
-	/// What only unclear places need; made by the first.
+	/// What only queries without a reliable normal need; made by the first.
 	mutable std::optional<SolidTest> bounded;
 	mutable std::once_flag boundedOnce;
 
@@ -381,18 +381,6 @@ private:
 		const Point3d centre = hit.point - outward * radius;
 		const Point3d a = hit.point - centre, b = contact - centre;
 		return {centre, radius, face, std::atan2((a ^ b).Norm(), a * b), contact};
-	}
-
-	/// Whether a triangle is thinner than rounding leaves it a normal.
-	bool isSliver(int face) const
-	{
-		constexpr double thinnest =
-			1e-6; // of the diagonal: a few steps of PrincipalFrame::onGrid()
-		double longest = 0;
-		for (int h = 3 * face; h < 3 * face + 3; ++h)
-			longest = std::max(longest, surface.squaredLength(h));
-		const double thin = thinnest * box.Diag();
-		return surface.areaVector(face).SquaredNorm() <= thin * thin * longest;
 	}
 
 	Point3d unitNormal(int face) const
