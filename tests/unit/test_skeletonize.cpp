@@ -617,6 +617,24 @@ TEST(Skeletonize, SheetsThatWouldLeaveAThicketAreGivenUp)
 	}
 }
 
+TEST(Skeletonize, SheetsStandForCurves)
+{
+	// A block with a slit. Were its sheets kept, 60 % more curves would be left than without sheets.
+	constexpr double slit = 1e-4;
+	const double x[] = {0, 1, 1 + slit, 2 + slit}, z[] = {0, 0.6, 2};
+	const shapes::Soup soup = shapes::subdivided(shapes::transformed(
+		shapes::cells(3, 1, 2, [](int i, int, int k) { return i != 1 || k == 0; }),
+		[&](const Point3d& p) { return Point3d(x[int(p[0])], p[1], z[int(p[2])]); }));
+	Parameters parameters;
+	parameters.resample = false;
+	parameters.refine = false;
+	const double curves = statistics(run(soup, parameters).curve).length;
+	parameters.keepSheets = true;
+	const Skeletonization result = run(soup, parameters);
+	ASSERT_TRUE(result.sheets);
+	EXPECT_LT(result.sheets->skeleton.curveLength(), 1.25 * curves);
+}
+
 TEST(Skeletonize, WhatIsContractedAsItIsMustNotLoseLimbs)
 {
 	const SurfaceMesh tube = shapes::capsule(10, 0.1, 12).mesh();

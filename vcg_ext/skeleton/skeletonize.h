@@ -523,14 +523,14 @@ inline Skeletonization skeletonizeThin(const SurfaceInput& input, const Paramete
 
 /**
  * A skeleton with sheets, or without them where they would leave a thicket of curves: where no sheet could be kept, and
- * where the curves are more than twice as long as those of the shape contracted without sheets.
+ * where the curves are clearly longer than those of the shape contracted without sheets: sheets stand for curves.
  * Complexity: as skeletonize(), twice where that is in doubt.
  */
 inline Skeletonization skeletonizeWithSheets(const SurfaceInput& input, const Parameters& given,
 	const Progress& progress, const Observer& observer, const RefineParameters& refinement)
 {
-	constexpr double doubtful = 3; // diagonals of the components
-	constexpr double thicket = 2;  // times the length without sheets
+	constexpr double doubtful = 3;   // diagonals of the components
+	constexpr double thicket = 1.25; // times the length without sheets
 	Skeletonization result =
 		skeletonizeThin(input, given, progress.part(0, once), observer, refinement);
 	if (!result.sheets || !input.held.empty())

@@ -1248,6 +1248,23 @@ TEST(Refine, FindsWhatIsWrongWithACurve)
 	EXPECT_EQ(defect(CurveMaker().chain(pacing).in(mesh)), Defect::TooLong);
 }
 
+TEST(Refine, HoweverThinTheShapeTheNodesAreBounded)
+{
+	constexpr double spacing = 1e-6; // as in a shape of that thickness
+	const auto line = [](int nodes) {
+		CurveSkeleton curve;
+		for (int i = 0; i < nodes; ++i) {
+			curve.position.emplace_back(double(i) / (nodes - 1), 0, 0);
+			if (i > 0)
+				curve.edges.push_back({i - 1, i});
+		}
+		return curve;
+	};
+	const refining::CurveBounds bounds(line(4), spacing);
+	EXPECT_TRUE(bounds.hold(line(int(refining::mostNodes(1)))));
+	EXPECT_FALSE(bounds.hold(line(int(2 * refining::mostNodes(1)))));
+}
+
 TEST(Refine, AFewEdgesThatHaveLeftTheSurfaceAreBroughtBack)
 {
 	using refining::Defect;

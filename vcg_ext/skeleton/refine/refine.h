@@ -117,13 +117,6 @@ private:
 
 namespace refining {
 
-/// The most nodes of a curve whose length is so many diagonals.
-inline double mostNodes(double length)
-{
-	constexpr double nodesOfDiagonal = 1500;
-	return nodesOfDiagonal * (1 + length);
-}
-
 /**
  * The smallest scale with which a curve has no more than mostNodes(): where it is thin all along, as in a
  * needle, it needs no node every half radius.

@@ -30,34 +30,47 @@ enum class Defect {
 	Outside,   ///< a node or an edge is outside the surface
 };
 
+/// The most nodes that the sampling gives a curve whose length is so many diagonals.
+inline double mostNodes(double length)
+{
+	constexpr double nodesOfDiagonal = 1500;
+	return nodesOfDiagonal * (1 + length);
+}
+
 /**
  * How large a refined curve may be, from its unrefined one, in diagonals. New branches lead into features,
  * so that a curve may grow, but not without limit: a node that strays drags two edges along, and each
- * sampling makes nodes of them.
+ * sampling makes nodes of them; ways around the bends of thin walls have nodes of their own.
  */
-struct CurveBounds
+class CurveBounds
 {
-	double length;
-	size_t nodes;
-
+public:
 	/// A curve may become three times as long as itself and the shape's diagonal together, and have twice
-	/// the nodes that it has and that are as far apart as `spacing` on such a length.
-	CurveBounds(const CurveSkeleton& unrefined, double spacing)
+	/// the nodes that it has and that are as far apart as `spacing` on such a length. In no case may it have more
+	/// nodes than before and a third more than mostNodes().
+	CurveBounds(const CurveSkeleton& unrefined, double spacing) :
+			nodesBefore(unrefined.position.size())
 	{
 		constexpr double longer = 3, denser = 2;
 		length = longer * (statistics(unrefined).length + 1);
-		nodes = size_t(denser * (double(unrefined.position.size()) + length / spacing));
+		nodes = size_t(denser * (double(nodesBefore) + length / spacing));
 	}
 
 	bool hold(const CurveSkeleton& curve) const
 	{
+		constexpr double more = 4.0 / 3;
 		if (curve.position.size() > nodes)
 			return false;
 		double sum = 0;
 		for (const auto& [a, b] : curve.edges)
 			sum += Distance(curve.position[a], curve.position[b]);
-		return sum <= length; // not if it is no number
+		return sum <= length // not if it is no number
+			&& double(curve.position.size()) <= double(nodesBefore) + more * mostNodes(sum);
 	}
+
+private:
+	double length;
+	size_t nodes, nodesBefore;
 };
 
 /**
