@@ -208,6 +208,32 @@ TEST(MakeSolid, LeavesWhatIsTooThinToBeWrappedAndSaysSo)
 	EXPECT_EQ(piecesOf(made.surface.mesh), 2);
 }
 
+TEST(MakeSolid, LeavesBodiesThatAWrapWouldCut)
+{
+	// A dumbbell and a block that crosses one of its ends, or shares a wall with it.
+	for (const double waist : {0.3, 1e-4})
+		for (const double overlap : {0.2, 0.0}) {
+			const double across[] = {0, 0.5 - waist / 2, 0.5 + waist / 2, 1};
+			const shapes::Soup dumbbell = shapes::transformed(
+				shapes::cells(
+					3, 3, 3, [](int i, int j, int k) { return i != 1 || (j == 1 && k == 1); }),
+				[&](const Point3d& p) {
+					return Point3d(p[0], across[int(p[1])], across[int(p[2])]);
+				});
+			const SolidSurface made = solid(shapes::joined(
+				{dumbbell, shapes::moved(shapes::box(1, 1, 1), {3 - overlap, overlap, overlap})}));
+			if (waist > 0.1) {
+				EXPECT_EQ(made.report.outcome, SolidReport::Wrapped) << overlap;
+				EXPECT_EQ(piecesOf(made.surface.mesh), 1) << overlap;
+				continue;
+			}
+			EXPECT_EQ(made.report.outcome, SolidReport::Sound) << overlap;
+			EXPECT_EQ(piecesOf(made.surface.mesh), 2) << overlap;
+			ASSERT_EQ(made.surface.notes.size(), 1u) << overlap;
+			EXPECT_NE(made.surface.notes[0].find("would cut"), std::string::npos);
+		}
+}
+
 TEST(MakeSolid, TurnsAWrapThatIsInsideOut)
 {
 	const SolidSurface made = solid(shapes::insideOut(bowl(0.2)));

@@ -139,7 +139,7 @@ constexpr double noticeableWalls = 0.002;
 constexpr double layersApart = 0.01;
 
 /// The lattice of a wrap has a spacing between those of which this many squares have the surface's area.
-constexpr double usualSquares = 30000, mostSquares = 150000;
+constexpr double usualSquares = 30000, maxSquares = 150000;
 
 /// Triangles that cross others with which they share no vertex. Complexity: O(F log F) on even surfaces.
 inline int selfIntersections(const std::vector<Point3d>& points,
@@ -277,21 +277,21 @@ inline double sharedWalls(const std::vector<Point3d>& points,
 	return double(std::count(shared.begin(), shared.end(), 1)) / double(places.size());
 }
 
-/// The thickness below which a part of the surface's area is, measured against the normals; at most `most`.
+/// The thickness below which a part of the surface's area is, measured against the normals; at most `maximum`.
 inline double smallThickness(const std::vector<SurfacePlace>& places, const TriangleTree& tree,
-	double part, double most, const Progress& progress)
+	double part, double maximum, const Progress& progress)
 {
 	constexpr int pieces = 8; // short segments meet few boxes
-	std::vector<double> thickness(places.size(), most);
+	std::vector<double> thickness(places.size(), maximum);
 	forEachBlock(int(places.size()), progress, "Measuring the thickness", [&](int begin, int end) {
 		for (int i = begin; i < end; ++i) {
 			const SurfacePlace& at = places[size_t(i)];
 			double& found = thickness[size_t(i)];
-			for (int k = 0; k < pieces && found == most; ++k) {
-				const double from = most * k / pieces, length = most / pieces;
+			for (int k = 0; k < pieces && found == maximum; ++k) {
+				const double from = maximum * k / pieces, length = maximum / pieces;
 				tree.forEachCrossing(at.point - at.normal * from,
 					at.point - at.normal * (from + length), [&](int, double t, bool leaves) {
-						if (leaves && from + t * length > 1e-6 * most)
+						if (leaves && from + t * length > 1e-6 * maximum)
 							found = std::min(found, from + t * length);
 					});
 			}
@@ -313,11 +313,11 @@ inline Distances distances(const std::vector<Point3d>& from, size_t all,
 	const std::vector<Point3d>& points, const std::vector<Triangle>& triangles,
 	const Progress& progress)
 {
-	constexpr size_t most = 20000;
+	constexpr size_t maximum = 20000;
 	if (from.empty())
 		return {};
 	const TriangleTree to(points, triangles, progress.part(0, 0.5));
-	const size_t step = std::max<size_t>(1, from.size() / most);
+	const size_t step = std::max<size_t>(1, from.size() / maximum);
 	std::vector<double> distance((from.size() + step - 1) / step, 0);
 	forEachBlock(int(distance.size()), progress.part(0.5, 1), "Measuring the distance",
 		[&](int begin, int end) {
@@ -332,6 +332,68 @@ inline Distances distances(const std::vector<Point3d>& from, size_t all,
 	return result;
 }
 
+/// The volume of each component of a closed surface, negative if it is turned inward.
+inline std::vector<double> pieceVolumes(
+	const SurfaceMesh& mesh, const std::vector<int>& component, int count)
+{
+	std::vector<double> volume(size_t(count), 0);
+	const Point3d origin = mesh.position[0];
+	for (const Triangle& t : mesh.triangles())
+		volume[size_t(component[size_t(t[0])])] += (mesh.position[size_t(t[0])] - origin)
+			* ((mesh.position[size_t(t[1])] - origin) ^ (mesh.position[size_t(t[2])] - origin)) / 6;
+	return volume;
+}
+
+/// How many components of a closed surface are turned outward.
+inline int outwardPieces(const SurfaceMesh& mesh, const Progress& progress)
+{
+	int count = 0;
+	const std::vector<int> component = connectedComponents(mesh, &count, progress);
+	const std::vector<double> volume = pieceVolumes(mesh, component, count);
+	return int(std::count_if(volume.begin(), volume.end(), [](double v) { return v > 0; }));
+}
+
+/**
+ * Whether a body of a surface is in pieces in its wrap: a noticeable part of its area is closest to one of them, and of
+ * another one.
+ * Complexity: O(F log F).
+ */
+inline bool isCutInWrap(
+	const SurfaceMesh& mesh, const SurfaceMesh& wrapped, const Progress& progress)
+{
+	constexpr double noticeable = 0.1;
+	constexpr int samples = 100; // of each piece of the wrap
+	const std::vector<Triangle> bodies = mesh.triangles(), pieces = wrapped.triangles();
+	int bodyCount = 0, pieceCount = 0;
+	const std::vector<int> body = connectedComponents(mesh, &bodyCount, progress.part(0, 0.1));
+	const std::vector<int> piece =
+		connectedComponents(wrapped, &pieceCount, progress.part(0.1, 0.3));
+	std::vector<double> bodyArea(size_t(bodyCount), 0), pieceArea(size_t(pieceCount), 0);
+	for (const Triangle& t : bodies)
+		bodyArea[size_t(body[size_t(t[0])])] += areaVector(mesh.position, t).Norm();
+	std::vector<std::vector<Triangle>> ofPiece(static_cast<size_t>(pieceCount));
+	for (const Triangle& t : pieces) {
+		pieceArea[size_t(piece[size_t(t[0])])] += areaVector(wrapped.position, t).Norm();
+		ofPiece[size_t(piece[size_t(t[0])])].push_back(t);
+	}
+	const TriangleTree tree(mesh.position, bodies, progress.part(0.3, 0.6));
+	std::vector<int> piecesOfBody(size_t(bodyCount), 0);
+	for (size_t i = 0; i < ofPiece.size(); ++i) {
+		const std::vector<SurfacePlace> places =
+			placesByArea(wrapped.position, ofPiece[i], samples);
+		std::map<size_t, double> nearArea; // of the piece, by body
+		for (const SurfacePlace& at : places) {
+			const Triangle& t = bodies[size_t(tree.closest(at.point).face)];
+			nearArea[size_t(body[size_t(t[0])])] += pieceArea[i] / double(places.size());
+		}
+		for (const auto& [b, area] : nearArea)
+			piecesOfBody[b] += area > noticeable * bodyArea[b];
+		progress.report(
+			0.6 + 0.4 * double(i + 1) / double(ofPiece.size()), "Comparing with the wrap");
+	}
+	return *std::max_element(piecesOfBody.begin(), piecesOfBody.end()) > 1;
+}
+
 /// Leaves out what is no larger than the lattice can tell from nothing, and then cavities.
 /// @return how many are small; the cavities, and the surface with them.
 inline std::pair<int, LeftOutPieces> dropSmallPieces(
@@ -340,26 +402,21 @@ inline std::pair<int, LeftOutPieces> dropSmallPieces(
 	const SurfaceMesh mesh(surface.points, surface.triangles, progress.part(0, 0.5));
 	int count = 0;
 	const std::vector<int> component = connectedComponents(mesh, &count, progress.part(0.5, 1));
-	std::vector<double> volume(size_t(count), 0);
-	const Point3d origin = surface.points[0];
-	for (const Triangle& t : surface.triangles)
-		volume[size_t(component[size_t(t[0])])] += (surface.points[size_t(t[0])] - origin)
-			* ((surface.points[size_t(t[1])] - origin) ^ (surface.points[size_t(t[2])] - origin))
-			/ 6;
+	const std::vector<double> volume = pieceVolumes(mesh, component, count);
 	const double largest = *std::max_element(volume.begin(), volume.end());
-	const double least = std::min(2 * spacing * spacing * spacing, largest);
+	const double minimum = std::min(2 * spacing * spacing * spacing, largest);
 	std::vector<Triangle> kept;
 	for (const Triangle& t : surface.triangles)
-		if (volume[size_t(component[size_t(t[0])])] >= least)
+		if (volume[size_t(component[size_t(t[0])])] >= minimum)
 			kept.push_back(t);
 	surface.triangles = std::move(kept);
 	LeftOutPieces leftOut;
 	leftOut.cavities =
-		int(std::count_if(volume.begin(), volume.end(), [&](double v) { return v <= -least; }));
+		int(std::count_if(volume.begin(), volume.end(), [&](double v) { return v <= -minimum; }));
 	if (leftOut.cavities > 0)
 		leftOut.hollow = std::make_shared<const SurfaceMesh>(mesh.copied(progress));
 	return {int(std::count_if(
-				volume.begin(), volume.end(), [&](double v) { return std::abs(v) < least; })),
+				volume.begin(), volume.end(), [&](double v) { return std::abs(v) < minimum; })),
 		leftOut};
 }
 
@@ -392,16 +449,8 @@ public:
 			return std::move(solid);
 		if (!error) {
 			if (repair == Repair::Auto
-				&& isToBeWrapped(
-					solid.surface.mesh, solid.surface.notes, progress.part(0.3, 0.4))) {
-				// The wrap is that of all pieces turned outward.
-				LeftOutPieces& leftOut = solid.report.leftOut;
-				if (std::optional<SurfaceMesh> hollow = withCavitiesInward(solid.surface.mesh,
-						solid.surface.turned, leftOut.cavities, progress.cancelOnly()))
-					leftOut.hollow = std::make_shared<const SurfaceMesh>(*std::move(hollow));
-				wrapIt(solid.surface.mesh.position, solid.surface.mesh.triangles(), {},
-					progress.part(0.4, 1));
-			}
+				&& isToBeWrapped(solid.surface.mesh, solid.surface.notes, progress.part(0.3, 0.4)))
+				wrapSound(progress.part(0.4, 1));
 			return std::move(solid);
 		}
 		MendedSurface mended = mend(points, triangles, HoleLimits(), progress.part(0.3, 0.5));
@@ -444,6 +493,32 @@ private:
 		case Defect::OpenSheet: break;
 		}
 		return false;
+	}
+
+	/// The wrap of a sound surface, unless that cuts one of its bodies, or joins none where nothing is enclosed more
+	/// than once.
+	void wrapSound(const Progress& progress)
+	{
+		SolidSurface asItIs = std::exchange(solid, {});
+		const SurfaceMesh& mesh = asItIs.surface.mesh;
+		solid.report = asItIs.report;
+		// The wrap is that of all pieces turned outward.
+		LeftOutPieces& leftOut = solid.report.leftOut;
+		if (std::optional<SurfaceMesh> hollow = withCavitiesInward(
+				mesh, asItIs.surface.turned, leftOut.cavities, progress.cancelOnly()))
+			leftOut.hollow = std::make_shared<const SurfaceMesh>(*std::move(hollow));
+		const int before = outwardPieces(mesh, progress.cancelOnly()) - leftOut.cavities;
+		wrapIt(mesh.position, mesh.triangles(), {}, progress.part(0, 0.95));
+		const SurfaceMesh& wrapped = solid.surface.mesh;
+		const bool isJoined = outwardPieces(wrapped, progress.cancelOnly()) < before
+			|| asItIs.report.overlap >= noticeableOverlap;
+		const bool isCut = isCutInWrap(mesh, wrapped, progress.part(0.95, 1));
+		if (isJoined && !isCut)
+			return;
+		solid = std::move(asItIs);
+		solid.surface.notes.push_back(isCut
+				? "Bodies touch or cross each other. The surface is left as it is: a wrap would cut thin ones."
+				: "Bodies touch each other. The surface is left as it is: a wrap would not join them.");
 	}
 
 	/// Whether a noticeable part of the volume is enclosed more than once because the surface crosses itself, and
@@ -491,9 +566,10 @@ private:
 		double area = 0;
 		for (const Triangle& t : faces)
 			area += areaVector(points, t).Norm();
-		const double least = cells * std::sqrt(area / mostSquares);
-		return smallThickness(placesByArea(points, faces, samples), tree, part, 2 * least, progress)
-			< least;
+		const double minimum = cells * std::sqrt(area / maxSquares);
+		return smallThickness(
+				   placesByArea(points, faces, samples), tree, part, 2 * minimum, progress)
+			< minimum;
 	}
 
 	bool takeMended(const MendedSurface& mended, Repair repair, const Progress& progress)
@@ -573,7 +649,7 @@ private:
 	{
 		constexpr int samples = 4000;
 		constexpr double ofThickness = 0.4, thinPart = 0.05; // of the area
-		constexpr int mostNodes = 6000000;
+		constexpr int maxNodes = 6000000;
 		turnOutward(given, faces, progress.part(0, 0.05));
 		Box3d box;
 		double area = 0;
@@ -606,11 +682,11 @@ private:
 		if (enclosure.enclosing < 0.1)
 			refuse(error, isFlat(given, faces));
 		const double widest = std::sqrt(area / usualSquares),
-					 narrowest = std::sqrt(area / mostSquares);
+					 narrowest = std::sqrt(area / maxSquares);
 		const double thin =
 			smallThickness(places, tree, thinPart, widest / ofThickness, progress.part(0.2, 0.25));
 		const double spacing = std::clamp(ofThickness * thin, narrowest, widest);
-		WrappedSurface made = wrap(tree, winding, spacing, mostNodes, progress.part(0.25, 0.8));
+		WrappedSurface made = wrap(tree, winding, spacing, maxNodes, progress.part(0.25, 0.8));
 		if (made.triangles.empty())
 			refuse(error, false);
 		solid.report.outcome = SolidReport::Wrapped;
@@ -641,10 +717,10 @@ private:
 				box.Add(given[size_t(v)]);
 		}
 		const Point3d& origin = given[size_t(faces[0][0])];
-		const double most = rounding * box.Diag() * normal.Norm();
+		const double maximum = rounding * box.Diag() * normal.Norm();
 		return std::all_of(faces.begin(), faces.end(), [&](const Triangle& t) {
 			return std::all_of(t.begin(), t.end(),
-				[&](int v) { return std::abs((given[size_t(v)] - origin) * normal) <= most; });
+				[&](int v) { return std::abs((given[size_t(v)] - origin) * normal) <= maximum; });
 		});
 	}
 
