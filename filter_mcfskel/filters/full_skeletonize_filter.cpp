@@ -168,7 +168,7 @@ FilterSpec fullSkeletonizeFilter()
 	parameters.push_back({ParameterKind::Integer, "keep_stages", 0, "Keep every k-th stage",
 		"Every k-th meso-skeleton becomes a layer NAME_meso_K; 0 keeps the last one only."});
 	parameters.push_back(ParameterSpec {ParameterKind::Integer, "max_iterations",
-		double(defaults.maxIterations), "Most iterations",
+		double(defaults.maxIterations), "Maximum iterations",
 		"The contraction stops after this many iterations even if it has not converged; it usually "
 		"does after 10 to 40."}
 							 .asAdvanced());

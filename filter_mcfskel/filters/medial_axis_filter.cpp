@@ -19,9 +19,9 @@ namespace {
 Results medialAxis(FilterRun& run)
 {
 	mcf::MedialLayerParameters parameters;
-	parameters.leastAngle = run.parameters.real("min_angle");
-	parameters.leastRadius = run.parameters.fraction("min_radius") * referenceDiagonal(run.layer());
-	parameters.mostStretch = run.parameters.real("max_stretch");
+	parameters.minAngle = run.parameters.real("min_angle");
+	parameters.minRadius = run.parameters.fraction("min_radius") * referenceDiagonal(run.layer());
+	parameters.maxStretch = run.parameters.real("max_stretch");
 	parameters.check();
 	const PoledSurface poled = surfaceWithPoles(
 		run, mcf::Parameters().poleMethod, mcf::Repair::Off, run.progress.part(0, 0.5));
@@ -65,13 +65,13 @@ FilterSpec medialAxisFilter()
 		FilterCategory::Remeshing, MeshModel::MM_FACENUMBER,
 		{{ParameterKind::Boolean, "joined", 1, "Join the poles",
 			 "Joins the poles by triangles; otherwise they are a cloud of points."},
-			{ParameterKind::Real, "min_angle", defaults.leastAngle, "Least angle",
+			{ParameterKind::Real, "min_angle", defaults.minAngle, "Minimum angle",
 				"Poles whose ball touches the surface in a narrower angle, seen from the pole, are left "
 				"out, degrees, 0 to 180. Noise makes narrow ones; sane are 30 to 120."},
-			{ParameterKind::Length, "min_radius", 0, "Least radius",
+			{ParameterKind::Length, "min_radius", 0, "Minimum radius",
 				"Poles with a smaller ball are left out, mesh units or percent of the diagonal."},
-			ParameterSpec {ParameterKind::Real, "max_stretch", defaults.mostStretch,
-				"Greatest stretch",
+			ParameterSpec {ParameterKind::Real, "max_stretch", defaults.maxStretch,
+				"Maximum stretch",
 				"Triangles with an edge more than this many times as long as on the surface are left "
 				"out, above 0: they join different sheets. Recommended: 2 to 10."}
 				.asAdvanced()},

@@ -22,7 +22,7 @@ Results pruneSkeleton(FilterRun& run)
 	parameters.spurProminence = run.parameters.real("spur_prominence");
 	parameters.detail = run.parameters.real("detail");
 	parameters.shortestBranch = run.parameters.fraction("min_length") * diagonal;
-	parameters.leastRadius = run.parameters.fraction("min_radius") * diagonal;
+	parameters.minRadius = run.parameters.fraction("min_radius") * diagonal;
 	parameters.mergeJunctions = run.parameters.flag("merge_junctions");
 	parameters.check();
 
@@ -83,7 +83,7 @@ FilterSpec pruneSkeletonFilter()
 			{ParameterKind::Length, "min_length", 0, "Shortest branch",
 				"Terminal branches shorter than this go, mesh units or percent of the diagonal; the "
 				"shortest first. 0: none; sane are up to 10 %."},
-			{ParameterKind::Length, "min_radius", 0, "Least radius",
+			{ParameterKind::Length, "min_radius", 0, "Minimum radius",
 				"Terminal branches with a smaller mean radius go, mesh units or percent of the "
 				"diagonal; the thinnest first. 0: none; sane are up to 5 %."},
 			{ParameterKind::Boolean, "merge_junctions", double(defaults.mergeJunctions),

@@ -34,7 +34,7 @@ Results skeletonTubes(FilterRun& run)
 	std::vector<double> thickness;
 	for (int node : tubes.node)
 		thickness.push_back(curve.skeleton.radius[size_t(node)]);
-	const auto [least, greatest] = std::minmax_element(thickness.begin(), thickness.end());
+	const auto [minimum, maximum] = std::minmax_element(thickness.begin(), thickness.end());
 
 	run.progress.report(0.5, what);
 	MeshModel& source = run.layer();
@@ -43,11 +43,11 @@ Results skeletonTubes(FilterRun& run)
 	addFaces(layer, tubes.triangles);
 	run.progress.report(0.8, what);
 	setVertexQuality(layer, thickness);
-	setVertexColours(layer, thickness, *least, *greatest);
+	setVertexColours(layer, thickness, *minimum, *maximum);
 	run.log(QString(
 		"Colours: thickness from %1 (blue) to %2 (red), mesh units; also the vertex quality.")
-				.arg(*least)
-				.arg(*greatest));
+				.arg(*minimum)
+				.arg(*maximum));
 	Results results = {
 		{"tubes", tubes.pieces},
 		{"vertices", int(tubes.points.size())},

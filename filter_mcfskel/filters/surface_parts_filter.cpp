@@ -59,7 +59,7 @@ Results surfaceParts(FilterRun& run)
 		{"parts", int(std::count_if(area.begin(), area.end(), [](double a) { return a > 0; }))},
 		{"branch_length", column(n, [&](size_t i) { return branches[i].length; })},
 		{"branch_radius_mean", column(n, [&](size_t i) { return branches[i].meanRadius; })},
-		{"branch_radius_min", column(n, [&](size_t i) { return branches[i].leastRadius; })},
+		{"branch_radius_min", column(n, [&](size_t i) { return branches[i].minRadius; })},
 		{"branch_radius_max", column(n, [&](size_t i) { return branches[i].greatestRadius; })},
 		{"branch_significance", column(n, [&](size_t i) { return branches[i].significance; })},
 		{"branch_area", column(n, [&](size_t i) { return area[i]; })},

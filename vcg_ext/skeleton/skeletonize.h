@@ -280,14 +280,14 @@ inline double partLeftOut(const SurfaceMesh& surface, const PoleSet& poles,
 inline bool isBetter(const SurfaceMesh& surface, const Skeletonization& asItIs,
 	const Skeletonization& resampled, const Progress& progress)
 {
-	constexpr double muchShorter = 0.5, mostOutside = 0.01, mostLeftOut = 0.05, more = 0.01;
+	constexpr double muchShorter = 0.5, maxOutside = 0.01, maxLeftOut = 0.05, more = 0.01;
 	const bool isMuchShorter =
 		statistics(asItIs.curve).length < muchShorter * statistics(resampled.curve).length;
 	if (!isMuchShorter
 		&& double(resampled.refinement.nodesOutside)
-			<= mostOutside * double(resampled.curve.position.size())) {
+			<= maxOutside * double(resampled.curve.position.size())) {
 		const double leftOut = partLeftOut(surface, *asItIs.poles, resampled.curve, progress);
-		if (leftOut <= mostLeftOut
+		if (leftOut <= maxLeftOut
 			&& partLeftOut(surface, *asItIs.poles, asItIs.curve, progress) > leftOut + more)
 			return false;
 	}

@@ -215,8 +215,8 @@ TEST(CollapseToCurve, RemovesSpurs)
 		skeleton.node.push_back(p[0] < -0.5 ? 0 : p[0] > 0.5 ? 2 : p[1] > 0.3 ? 3 : 1);
 	const std::vector<int> component(4, 0);
 	std::vector<char> held(4, 0);
-	const auto pruned = [&](double least) {
-		return detail::withoutSpurs(skeleton, stage, component, held, least, Progress());
+	const auto pruned = [&](double minimum) {
+		return detail::withoutSpurs(skeleton, stage, component, held, minimum, Progress());
 	};
 	const CurveSkeleton without = pruned(0.12);
 	ASSERT_EQ(without.position.size(), 3u);

@@ -44,7 +44,7 @@ int reportsOf(const std::function<void(const Progress&)>& job)
 }
 
 /// A vertex takes no stage more than some 5 us between two reports: 40 ms.
-constexpr int mostVerticesBetweenReports = 8192;
+constexpr int maxVerticesBetweenReports = 8192;
 
 } // namespace
 
@@ -52,7 +52,7 @@ TEST(ProgressGaps, ReadingADenseSurfaceReportsAsItGrows)
 {
 	const shapes::Soup soup = shapes::sphere(7);
 	const SurfaceMesh mesh = soup.mesh();
-	const int wanted = mesh.vertexCount() / mostVerticesBetweenReports;
+	const int wanted = mesh.vertexCount() / maxVerticesBetweenReports;
 	EXPECT_GE(reportsOf([&](const Progress& p) { checkedSurface(soup.points, soup.triangles, p); }),
 		wanted / 4); // these take less than a microsecond for a vertex
 	EXPECT_GE(reportsOf([&](const Progress& p) { PointTree(mesh.position, p); }), wanted / 4);
@@ -69,7 +69,7 @@ TEST(ProgressGaps, RepairingADenseSurfaceReportsAsItGrows)
 	doubled.triangles.push_back(doubled.triangles[5]);
 	open.triangles.pop_back();
 	for (const shapes::Soup& soup : {unmerged, turned, doubled}) {
-		const int wanted = int(soup.triangles.size()) / mostVerticesBetweenReports;
+		const int wanted = int(soup.triangles.size()) / maxVerticesBetweenReports;
 		EXPECT_GE(
 			reportsOf([&](const Progress& p) { repairedSoup(soup.points, soup.triangles, p); }),
 			4 * wanted); // faces, edges, sides, fans
@@ -77,7 +77,7 @@ TEST(ProgressGaps, RepairingADenseSurfaceReportsAsItGrows)
 			reportsOf([&](const Progress& p) { checkedSurface(soup.points, soup.triangles, p); }),
 			5 * wanted);
 	}
-	const int wanted = int(open.triangles.size()) / mostVerticesBetweenReports;
+	const int wanted = int(open.triangles.size()) / maxVerticesBetweenReports;
 	EXPECT_GE(reportsOf([&](const Progress& p) {
 		EXPECT_THROW(repairedSoup(open.points, open.triangles, p), InvalidInput);
 	}),
@@ -100,7 +100,7 @@ TEST(ProgressGaps, RepairIsCancelledAtAnyReport)
 TEST(ProgressGaps, PolesAndStepsReportAsTheSurfaceGrows)
 {
 	const SurfaceMesh mesh = shapes::sphere(6).mesh();
-	const int wanted = mesh.vertexCount() / mostVerticesBetweenReports;
+	const int wanted = mesh.vertexCount() / maxVerticesBetweenReports;
 	Parameters parameters;
 	parameters.epsilon = 1e-5; // nothing is coarsened
 	Stage stage;
@@ -115,7 +115,7 @@ TEST(ProgressGaps, PolesAndStepsReportAsTheSurfaceGrows)
 TEST(ProgressGaps, ResamplingReportsAsItsInputGrows)
 {
 	const SurfaceMesh mesh = shapes::sphere(7).mesh();
-	const int wanted = mesh.vertexCount() / mostVerticesBetweenReports;
+	const int wanted = mesh.vertexCount() / maxVerticesBetweenReports;
 	EXPECT_GE(reportsOf([&](const Progress& p) { MeasuredSurface(mesh, p); }), wanted);
 	const MeasuredSurface surface(mesh);
 	const std::vector<int> twice(mesh.position.size(), 2);
@@ -132,7 +132,7 @@ TEST(ProgressGaps, ResamplingReportsAsItsResultGrows)
 	const SurfaceMesh mesh = shapes::sphere(3).mesh();
 	SurfaceMesh fine;
 	const int reports = reportsOf([&](const Progress& p) { fine = resample(mesh, {0.03}, 5, p); });
-	EXPECT_GE(reports, 5 * 4 * fine.vertexCount() / mostVerticesBetweenReports); // rounds, passes
+	EXPECT_GE(reports, 5 * 4 * fine.vertexCount() / maxVerticesBetweenReports); // rounds, passes
 }
 
 /// Between two reports some MB may be touched that nobody has touched before: these come slowly.
@@ -155,7 +155,7 @@ TEST(ProgressGaps, LargeArraysAreMadeInPieces)
 TEST(ProgressGaps, WhatADenseSurfaceIsToldAtTheEndReportsAsItGrows)
 {
 	const SurfaceMesh mesh = shapes::sphere(7).mesh();
-	const int wanted = mesh.vertexCount() / mostVerticesBetweenReports;
+	const int wanted = mesh.vertexCount() / maxVerticesBetweenReports;
 	EXPECT_GE(reportsOf([&](const Progress& p) { mesh.copied(p); }), wanted / 4);
 	EXPECT_GE(reportsOf([&](const Progress& p) { mesh.volume(p); }), wanted / 4);
 	EXPECT_GE(reportsOf([&](const Progress& p) { SurfaceMesh(mesh).compact(p); }), wanted / 4);
@@ -183,7 +183,7 @@ int cancelledAt(const SurfaceMesh& mesh, int report)
 
 TEST(ProgressGaps, QhullReportsAsItsPointsGrow)
 {
-	constexpr int mostPointsBetweenReports = 512; // each takes some 50 us: 25 ms
+	constexpr int maxPointsBetweenReports = 512; // each takes some 50 us: 25 ms
 	const SurfaceMesh mesh = shapes::sphere(5).mesh();
 	int reports = 0, last = 0, steps = 0;
 	PoleSet poles;
@@ -195,7 +195,7 @@ TEST(ProgressGaps, QhullReportsAsItsPointsGrow)
 			return true;
 		}));
 	}),
-		mesh.vertexCount() / mostPointsBetweenReports);
+		mesh.vertexCount() / maxPointsBetweenReports);
 	EXPECT_GE(steps, 50); // the bar moves all the way, not only at both ends
 	// Cancelled wherever it is, none but the report that says so follows, and a new run is whole.
 	for (int report = 1; report < reports; report += 1 + reports / 40)

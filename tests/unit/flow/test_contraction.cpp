@@ -200,11 +200,11 @@ TEST(Contraction, MinimisesEquationSix)
 			EXPECT_GT(std::count(energy.pulled.begin(), energy.pulled.end(), 1), 0);
 		}
 		const double before = energy(start.mesh.position), after = energy(stage.mesh.position);
-		const double least = energy(energy.minimum());
+		const double minimum = energy(energy.minimum());
 		EXPECT_LT(after, before);
-		EXPECT_GE(after, least * (1 - 1e-9));
+		EXPECT_GE(after, minimum * (1 - 1e-9));
 		// The solver stops at one per cent of its residual: less in the energy.
-		EXPECT_LT(after - least, 1e-3 * (before - least));
+		EXPECT_LT(after - minimum, 1e-3 * (before - minimum));
 		EXPECT_LT(largestMove(stage.mesh.position, energy.minimum()),
 			0.05 * largestMove(stage.mesh.position, start.mesh.position));
 	}
@@ -237,13 +237,13 @@ TEST(Contraction, AnyOtherPositionsHaveMoreEnergy)
 	Stage stage = start;
 	contract(stage, Parameters());
 	const Energy energy(start, Parameters());
-	const double least = energy(stage.mesh.position);
+	const double minimum = energy(stage.mesh.position);
 	for (unsigned seed = 0; seed < 20; ++seed) {
 		std::vector<Point3d> other = stage.mesh.position;
 		const std::vector<Point3d> offset = systems::randomColumns(int(other.size()), seed);
 		for (size_t v = 0; v < other.size(); ++v)
 			other[v] += offset[v] * 0.01;
-		EXPECT_GT(energy(other), least);
+		EXPECT_GT(energy(other), minimum);
 	}
 	for (const Point3d& by : {Point3d(0.02, 0, 0), Point3d(0, 0.02, 0), Point3d(0, 0, -0.02)}) {
 		std::vector<Point3d> moved = stage.mesh.position, grown = moved;
@@ -251,8 +251,8 @@ TEST(Contraction, AnyOtherPositionsHaveMoreEnergy)
 			moved[v] += by;
 			grown[v] *= 1 + by[0] + by[1] + by[2];
 		}
-		EXPECT_GT(energy(moved), least);
-		EXPECT_GT(energy(grown), least);
+		EXPECT_GT(energy(moved), minimum);
+		EXPECT_GT(energy(grown), minimum);
 	}
 }
 
@@ -493,14 +493,14 @@ TEST(Contraction, ThePresetOfThePaperHasItsWeights)
 	contract(end, paper);
 	const PrintedEnergy energy(start, 1);
 	EXPECT_LT(std::abs(overshoot(energy, end)), 1e-3); // weights are at least 1e-3
-	const double least = energy(end.mesh.position);
+	const double minimum = energy(end.mesh.position);
 	std::mt19937 random(3);
 	for (int trial = 0; trial < 20; ++trial) {
 		std::vector<Point3d> other = end.mesh.position;
 		for (Point3d& p : other)
 			for (int k = 0; k < 3; ++k)
 				p[k] += 1e-3 * (2.0 * random() / double(std::mt19937::max()) - 1);
-		EXPECT_GT(energy(other), least);
+		EXPECT_GT(energy(other), minimum);
 	}
 }
 

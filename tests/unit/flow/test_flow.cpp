@@ -119,11 +119,11 @@ TEST(Flow, BodiesWithinEachOtherContractAsTheyDoAlone)
 	const auto iterationsOf = [](const shapes::Soup& soup) {
 		return contractToSkeleton(stageOf(soup), Parameters()).iteration;
 	};
-	int most = 0;
+	int maximum = 0;
 	for (const shapes::Soup& body : bodies)
-		most = std::max(most, iterationsOf(body));
+		maximum = std::max(maximum, iterationsOf(body));
 	// The flow ends when the area of all of them stops changing: perhaps an iteration later.
-	EXPECT_LE(iterationsOf(shapes::joined({bodies[0], bodies[1], bodies[2]})), most + 1);
+	EXPECT_LE(iterationsOf(shapes::joined({bodies[0], bodies[1], bodies[2]})), maximum + 1);
 }
 
 TEST(Flow, ConvergesOnEveryMeshOfTheFolder)

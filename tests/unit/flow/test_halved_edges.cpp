@@ -49,15 +49,15 @@ double longestEdge(const SurfaceMesh& mesh)
 	return std::sqrt(longest2);
 }
 
-double leastAngle(const SurfaceMesh& mesh)
+double minAngle(const SurfaceMesh& mesh)
 {
-	double least = M_PI;
+	double minimum = M_PI;
 	for (int h = 0; h < mesh.halfEdgeSlots(); ++h) {
 		const Point3d& p = mesh.position[mesh.origin(h)];
 		const Point3d a = mesh.position[mesh.target(h)] - p, b = mesh.position[mesh.apex(h)] - p;
-		least = std::min(least, std::atan2((a ^ b).Norm(), a * b));
+		minimum = std::min(minimum, std::atan2((a ^ b).Norm(), a * b));
 	}
-	return least;
+	return minimum;
 }
 
 std::vector<Point3d> sortedPlaces(const SurfaceMesh& mesh)
@@ -149,7 +149,7 @@ TEST(HalvedEdges, NoneIsTooLongAndTheSurfaceIsTheSame)
 		EXPECT_LE(longestEdge(finer), limit * (1 + 1e-6));
 		EXPECT_NEAR(finer.area(), mesh.area(), 1e-9 * mesh.area());
 		EXPECT_NEAR(finer.volume(), mesh.volume(), 1e-9 * mesh.volume());
-		EXPECT_GE(leastAngle(finer), leastAngle(mesh) / 2 - 1e-6);
+		EXPECT_GE(minAngle(finer), minAngle(mesh) / 2 - 1e-6);
 		ASSERT_GT(finer.vertexCount(), mesh.vertexCount());
 		EXPECT_TRUE(std::equal(mesh.position.begin(), mesh.position.end(), finer.position.begin()));
 	}

@@ -93,7 +93,7 @@ TEST(Prune, ByLengthTheShortestFirst)
 TEST(Prune, ByRadiusTheThinOneGoesHoweverLong)
 {
 	PruneParameters p = nothing();
-	p.leastRadius = 0.5;
+	p.minRadius = 0.5;
 	EXPECT_EQ(statistics(prune(trunkWithTwig(20, 0.4), p)).terminals, 2);
 	EXPECT_EQ(statistics(prune(trunkWithTwig(20, 0.6), p)).terminals, 3);
 	EXPECT_EQ(statistics(prune(trunkWithTwig(20, 0.4, 1), p)).terminals, 2) << "a single edge";
@@ -103,7 +103,7 @@ TEST(Prune, CyclesAreNeverTouched)
 {
 	PruneParameters all;
 	all.spurProminence = 1;
-	all.shortestBranch = all.leastRadius = 1e9;
+	all.shortestBranch = all.minRadius = 1e9;
 	CurveSkeleton s = ringWithTail(1, 0.1);
 	// A second, tiny ring at the tail's end, and a theta: a chord through the large ring.
 	const int tail = int(s.position.size()) - 1;
@@ -134,7 +134,7 @@ TEST(Prune, TailOfARingGoes)
 TEST(Prune, SingleChainsStayWhatever)
 {
 	PruneParameters all;
-	all.shortestBranch = all.leastRadius = 1e9;
+	all.shortestBranch = all.minRadius = 1e9;
 	const CurveSkeleton s = line({0, 0, 0}, {1, 0, 0}, 0.1, 5);
 	EXPECT_EQ(prune(s, all).edges, s.edges);
 }
@@ -196,7 +196,7 @@ TEST(Prune, TwoBranchesBetweenTwoJunctionsStayACycle)
 TEST(Prune, EachComponentKeepsAChain)
 {
 	PruneParameters all;
-	all.shortestBranch = all.leastRadius = 1e9;
+	all.shortestBranch = all.minRadius = 1e9;
 	CurveSkeleton s = trunkWithTwig(3, 0.1);
 	const int first = addNode(s, {0, 0, 50}, 0.1);
 	addLine(s, first, {1, 0, 50}, 0.1, 1);
@@ -225,7 +225,7 @@ TEST(Prune, RefusesParametersOutOfRange)
 	p.shortestBranch = -1;
 	EXPECT_THROW(prune(s, p), InvalidParameter);
 	p = {};
-	p.leastRadius = NAN;
+	p.minRadius = NAN;
 	EXPECT_THROW(prune(s, p), InvalidParameter);
 }
 
@@ -256,11 +256,11 @@ CurveSkeleton gridTree(unsigned seed, int nodes)
 
 /// withoutTerminalBranches() as it is defined: all branches are measured, the least goes, and again.
 template <class Measure>
-CurveSkeleton oneAtATime(CurveSkeleton s, double least, const Measure& measure)
+CurveSkeleton oneAtATime(CurveSkeleton s, double minimum, const Measure& measure)
 {
 	for (;;) {
 		const std::vector<std::vector<int>> neighbours = s.neighbours();
-		double worst = least;
+		double worst = minimum;
 		Branch doomed;
 		for (Branch& branch : skeletonBranches(s)) {
 			if ((neighbours[branch.first()].size() == 1) == (neighbours[branch.last()].size() == 1))
@@ -294,9 +294,9 @@ TEST(Prune, TheLeastOneGoesFirstAndWhatGetsLongerIsMeasuredAgain)
 				addEdge(s, 3 + i, 77 + 9 * i);
 		std::sort(s.edges.begin(), s.edges.end());
 		s.edges.erase(std::unique(s.edges.begin(), s.edges.end()), s.edges.end());
-		for (double least : {1.5, 3.5, 100.})
-			expectSame(withoutTerminalBranches(s, least, branchLength),
-				oneAtATime(s, least, branchLength));
+		for (double minimum : {1.5, 3.5, 100.})
+			expectSame(withoutTerminalBranches(s, minimum, branchLength),
+				oneAtATime(s, minimum, branchLength));
 		expectSame(withoutTerminalBranches(s, 0.9, terminalProminence),
 			oneAtATime(s, 0.9, terminalProminence));
 		// Of branches that hang on how many there are: all but three.

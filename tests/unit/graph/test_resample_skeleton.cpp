@@ -66,8 +66,8 @@ TEST(ResampleSkeleton, NoEdgeIsLongerAndAllAreAlike)
 	for (double h : {0.01, 0.1, 0.77}) {
 		const CurveSkeleton r = resampledSkeleton(spectacles(), h);
 		EXPECT_LE(longest(r), h * (1 + 1e-9));
-		const double least = h < 0.5 ? 0.9 : 0.5; // the last one is of branches hardly longer
-		EXPECT_GT(shortest(r), least * h);
+		const double minimum = h < 0.5 ? 0.9 : 0.5; // the last one is of branches hardly longer
+		EXPECT_GT(shortest(r), minimum * h);
 	}
 }
 

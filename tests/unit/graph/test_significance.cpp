@@ -21,9 +21,9 @@ using namespace curves;
 
 namespace {
 
-CurveSkeleton partOf(const CurveSkeleton& s, double least)
+CurveSkeleton partOf(const CurveSkeleton& s, double minimum)
 {
-	return significantPart(s, nestedBranches(s), least);
+	return significantPart(s, nestedBranches(s), minimum);
 }
 
 std::set<Point3d> places(const CurveSkeleton& s)
@@ -102,8 +102,8 @@ TEST(Significance, PartsOfLessDetailAreNested)
 	std::set<Point3d> larger = places(limb.s);
 	int last = statistics(limb.s).terminals;
 	EXPECT_EQ(last, 5);
-	for (double least : thresholds) {
-		const CurveSkeleton part = partOf(limb.s, least);
+	for (double minimum : thresholds) {
+		const CurveSkeleton part = partOf(limb.s, minimum);
 		const std::set<Point3d> here = places(part);
 		EXPECT_TRUE(std::includes(larger.begin(), larger.end(), here.begin(), here.end()));
 		EXPECT_EQ(statistics(part).components, 1);

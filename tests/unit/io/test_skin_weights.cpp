@@ -62,24 +62,24 @@ struct Rigged
 				share += follows[size_t(shares[v].bone[k])] ? shares[v].weight[k] : 0;
 			posed.push_back(p + (pivot + q - p) * share);
 		}
-		double most = 0;
+		double maximum = 0;
 		for (const std::array<int, 3>& face : surface.faces)
 			for (size_t k = 0; k < 3; ++k) {
 				const size_t a = size_t(face[k]), b = size_t(face[(k + 1) % 3]);
-				most = std::max(most,
+				maximum = std::max(maximum,
 					Distance(posed[a], posed[b])
 						/ Distance(surface.position[a], surface.position[b]));
 			}
-		return most;
+		return maximum;
 	}
 
 	double largestStretch(const std::vector<VertexShares>& shares) const
 	{
-		double most = 0;
+		double maximum = 0;
 		for (size_t b = 0; b < armature.bones.size(); ++b)
 			for (int axis = 0; axis < 3; ++axis)
-				most = std::max(most, stretch(int(b), axis, shares));
-		return most;
+				maximum = std::max(maximum, stretch(int(b), axis, shares));
+		return maximum;
 	}
 
 	std::vector<VertexShares> weights() const { return skinWeights(surface, skeleton, armature); }

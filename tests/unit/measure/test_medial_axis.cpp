@@ -38,7 +38,7 @@ const PoleSet& platePoles()
 TEST(MedialLayer, MiddleSheetOfAPlate)
 {
 	MedialLayerParameters p;
-	p.leastAngle = 150;
+	p.minAngle = 150;
 	const MedialLayer layer = medialLayer(plate(), platePoles(), true, p);
 	double area = 0;
 	for (const Triangle& t : layer.triangles) {
@@ -79,21 +79,21 @@ TEST(MedialLayer, AnglesOfAComponentAreThoseThatItHasAlone)
 
 TEST(MedialLayer, FiltersByAngleAndRadius)
 {
-	for (double least : {0.0, 60.0, 120.0}) {
+	for (double minimum : {0.0, 60.0, 120.0}) {
 		MedialLayerParameters p;
-		p.leastAngle = least;
-		p.leastRadius = 0.1;
+		p.minAngle = minimum;
+		p.minRadius = 0.1;
 		const MedialLayer layer = medialLayer(plate(), platePoles(), false, p);
 		EXPECT_TRUE(layer.triangles.empty());
 		EXPECT_GT(layer.position.size(), 5000u);
 		for (size_t v = 0; v < layer.position.size(); ++v) {
-			EXPECT_GE(layer.angle[v], least);
+			EXPECT_GE(layer.angle[v], minimum);
 			EXPECT_GE(layer.radius[v], 0.1);
 			EXPECT_EQ(layer.position[v], platePoles().centre[layer.source[v]]);
 		}
 	}
 	MedialLayerParameters tooThick;
-	tooThick.leastRadius = 0.3;
+	tooThick.minRadius = 0.3;
 	EXPECT_TRUE(medialLayer(plate(), platePoles(), true, tooThick).position.empty());
 }
 
@@ -101,8 +101,8 @@ TEST(MedialLayer, NoTriangleIsStretched)
 {
 	const SurfaceMesh mesh = shapes::jittered(shapes::torus(), 0.01).mesh();
 	MedialLayerParameters p;
-	p.leastAngle = 0;
-	p.mostStretch = 0.5;
+	p.minAngle = 0;
+	p.maxStretch = 0.5;
 	const MedialLayer layer = medialLayer(mesh, shrinkingBallPoles(mesh), true, p);
 	for (const Triangle& t : layer.triangles)
 		for (int k = 0; k < 3; ++k) {
@@ -129,13 +129,13 @@ TEST(MedialLayer, EveryPointOfAJoinedLayerIsUsed)
 TEST(MedialLayer, RefusesParametersOutOfRange)
 {
 	MedialLayerParameters p;
-	p.leastAngle = 200;
+	p.minAngle = 200;
 	EXPECT_THROW(medialLayer(plate(), platePoles(), true, p), InvalidParameter);
 	p = {};
-	p.leastRadius = -1;
+	p.minRadius = -1;
 	EXPECT_THROW(medialLayer(plate(), platePoles(), true, p), InvalidParameter);
 	p = {};
-	p.mostStretch = 0;
+	p.maxStretch = 0;
 	EXPECT_THROW(medialLayer(plate(), platePoles(), true, p), InvalidParameter);
 }
 

@@ -272,7 +272,7 @@ TEST(BranchTable, LengthsRadiiAndEnds)
 	ASSERT_EQ(table.size(), 3u);
 	EXPECT_DOUBLE_EQ(table[0].length, 4);
 	EXPECT_DOUBLE_EQ(table[0].meanRadius, (3 * 1.5 + 1 * 0.5) / 4);
-	EXPECT_DOUBLE_EQ(table[0].leastRadius, 0);
+	EXPECT_DOUBLE_EQ(table[0].minRadius, 0);
 	EXPECT_DOUBLE_EQ(table[0].greatestRadius, 2);
 	EXPECT_EQ(table[0].first, BranchEnd::Junction);
 	EXPECT_EQ(table[0].last, BranchEnd::Tip);

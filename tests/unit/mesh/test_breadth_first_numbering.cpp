@@ -93,7 +93,7 @@ TEST(BreadthFirstOrder, DoesNotDependOnTheNumberingThereWas)
 	});
 	const auto ordered = [](const SurfaceMesh& mesh) {
 		const Numbering number = breadthFirstOrder(mesh,
-			leastHalfEdges(
+			minHalfEdges(
 				mesh, connectedComponents(mesh), 1, [&](int v) { return mesh.position[v]; }));
 		return mesh.renumbered(number.vertex, number.face, number.firstCorner);
 	};

@@ -78,14 +78,14 @@ TEST(TrackSurface, FindsTheClosestPointOfAConvexShapeFromAnywhere)
 		query *= 1.3 / query.Norm();
 		int face = int(random() % unsigned(sphere.faceSlots()));
 		const Point3d found = trackSurface(sphere, query, face);
-		double least = std::numeric_limits<double>::max();
+		double minimum = std::numeric_limits<double>::max();
 		for (int f = 0; f < sphere.faceSlots(); ++f)
-			least = std::min(least,
+			minimum = std::min(minimum,
 				detail::closestOnTriangle(sphere.position[sphere.origin(3 * f)],
 					sphere.position[sphere.origin(3 * f + 1)],
 					sphere.position[sphere.origin(3 * f + 2)], query)
 					.squaredDistance);
-		EXPECT_NEAR(SquaredDistance(found, query), least, 1e-12);
+		EXPECT_NEAR(SquaredDistance(found, query), minimum, 1e-12);
 		const Triangle t = sphere.triangle(face);
 		EXPECT_LT(detail::closestOnTriangle(
 					  sphere.position[t[0]], sphere.position[t[1]], sphere.position[t[2]], found)

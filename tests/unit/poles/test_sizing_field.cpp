@@ -179,15 +179,15 @@ TEST(SizingField, ThatCostsTooMuchIsLongerEverywhereFirst)
 	const std::vector<double> length = {0.08};
 	const SizingField given = fieldOf(mesh, length[0]);
 	const auto cost = [&](const SizingField& f) { return expectedVertices(surface, length, f); };
-	const double least = *std::min_element(given.begin(), given.end());
+	const double minimum = *std::min_element(given.begin(), given.end());
 	constexpr double factor = 1.6;
 
 	SizingField field = given;
-	const double most = 0.7 * cost(given);
-	EXPECT_EQ(coarsenToCost(field, factor, length[0], most, cost), 0);
-	EXPECT_LE(cost(field), most);
-	EXPECT_GT(cost(field), 0.99 * most);
-	const double by = *std::min_element(field.begin(), field.end()) / least;
+	const double maximum = 0.7 * cost(given);
+	EXPECT_EQ(coarsenToCost(field, factor, length[0], maximum, cost), 0);
+	EXPECT_LE(cost(field), maximum);
+	EXPECT_GT(cost(field), 0.99 * maximum);
+	const double by = *std::min_element(field.begin(), field.end()) / minimum;
 	EXPECT_GT(by, 1);
 	EXPECT_LT(by, factor);
 	for (size_t v = 0; v < field.size(); ++v)
@@ -197,7 +197,7 @@ TEST(SizingField, ThatCostsTooMuchIsLongerEverywhereFirst)
 	field = given;
 	const double few = 0.45 * cost(given);
 	const double raised = coarsenToCost(field, factor, length[0], few, cost);
-	EXPECT_GT(raised, factor * least);
+	EXPECT_GT(raised, factor * minimum);
 	EXPECT_LE(cost(field), few);
 	for (size_t v = 0; v < field.size(); ++v)
 		if (std::isfinite(given[v]))

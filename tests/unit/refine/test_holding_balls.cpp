@@ -17,12 +17,12 @@ namespace {
 int deepestOf(const CurveSkeleton& skeleton, const Point3d& point)
 {
 	int holding = -1;
-	double least = 1;
+	double minimum = 1;
 	for (size_t v = 0; v < skeleton.position.size(); ++v)
 		if (skeleton.radius[v] > 0) {
 			const double depth = Distance(skeleton.position[v], point) / skeleton.radius[v];
-			if (depth < least) {
-				least = depth;
+			if (depth < minimum) {
+				minimum = depth;
 				holding = int(v);
 			}
 		}

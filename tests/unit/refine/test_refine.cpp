@@ -125,10 +125,10 @@ std::vector<Point3d> tips(const CurveSkeleton& s)
 
 double farthest(const std::vector<Point3d>& points, int axis)
 {
-	double most = -std::numeric_limits<double>::infinity();
+	double maximum = -std::numeric_limits<double>::infinity();
 	for (const Point3d& p : points)
-		most = std::max(most, p[axis]);
-	return most;
+		maximum = std::max(maximum, p[axis]);
+	return maximum;
 }
 
 double meanTurning(const CurveSkeleton& s)
@@ -955,9 +955,9 @@ TEST(Refine, NeverCutsThroughThinWalls)
 	{
 		int gap, length;
 	} cases[] = {{5, 24}, {1, 700}};
-	for (const auto& [gap, length] : cases) {
+	for (const auto& shape : cases) {
+		const int last = shape.gap + 1, length = shape.length;
 		SCOPED_TRACE(length);
-		const int last = gap + 1;
 		const SurfaceMesh mesh = shapes::cells(last + 1, length, 1, [&](int i, int j, int) {
 			return i == 0 || i == last || j == 0;
 		}).mesh();
@@ -1261,8 +1261,8 @@ TEST(Refine, HoweverThinTheShapeTheNodesAreBounded)
 		return curve;
 	};
 	const refining::CurveBounds bounds(line(4), spacing);
-	EXPECT_TRUE(bounds.hold(line(int(refining::mostNodes(1)))));
-	EXPECT_FALSE(bounds.hold(line(int(2 * refining::mostNodes(1)))));
+	EXPECT_TRUE(bounds.hold(line(int(refining::maxNodes(1)))));
+	EXPECT_FALSE(bounds.hold(line(int(2 * refining::maxNodes(1)))));
 }
 
 TEST(Refine, AFewEdgesThatHaveLeftTheSurfaceAreBroughtBack)

@@ -16,18 +16,18 @@ using vcg::Point3d;
 
 namespace {
 
-double leastHeight(const SurfaceMesh& mesh)
+double minHeight(const SurfaceMesh& mesh)
 {
-	double least = 1e300;
+	double minimum = 1e300;
 	for (int f = 0; f < mesh.faceSlots(); ++f) {
 		if (!mesh.isFace(f))
 			continue;
 		double longest = 0;
 		for (int h = 3 * f; h < 3 * f + 3; ++h)
 			longest = std::max(longest, std::sqrt(mesh.squaredLength(h)));
-		least = std::min(least, mesh.areaVector(f).Norm() / longest);
+		minimum = std::min(minimum, mesh.areaVector(f).Norm() / longest);
 	}
-	return least;
+	return minimum;
 }
 
 const auto one = [](int) { return 1.0; };
@@ -50,12 +50,12 @@ TEST(ThinTriangles, CapsAreFlippedAway)
 		}
 	}
 	SurfaceMesh mesh = soup.mesh();
-	ASSERT_EQ(leastHeight(mesh), 0);
+	ASSERT_EQ(minHeight(mesh), 0);
 	const double volume = mesh.volume();
 	EXPECT_EQ(removeThinTriangles(mesh, one), 0);
 	EXPECT_EQ(structureError(mesh), "");
 	EXPECT_EQ(mesh.eulerCharacteristic(), 2);
-	EXPECT_GT(leastHeight(mesh), 1e-3);
+	EXPECT_GT(minHeight(mesh), 1e-3);
 	EXPECT_NEAR(mesh.volume(), volume, 1e-12);
 }
 
@@ -65,7 +65,7 @@ TEST(ThinTriangles, NeedlesAreMerged)
 	const double volume = mesh.volume();
 	for (int h : {3, 30, 90})
 		mesh.split(h, mesh.position[mesh.origin(h)] + Point3d(1e-9, 0, 0));
-	ASSERT_LT(leastHeight(mesh), 1e-8);
+	ASSERT_LT(minHeight(mesh), 1e-8);
 	const int before = mesh.vertexCount();
 	EXPECT_EQ(removeThinTriangles(mesh, one), 0);
 	EXPECT_EQ(mesh.vertexCount(), before - 3);

@@ -38,45 +38,45 @@ SurfaceMesh resampled(const shapes::Soup& soup, double length, int iterations = 
 /// Distance from p to the surface, by trying all triangles; and the normal of the closest one.
 double distanceTo(const SurfaceMesh& surface, const Point3d& p, Point3d* normal = nullptr)
 {
-	double least = std::numeric_limits<double>::max();
+	double minimum = std::numeric_limits<double>::max();
 	for (int f = 0; f < surface.faceSlots(); ++f) {
 		const Triangle t = surface.triangle(f);
 		const double squared = detail::closestOnTriangle(
 			surface.position[t[0]], surface.position[t[1]], surface.position[t[2]], p)
 								   .squaredDistance;
-		if (squared < least) {
-			least = squared;
+		if (squared < minimum) {
+			minimum = squared;
 			if (normal)
 				*normal = surface.areaVector(f);
 		}
 	}
-	return std::sqrt(least);
+	return std::sqrt(minimum);
 }
 
 struct Quality
 {
-	double meanLeastAngle = 0; ///< degrees
-	double leastAngle = 180;   ///< degrees
-	double obtuse = 0;         ///< part of the triangles
-	double usualValence = 0;   ///< part of the vertices with 5, 6 or 7 neighbours
-	double usualLength = 0;    ///< part of the edges between 4/5 and 4/3 of the target
+	double meanMinAngle = 0; ///< degrees
+	double minAngle = 180;   ///< degrees
+	double obtuse = 0;       ///< part of the triangles
+	double usualValence = 0; ///< part of the vertices with 5, 6 or 7 neighbours
+	double usualLength = 0;  ///< part of the edges between 4/5 and 4/3 of the target
 };
 
 Quality quality(const SurfaceMesh& mesh, double length)
 {
 	Quality q;
 	for (int f = 0; f < mesh.faceSlots(); ++f) {
-		double least = 180, widest = 0;
+		double minimum = 180, widest = 0;
 		for (int h = 3 * f; h < 3 * f + 3; ++h) {
 			const Point3d& a = mesh.position[mesh.origin(h)];
 			const Point3d u = mesh.position[mesh.target(h)] - a,
 						  v = mesh.position[mesh.apex(h)] - a;
 			const double angle = std::atan2((u ^ v).Norm(), u * v) * 180 / M_PI;
-			least = std::min(least, angle);
+			minimum = std::min(minimum, angle);
 			widest = std::max(widest, angle);
 		}
-		q.meanLeastAngle += least / mesh.faceCount();
-		q.leastAngle = std::min(q.leastAngle, least);
+		q.meanMinAngle += minimum / mesh.faceCount();
+		q.minAngle = std::min(q.minAngle, minimum);
 		q.obtuse += (widest > 90) / double(mesh.faceCount());
 	}
 	for (int v = 0; v < mesh.vertexSlots(); ++v)
@@ -186,8 +186,8 @@ TEST(Resample, MakesEvenTriangles)
 		SCOPED_TRACE(name);
 		const SurfaceMesh mesh = resampled(soup, length);
 		const Quality q = quality(mesh, length);
-		EXPECT_GT(q.meanLeastAngle, 51.5);
-		EXPECT_GT(q.leastAngle, 20);
+		EXPECT_GT(q.meanMinAngle, 51.5);
+		EXPECT_GT(q.minAngle, 20);
 		EXPECT_LT(q.obtuse, 0.005);
 		EXPECT_GT(q.usualValence, 0.999);
 		EXPECT_GT(q.usualLength, 0.98);
@@ -266,7 +266,7 @@ TEST(Resample, KeepsTheRimOfACylinder)
 	for (int around : {48, 600}) {
 		const SurfaceMesh mesh = resampled(cylinder(1, 3, around), 0.05);
 		EXPECT_EQ(structureError(mesh), "");
-		EXPECT_GT(quality(mesh, 0.05).leastAngle, 12);
+		EXPECT_GT(quality(mesh, 0.05).minAngle, 12);
 		int onRims = 0;
 		for (const Point3d& p : mesh.position)
 			onRims += std::min(std::abs(p[0]), std::abs(p[0] - 3)) < rounding
@@ -329,8 +329,8 @@ TEST(Resample, TrianglesWithoutAreaDoNoHarm)
 		EXPECT_EQ(mesh.eulerCharacteristic(), 2);
 		EXPECT_NEAR(mesh.volume() / soup.mesh().volume(), 1, 0.005);
 		const Quality q = quality(mesh, 0.05);
-		EXPECT_GT(q.meanLeastAngle, 51);
-		EXPECT_GT(q.leastAngle, 10);
+		EXPECT_GT(q.meanMinAngle, 51);
+		EXPECT_GT(q.minAngle, 10);
 	}
 }
 
@@ -417,7 +417,7 @@ TEST(Resample, ScaleAndPlaceDoNotMatter)
 		EXPECT_EQ(mesh.eulerCharacteristic(), 0);
 		EXPECT_NEAR(mesh.vertexCount() / double(reference.vertexCount()), 1, 0.02);
 		EXPECT_NEAR(mesh.volume() / std::pow(scale, 3) / reference.volume(), 1, 1e-3);
-		EXPECT_GT(quality(mesh, 0.06 * scale).leastAngle, 15);
+		EXPECT_GT(quality(mesh, 0.06 * scale).minAngle, 15);
 	};
 	for (double scale : {1e-6, 1e6})
 		alike(resampled(shapes::scaled(soup, scale), 0.06 * scale), scale);
@@ -438,7 +438,7 @@ TEST(Resample, AgainChangesLittle)
 	const SurfaceMesh once = resampled(shapes::torus(), 0.05);
 	const SurfaceMesh twice = resample(once, {0.05}, 5);
 	EXPECT_NEAR(twice.vertexCount() / double(once.vertexCount()), 1, 0.05);
-	EXPECT_GE(quality(twice, 0.05).meanLeastAngle, quality(once, 0.05).meanLeastAngle);
+	EXPECT_GE(quality(twice, 0.05).meanMinAngle, quality(once, 0.05).meanMinAngle);
 }
 
 TEST(Resample, NoRoundGivesTheInputWithoutHoles)
@@ -487,9 +487,9 @@ TEST(Resample, NarrowBodiesGetNoMoreVerticesThanTheyNeed)
 TEST(Resample, GivesUpWhereTheVerticesWouldBeTooMany)
 {
 	const SurfaceMesh ball = shapes::sphere(1).mesh();
-	const auto refined = [&](size_t mostVertices) {
-		vcg::tri::mcf::detail::IsotropicRemesher remesher(ball,
-			std::vector<int>(size_t(ball.vertexSlots()), 0), {0.01}, mostVertices, Progress());
+	const auto refined = [&](size_t maxVertices) {
+		vcg::tri::mcf::detail::IsotropicRemesher remesher(
+			ball, std::vector<int>(size_t(ball.vertexSlots()), 0), {0.01}, maxVertices, Progress());
 		remesher.refine(Progress());
 		return remesher.take(Progress()).vertexCount();
 	};

@@ -46,14 +46,14 @@ shapes::Soup flattened(const shapes::Soup& soup, double height)
 }
 
 /// The most faces that an edge has.
-int mostFacesOnAnEdge(const MesoSkeleton& skeleton)
+int maxFacesOnAnEdge(const MesoSkeleton& skeleton)
 {
 	std::map<EdgeOfComplex, int> count;
-	int most = 0;
+	int maximum = 0;
 	for (const FaceOfComplex& f : skeleton.faces)
 		for (const EdgeOfComplex& e : edgesOf(f))
-			most = std::max(most, ++count[e]);
-	return most;
+			maximum = std::max(maximum, ++count[e]);
+	return maximum;
 }
 
 /// Empty if the arrays of a skeleton fit together.
@@ -88,7 +88,7 @@ TEST(KeepSheets, TwoWallsBecomeOneRectangle)
 	EXPECT_EQ(result.givenUp, 0);
 	EXPECT_EQ(skeleton.betti(), (BettiNumbers {1, 0, 0}));
 	EXPECT_TRUE(skeleton.edges.empty());
-	EXPECT_EQ(mostFacesOnAnEdge(skeleton), 2);
+	EXPECT_EQ(maxFacesOnAnEdge(skeleton), 2);
 	EXPECT_NEAR(skeleton.sheetArea(), 0.7, 0.05) << "once, not twice";
 	for (const Point3d& p : skeleton.position)
 		EXPECT_NEAR(p[2], thickness / 2, thickness / 2);
@@ -100,7 +100,7 @@ TEST(KeepSheets, HolesOfASheetAreLoops)
 	const SheetCollapse result = collapseKeepingSheets(stage, all(stage), 0.004);
 	EXPECT_EQ(result.givenUp, 0);
 	EXPECT_EQ(result.skeleton.betti(), (BettiNumbers {1, 2, 0}));
-	EXPECT_EQ(mostFacesOnAnEdge(result.skeleton), 2);
+	EXPECT_EQ(maxFacesOnAnEdge(result.skeleton), 2);
 }
 
 TEST(KeepSheets, WhatIsNoSheetBecomesACurve)

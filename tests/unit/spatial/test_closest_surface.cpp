@@ -30,13 +30,13 @@ std::vector<int> allVertices(const SurfaceMesh& mesh)
 
 double distanceByBruteForce(const SurfaceMesh& mesh, const Point3d& x)
 {
-	double least = std::numeric_limits<double>::infinity();
+	double minimum = std::numeric_limits<double>::infinity();
 	for (const Triangle& t : mesh.triangles())
-		least = std::min(least,
+		minimum = std::min(minimum,
 			detail::closestOnTriangle(
 				mesh.position[t[0]], mesh.position[t[1]], mesh.position[t[2]], x)
 				.squaredDistance);
-	return std::sqrt(least);
+	return std::sqrt(minimum);
 }
 
 std::vector<Point3d> randomPoints(const SurfaceMesh& mesh, int count)

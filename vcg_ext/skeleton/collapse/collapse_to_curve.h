@@ -161,10 +161,10 @@ inline void straightenZigzag(GluedComplex& complex, const Stage& stage, double s
 			const Point3d middle =
 				(complex.position(*ends.begin()) + complex.position(*ends.rbegin())) / 2;
 			Point3d move = (middle - complex.position(A)) / 2;
-			const double most = farthest * stage.epsilonAt(A, shortestEdge);
+			const double maximum = farthest * stage.epsilonAt(A, shortestEdge);
 			const double length = move.Norm();
-			if (length > most)
-				move *= most / length;
+			if (length > maximum)
+				move *= maximum / length;
 			moved.emplace_back(A, complex.position(A) + move);
 		}
 		for (const auto& [A, place] : moved)

@@ -241,7 +241,7 @@ private:
 	int longestPart(const std::vector<std::vector<int>>& neighbours) const
 	{
 		std::vector<char> seen(place.size(), 0);
-		double most = -1;
+		double maximum = -1;
 		int best = 0;
 		for (size_t first = 0; first < place.size(); ++first) {
 			if (seen[first])
@@ -257,8 +257,8 @@ private:
 						part.push_back(B);
 					}
 				}
-			if (length > most) {
-				most = length;
+			if (length > maximum) {
+				maximum = length;
 				best = int(first);
 			}
 		}
@@ -325,10 +325,10 @@ private:
 	void moveInside(int A, const std::vector<int>& neighbours)
 	{
 		constexpr double nextTo = 0.004; // two of the default epsilon
-		constexpr size_t mostTried = 32;
+		constexpr size_t maxTried = 32;
 		HalfChord best = closestChord(place[A], true);
 		if (Distance(best.from, place[A]) > nextTo && !merged.empty() && !merged[A].empty()) {
-			const size_t step = (merged[A].size() + mostTried - 1) / mostTried;
+			const size_t step = (merged[A].size() + maxTried - 1) / maxTried;
 			double nearest = std::numeric_limits<double>::infinity();
 			for (size_t i = 0; i < merged[A].size(); i += step)
 				for (int f : ways().facesAtVertex(merged[A][i])) {
@@ -421,12 +421,12 @@ private:
 		const OnSurface first = wallsAt(p).front();
 		const double height = Distance(p, first.point);
 		Path shortest;
-		double least = std::numeric_limits<double>::infinity();
+		double minimum = std::numeric_limits<double>::infinity();
 		for (const OnSurface& last : wallsAt(q)) {
 			Path path = alongSurface(first, last, std::max(height, Distance(q, last.point)));
 			const double length = lengthOf(path, p, q);
-			if (length < least) {
-				least = length;
+			if (length < minimum) {
+				minimum = length;
 				shortest = std::move(path);
 			}
 		}
@@ -629,11 +629,11 @@ inline std::vector<int> resampledFrom(const std::vector<int>& ofCurve, int ofSur
 	std::vector<int> partner(static_cast<size_t>(ofSurface), -1);
 	for (int c = 0; c < components; ++c) {
 		const auto& count = votes[size_t(c)];
-		const auto most = std::max_element(count.begin(), count.end(),
+		const auto maximum = std::max_element(count.begin(), count.end(),
 			[](const auto& a, const auto& b) { return a.second < b.second; });
-		if (most == count.end() || most->first < 0 || partner[size_t(most->first)] >= 0)
+		if (maximum == count.end() || maximum->first < 0 || partner[size_t(maximum->first)] >= 0)
 			return {};
-		partner[size_t(most->first)] = c;
+		partner[size_t(maximum->first)] = c;
 	}
 	return partner;
 }

@@ -22,7 +22,7 @@
 namespace vcg::tri::mcf::detail {
 
 /**
- * Removes the terminal branches whose prominence() is below `least`: they stand for no feature of the
+ * Removes the terminal branches whose prominence() is below `minimum`: they stand for no feature of the
  * shape. Balls reach to the nearest vertex of their component's surface. What had merged into a spur
  * goes to its junction. Branches with held nodes stay.
  * @param component  that each node belongs to.
@@ -31,7 +31,7 @@ namespace vcg::tri::mcf::detail {
  * @throws Cancelled. Complexity: O(surface vertices * (junctions + tips)).
  */
 inline CurveSkeleton withoutSpurs(CurveSkeleton skeleton, const Stage& stage,
-	const std::vector<int>& component, const std::vector<char>& held, double least,
+	const std::vector<int>& component, const std::vector<char>& held, double minimum,
 	const Progress& progress)
 {
 	constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -57,7 +57,7 @@ inline CurveSkeleton withoutSpurs(CurveSkeleton skeleton, const Stage& stage,
 		skeleton.radius[v] = std::sqrt(squared);
 	}
 	return withoutTerminalBranches(
-		skeleton, least, [](const CurveSkeleton& s, const Branch& branch) {
+		skeleton, minimum, [](const CurveSkeleton& s, const Branch& branch) {
 			const bool isHeld = std::any_of(branch.nodes.begin(), branch.nodes.end(),
 				[&](int v) { return std::isinf(s.radius[v]); });
 			return isHeld ? infinity : terminalProminence(s, branch);

@@ -152,7 +152,7 @@ void forEachPart(
 	const std::vector<int>& start, const Progress& progress, const char* what, const Body& body)
 {
 	constexpr std::chrono::milliseconds reportEvery(1);
-	[[maybe_unused]] constexpr double leastForTeam = 1 << 12; // in less, the others hardly wake up
+	[[maybe_unused]] constexpr double minForTeam = 1 << 12; // in less, the others hardly wake up
 	const int count = int(start.size()) - 1;
 	const auto size = [&](int part) { return start[part + 1] - start[part]; };
 	std::vector<int> order(count);
@@ -194,7 +194,7 @@ void forEachPart(
 			oneMore.wait_for(lock, reportEvery, isOver);
 		}
 	};
-	detail::onThreads(total >= leastForTeam ? detail::threadsForLoop() : 1, work);
+	detail::onThreads(total >= minForTeam ? detail::threadsForLoop() : 1, work);
 	std::exception_ptr cancelled;
 	for (const std::exception_ptr& error : errors)
 		if (error)
@@ -208,12 +208,12 @@ void forEachPart(
 		std::rethrow_exception(cancelled);
 }
 
-/// Parts of [0, count) for forEachPart(), one for each thread; a single one if count is less than `leastForTeam`.
-inline std::vector<int> rangesForThreads(int count, [[maybe_unused]] int leastForTeam)
+/// Parts of [0, count) for forEachPart(), one for each thread; a single one if count is less than `minForTeam`.
+inline std::vector<int> rangesForThreads(int count, [[maybe_unused]] int minForTeam)
 {
 	int parts = 1;
 #ifdef _OPENMP
-	if (count >= leastForTeam)
+	if (count >= minForTeam)
 		parts = omp_get_max_threads();
 #endif
 	std::vector<int> start;

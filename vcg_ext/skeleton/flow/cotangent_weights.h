@@ -50,8 +50,8 @@ inline TriangleMeasures measureTriangle(const SurfaceMesh& mesh, int face)
  */
 inline double cotangentWeight(double cotAlpha, double cotBeta)
 {
-	constexpr double leastWeight = 1e-3;
-	return std::max((cotAlpha + cotBeta) / 2, leastWeight);
+	constexpr double minWeight = 1e-3;
+	return std::max((cotAlpha + cotBeta) / 2, minWeight);
 }
 
 } // namespace vcg::tri::mcf

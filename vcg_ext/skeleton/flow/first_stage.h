@@ -109,12 +109,12 @@ inline std::vector<double> epsilonLimits(const MeasuredSurface& surface, const P
 		bound.push_back(parameters.epsilon / epsilonOfField * diagonal);
 	SizingField field = sizingField(surface, poles, parameters.relativeLength, bound, progress);
 	constexpr double cutsOfVertex = 30;
-	const double most = cutsOfVertex * surface.mesh().vertexCount();
+	const double maximum = cutsOfVertex * surface.mesh().vertexCount();
 	const auto cuts = [&](const SizingField& raised) {
 		return cutsByField(surface.mesh(), raised);
 	};
-	if (!field.empty() && cuts(field) > most)
-		raiseToCost(field, *std::max_element(bound.begin(), bound.end()), most, cuts);
+	if (!field.empty() && cuts(field) > maximum)
+		raiseToCost(field, *std::max_element(bound.begin(), bound.end()), maximum, cuts);
 	limits.reserve(field.size());
 	for (size_t v = 0; v < field.size(); ++v)
 		limits.push_back(
@@ -184,7 +184,7 @@ FlowSurface surfaceForFlow(const MeasuredSurface& given, double epsilon,
 				return measured.frame(component[v]).onGrid(halved.position[v]);
 			};
 			number = breadthFirstOrder(halved,
-				leastHalfEdges(halved, component, measured.components(), placeOf, part), part);
+				minHalfEdges(halved, component, measured.components(), placeOf, part), part);
 			mesh = halved.renumbered(number.vertex, number.face, number.firstCorner, part);
 			result.finer = mesh.copied(part);
 		}

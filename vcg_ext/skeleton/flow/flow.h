@@ -135,7 +135,7 @@ struct StageObserver
 	/// Every which iteration onStage is called, >= 1.
 	int every = 1;
 	/// Called with the figures of each new stage; may be empty.
-	std::function<void(const StageFigures&)> onFigures;
+	std::function<void(const StageFigures&)> onFigures = {};
 };
 
 /**

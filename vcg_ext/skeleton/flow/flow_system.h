@@ -36,7 +36,7 @@ constexpr double publishedWeightUnit = 1.0 / 200;
 constexpr double sheetWeight2 = 4;
 
 /**
- * (M^2 + D) y = b for the moves y of the free vertices: where Eq. 6 is least, see contract().
+ * (M^2 + D) y = b for the moves y of the free vertices: the minimum of Eq. 6, see contract().
  *
  * M is w_L L, with parameters.cotangentFactor, restricted to the unknowns, D = w_H^2 + w_M^2. With x = v + y it follows from Eq. 6 that
  *     b = w_M^2 (mu - v) - M (w_L L v),
@@ -94,8 +94,8 @@ inline FlowSystem flowSystem(
 	std::vector<Point3d> normal(mesh.vertexSlots(), Point3d(0, 0, 0));
 	// Rows are made triangle by triangle, since a walk round each vertex waits for every step. Where they are many,
 	// each thread makes a range of them, and looks for their triangles in the whole mesh.
-	constexpr int leastForTeam = 1 << 14;
-	const std::vector<int> ranges = rangesForThreads(n, leastForTeam);
+	constexpr int minForTeam = 1 << 14;
+	const std::vector<int> ranges = rangesForThreads(n, minForTeam);
 	const auto onAllCores = [&](const Progress& part, const auto& make) {
 		if (ranges.size() == 2)
 			make([](int row) { return row >= 0; });

@@ -94,7 +94,7 @@ inline std::vector<char> coarseComponents(const MeasuredSurface& surface, double
 inline std::vector<double> longestEdgesForFlow(
 	const MeasuredSurface& surface, const std::vector<char>& coarse, double epsilon)
 {
-	constexpr double mostVertices = 5e5;
+	constexpr double maxVertices = 5e5;
 	// Of area / length^2: halving leaves edges between half the length and the length.
 	constexpr double verticesOfArea = 3.5;
 	std::vector<double> longest(coarse.size(), std::numeric_limits<double>::infinity());
@@ -104,9 +104,9 @@ inline std::vector<double> longestEdgesForFlow(
 			longest[c] = fineOfEpsilon * detail::epsilonOfEdges(epsilon) * surface.diagonal(c);
 			expected += verticesOfArea * surface.area(c) / (longest[c] * longest[c]);
 		}
-	if (expected > mostVertices)
+	if (expected > maxVertices)
 		for (double& length : longest)
-			length *= std::sqrt(expected / mostVertices);
+			length *= std::sqrt(expected / maxVertices);
 	return longest;
 }
 
@@ -115,7 +115,7 @@ inline std::vector<double> longestEdgesForFlow(
  * component. The shape is the same, and its vertices keep their ids; those in the middle of edges
  * follow.
  *
- * Halving a triangle's longest edge, again and again, leaves no angle below half of its least one
+ * Halving a triangle's longest edge, again and again, leaves no angle below half of its smallest one
  * (Rosenberg and Stenger, "A lower bound on the angles of triangles constructed by bisecting the
  * longest side", Mathematics of Computation 29, 1975).
  *

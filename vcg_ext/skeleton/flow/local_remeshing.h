@@ -58,11 +58,11 @@ inline std::array<bool, 3> maybeWideAngles(const SurfaceMesh& mesh, int face, do
 	const auto [i, j, k] = mesh.triangle(face);
 	const Point3d &a = mesh.position[i], &b = mesh.position[j], &c = mesh.position[k];
 	const double ab = SquaredDistance(a, b), bc = SquaredDistance(b, c), ca = SquaredDistance(c, a);
-	const double sum = (ab + bc + ca) * (1 - rounding), least = 4 * widest * widest;
+	const double sum = (ab + bc + ca) * (1 - rounding), minimum = 4 * widest * widest;
 	// The law of cosines: edge = one + other - 2 cosine sqrt(one other), squared lengths all of them.
 	const auto isWide = [&](double edge, double one, double other) -> bool {
 		const double excess = 2 * edge - sum;
-		return (excess > 0) & (excess * excess >= least * (one * other));
+		return (excess > 0) & (excess * excess >= minimum * (one * other));
 	};
 	return {isWide(ab, bc, ca), isWide(bc, ca, ab), isWide(ca, ab, bc)};
 }
@@ -146,8 +146,8 @@ inline std::vector<int> collapseShortEdges(
 	const auto squaredLimitOf = [&](int a, int b) {
 		if (!isLocal)
 			return squaredLimit[stage.component[a]];
-		const double least = std::min(stage.epsilonAt(a, epsilon), stage.epsilonAt(b, epsilon));
-		return least * least;
+		const double minimum = std::min(stage.epsilonAt(a, epsilon), stage.epsilonAt(b, epsilon));
+		return minimum * minimum;
 	};
 	const auto mayCollapse = [&](const Entry& e) {
 		const int a = mesh.origin(e.second), b = mesh.target(e.second);
@@ -277,10 +277,10 @@ inline void splitWideAngles(Stage& stage, const Parameters& parameters, MergeFor
 		if (!stage.fixed[v] && mesh.isVertex(v))
 			moves[stage.component[v]] = 1;
 	// Each split shortens the longest edge of its triangles; the cap only guards against the worst.
-	const size_t mostVertices = 4 * size_t(mesh.vertexCount()) + 1000;
+	const size_t maxVertices = 4 * size_t(mesh.vertexCount()) + 1000;
 	size_t looked = 0;
 	for (size_t next = initial.nextDue(0);
-		 next < initial.size() + queue.size() && size_t(mesh.vertexCount()) < mostVertices;
+		 next < initial.size() + queue.size() && size_t(mesh.vertexCount()) < maxVertices;
 		 next = initial.nextDue(next + 1)) {
 		if (++looked % 65536 == 0)
 			progress.report(0, "Splitting wide angles");

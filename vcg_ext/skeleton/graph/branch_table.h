@@ -28,9 +28,9 @@ struct BranchRecord
 	double length = 0;
 	/// Over the length; radii change linearly along an edge.
 	double meanRadius = 0;
-	double leastRadius = 0, greatestRadius = 0;
+	double minRadius = 0, greatestRadius = 0;
 	BranchEnd first = BranchEnd::Tip, last = BranchEnd::Tip;
-	/// The least of its nodes', see CurveSkeleton; 1 where it is not known.
+	/// The minimum of its nodes', see CurveSkeleton; 1 where it is not known.
 	double significance = 1;
 };
 
@@ -49,7 +49,7 @@ inline std::vector<BranchRecord> branchTable(
 		BranchRecord record;
 		record.first = endAt(branch.first());
 		record.last = endAt(branch.last());
-		record.leastRadius = record.greatestRadius = skeleton.radius[branch.first()];
+		record.minRadius = record.greatestRadius = skeleton.radius[branch.first()];
 		if (!skeleton.significance.empty())
 			for (int v : branch.nodes)
 				record.significance = std::min(record.significance, skeleton.significance[v]);
@@ -61,7 +61,7 @@ inline std::vector<BranchRecord> branchTable(
 			record.length += length;
 			weighted += length * radius;
 			plain += radius / double(branch.nodes.size() - 1);
-			record.leastRadius = std::min(record.leastRadius, skeleton.radius[b]);
+			record.minRadius = std::min(record.minRadius, skeleton.radius[b]);
 			record.greatestRadius = std::max(record.greatestRadius, skeleton.radius[b]);
 		}
 		record.meanRadius = record.length > 0 ? weighted / record.length : plain;

@@ -43,14 +43,14 @@ struct SkeletonDistance
 inline SkeletonDistance distanceToSkeleton(const CurveSkeleton& from, const CurveSkeleton& to,
 	double spacing, const Progress& progress = Progress())
 {
-	constexpr double mostPoints = 1e7;
+	constexpr double maxPoints = 1e7;
 	if (!(spacing > 0) || !std::isfinite(spacing))
 		throw InvalidParameter("Parameter spacing must be greater than 0.");
 	if (from.position.empty() || to.position.empty())
 		throw InvalidInput("One of the two skeletons has no nodes: there is nothing to compare.");
-	if (statistics(from).length / spacing > mostPoints)
+	if (statistics(from).length / spacing > maxPoints)
 		throw InvalidParameter("Parameter spacing is too small: it would give more than "
-			+ std::to_string(int(mostPoints)) + " points.");
+			+ std::to_string(int(maxPoints)) + " points.");
 	const CurveSamples samples = curveSamples(from, spacing);
 	const ClosestCurve curve(to);
 	std::vector<double> distance(samples.position.size());

@@ -114,7 +114,7 @@ private:
 } // namespace detail
 
 /**
- * Removes the terminal branches for which measure(skeleton, branch) is below `least`, the least
+ * Removes the terminal branches for which measure(skeleton, branch) is below `minimum`, the smallest
  * first and one at a time, since a branch that loses its junction becomes part of a longer one. The
  * branch is handed over from its junction to its tip, with the skeleton as it was given. What had merged into it
  * goes to the junction. A measure that takes a third argument gets the tips that are left, a std::set<int>; with
@@ -126,7 +126,7 @@ private:
  * where one becomes longer, its measure, its length and the logarithm of their number.
  */
 template <class Measure>
-CurveSkeleton withoutTerminalBranches(const CurveSkeleton& skeleton, double least,
+CurveSkeleton withoutTerminalBranches(const CurveSkeleton& skeleton, double minimum,
 	const Measure& measure, const Progress& progress = Progress())
 {
 	using Tips = std::set<int>;
@@ -151,7 +151,7 @@ CurveSkeleton withoutTerminalBranches(const CurveSkeleton& skeleton, double leas
 			value = measure(skeleton, branch, branches.allTips());
 		else
 			value = measure(skeleton, branch);
-		if (!(value < least))
+		if (!(value < minimum))
 			return;
 		const bool fromTip = branch.last() < branch.first();
 		const int next = fromTip ? branch.nodes[branch.nodes.size() - 2] : branch.nodes[1];
@@ -179,13 +179,13 @@ CurveSkeleton withoutTerminalBranches(const CurveSkeleton& skeleton, double leas
 
 /**
  * Merges junctions whose connecting branch has measure(skeleton, larger, smaller, detour) below
- * `least`, the least first: `larger` is the junction with the larger radius, which stays in its
+ * `minimum`, the shortest first: `larger` is the junction with the larger radius, which stays in its
  * place, and `detour` what the branch is longer than the straight line between both. Branches that
  * close a cycle are kept.
  * @throws Cancelled. Complexity: O(merged junctions * (V + E log E + surface vertices)).
  */
 template <class Measure>
-CurveSkeleton withMergedJunctions(CurveSkeleton skeleton, double least, const Measure& measure,
+CurveSkeleton withMergedJunctions(CurveSkeleton skeleton, double minimum, const Measure& measure,
 	const Progress& progress = Progress())
 {
 	for (;;) {
@@ -195,7 +195,7 @@ CurveSkeleton withMergedJunctions(CurveSkeleton skeleton, double least, const Me
 		std::map<std::pair<int, int>, int> parallel;
 		for (const Branch& branch : branches)
 			++parallel[std::minmax(branch.first(), branch.last())];
-		double worst = least;
+		double worst = minimum;
 		const Branch* inner = nullptr;
 		int into = -1;
 		for (const Branch& branch : branches) {
@@ -234,7 +234,7 @@ struct PruneParameters
 	/// Terminal branches shorter than this go; >= 0.
 	double shortestBranch = 0;
 	/// Terminal branches whose mean radius is less than this go; >= 0.
-	double leastRadius = 0;
+	double minRadius = 0;
 	/// Branches stay whose significance is at least 1 - detail, see nestedBranches(); in [0, 1], 1: all.
 	double detail = 1;
 	/// Whether two junctions that are closer to each other than the larger one's radius, along their
@@ -247,7 +247,7 @@ struct PruneParameters
 		require(spurProminence >= 0 && spurProminence <= 1, "spur_prominence", "between 0 and 1");
 		require(detail >= 0 && detail <= 1, "detail", "between 0 and 1");
 		require(shortestBranch >= 0 && std::isfinite(shortestBranch), "min_length", "at least 0");
-		require(leastRadius >= 0 && std::isfinite(leastRadius), "min_radius", "at least 0");
+		require(minRadius >= 0 && std::isfinite(minRadius), "min_radius", "at least 0");
 	}
 
 private:
@@ -299,7 +299,7 @@ inline CurveSkeleton prune(const CurveSkeleton& skeleton, const PruneParameters&
 	pruned = withoutTerminalBranches(
 		pruned, parameters.shortestBranch, branchLength, progress.part(0.2, 0.4));
 	pruned = withoutTerminalBranches(
-		pruned, parameters.leastRadius, meanTerminalRadius, progress.part(0.4, 0.6));
+		pruned, parameters.minRadius, meanTerminalRadius, progress.part(0.4, 0.6));
 	if (parameters.mergeJunctions) {
 		pruned = withMergedJunctions(
 			std::move(pruned), 1,

@@ -102,12 +102,12 @@ struct SampledBranch
 		return at(places);
 	}
 
-	/// The same with as few steps as leave none longer than `longest`, at least `least`.
-	SampledBranch evenly(double longest, int least) const
+	/// The same with as few steps as leave none longer than `longest`, at least `minimum`.
+	SampledBranch evenly(double longest, int minimum) const
 	{
 		constexpr double rounding = 1e-12;
 		const double steps = std::ceil(along().back() / longest * (1 - rounding));
-		return inSteps(std::max(least, int(steps)));
+		return inSteps(std::max(minimum, int(steps)));
 	}
 };
 
@@ -192,7 +192,7 @@ inline CurveSkeleton resampledSkeleton(const CurveSkeleton& skeleton, double lon
 	double smoothing = 0, const Progress& progress = Progress())
 {
 	using detail::SampledBranch;
-	constexpr double mostNodes = 1e7;
+	constexpr double maxNodes = 1e7;
 	const char* what = "Resampling the skeleton";
 	if (!(longestEdge > 0) || !std::isfinite(longestEdge))
 		throw InvalidParameter("Parameter longest_edge must be greater than 0.");
@@ -209,11 +209,11 @@ inline CurveSkeleton resampledSkeleton(const CurveSkeleton& skeleton, double lon
 	}
 	// To be smoothed, a line needs points closer than the waves that are to go.
 	const double spacing = smoothing > 0 ? std::min(longestEdge, smoothing) : longestEdge;
-	if (length / spacing > mostNodes)
+	if (length / spacing > maxNodes)
 		throw InvalidParameter("Edges as short as this would make "
 			+ std::to_string(std::llround(length / spacing))
 			+ " nodes; choose a longest_edge and a smoothing of at least "
-			+ std::to_string(length / mostNodes) + " mesh units.");
+			+ std::to_string(length / maxNodes) + " mesh units.");
 
 	CurveSkeleton result;
 	const bool knowsSignificance = !skeleton.significance.empty();
@@ -235,7 +235,7 @@ inline CurveSkeleton resampledSkeleton(const CurveSkeleton& skeleton, double lon
 		const Branch& branch = branches[b];
 		const bool freeCycle = branch.isClosed() && neighbours[branch.first()].size() == 2;
 		const bool hasTwin = parallel[std::minmax(branch.first(), branch.last())] > 1;
-		const int least = branch.isClosed() ? 3 : hasTwin ? 2 : 1;
+		const int minimum = branch.isClosed() ? 3 : hasTwin ? 2 : 1;
 		SampledBranch old;
 		old.isFreeCycle = freeCycle;
 		for (int v : branch.nodes) {
@@ -244,7 +244,7 @@ inline CurveSkeleton resampledSkeleton(const CurveSkeleton& skeleton, double lon
 		}
 		SampledBranch line = old;
 		if (smoothing > 0) {
-			line = old.evenly(spacing, least);
+			line = old.evenly(spacing, minimum);
 			detail::smoothSpline(line, smoothing);
 			// Only rounding makes a line longer, where the steps of coordinates are as large as it is.
 			if (line.along().back() > 2 * old.along().back())
@@ -252,7 +252,7 @@ inline CurveSkeleton resampledSkeleton(const CurveSkeleton& skeleton, double lon
 					"The skeleton could not be smoothed: it is too small for its distance from the "
 					"origin. Move it there first.");
 		}
-		line = line.evenly(longestEdge, least);
+		line = line.evenly(longestEdge, minimum);
 
 		keep(branch.first()); // of a free cycle
 		if (freeCycle)

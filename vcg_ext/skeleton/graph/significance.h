@@ -130,18 +130,18 @@ inline NestedBranches nestedBranches(
 }
 
 /**
- * The part of a skeleton whose significance is at least `least`, in its place. What had merged into the rest
+ * The part of a skeleton whose significance is at least `minimum`, in its place. What had merged into the rest
  * goes to the node that it hung on.
  * @param nested of the skeleton.
  * @return with its significance. Complexity: O(N + E log E + surface vertices).
  */
 inline CurveSkeleton significantPart(
-	CurveSkeleton skeleton, const NestedBranches& nested, double least)
+	CurveSkeleton skeleton, const NestedBranches& nested, double minimum)
 {
 	std::vector<int> target(skeleton.position.size());
 	for (size_t v = 0; v < target.size(); ++v) {
 		int to = int(v);
-		while (nested.significance[to] < least)
+		while (nested.significance[to] < minimum)
 			to = nested.root[to];
 		target[v] = to;
 	}

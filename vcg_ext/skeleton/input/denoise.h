@@ -130,12 +130,12 @@ inline double quantile(std::vector<double>& values, double part)
 class NeighbourCorrelation
 {
 public:
-	/// @param most what is no outlier.
-	explicit NeighbourCorrelation(double most) : most(most) {}
+	/// @param maximum what is no outlier.
+	explicit NeighbourCorrelation(double maximum) : maximum(maximum) {}
 
 	void add(double a, double b)
 	{
-		if (std::max(std::abs(a), std::abs(b)) > most)
+		if (std::max(std::abs(a), std::abs(b)) > maximum)
 			return;
 		products += a * b;
 		squares += (a * a + b * b) / 2;
@@ -149,7 +149,7 @@ public:
 	}
 
 private:
-	double most, products = 0, squares = 0;
+	double maximum, products = 0, squares = 0;
 };
 
 } // namespace detail
@@ -275,10 +275,10 @@ inline SurfaceMesh smoothed(const MeasuredSurface& surface, const std::vector<in
 	constexpr double mu = 1 / (passBand - 1 / lambda);
 	const char* const what = "Smoothing noise";
 	SurfaceMesh mesh = surface.mesh().copied(progress);
-	const int most = rounds.empty() ? 0 : *std::max_element(rounds.begin(), rounds.end());
+	const int maximum = rounds.empty() ? 0 : *std::max_element(rounds.begin(), rounds.end());
 	const detail::RingMeans rings(mesh, progress.cancelOnly(), what);
-	for (int half = 0; half < 2 * most; ++half) {
-		const Progress ofHalf = progress.part(half / (2.0 * most), (half + 1) / (2.0 * most));
+	for (int half = 0; half < 2 * maximum; ++half) {
+		const Progress ofHalf = progress.part(half / (2.0 * maximum), (half + 1) / (2.0 * maximum));
 		const std::vector<Point3d> mean = rings.of(mesh.position, ofHalf.part(0, 0.8));
 		const double factor = half % 2 == 0 ? lambda : mu;
 		detail::reportedLoop(mesh.vertexSlots(), ofHalf.part(0.8, 1), what, [&](int v) {
@@ -299,12 +299,12 @@ struct NoiseReport
 	/// Rounds of smoothed() for each component, where it is not thin and where it is.
 	std::vector<int> rounds, roundsWhereThin;
 
-	int mostRounds() const { return *std::max_element(rounds.begin(), rounds.end()); }
-	int mostRoundsWhereThin() const
+	int maxRounds() const { return *std::max_element(rounds.begin(), rounds.end()); }
+	int maxRoundsWhereThin() const
 	{
 		return *std::max_element(roundsWhereThin.begin(), roundsWhereThin.end());
 	}
-	bool isNoisy() const { return mostRounds() > 0 || mostRoundsWhereThin() > 0; }
+	bool isNoisy() const { return maxRounds() > 0 || maxRoundsWhereThin() > 0; }
 
 	/// Rounds of each vertex. @param thickness as in measureNoise().
 	std::vector<int> ofVertices(
@@ -338,9 +338,9 @@ struct NoiseReport
 inline NoiseReport measureNoise(const MeasuredSurface& surface,
 	const Progress& progress = Progress(), const std::vector<double>& thickness = {})
 {
-	constexpr double least = 3e-4, leastOfEdge = 0.05, strong = 1.5e-3;
-	constexpr double leastOfThickness = 0.05, strongOfThickness = 0.15, mostOfThickness = 1;
-	constexpr double coarsestEdge = 0.03, leastWhiteness = 0.6;
+	constexpr double minimum = 3e-4, minOfEdge = 0.05, strong = 1.5e-3;
+	constexpr double minOfThickness = 0.05, strongOfThickness = 0.15, maxOfThickness = 1;
+	constexpr double coarsestEdge = 0.03, minWhiteness = 0.6;
 	constexpr int fewRounds = 10, manyRounds = 40;
 	const SurfaceMesh& mesh = surface.mesh();
 	std::vector<char> isThin, isThick;
@@ -371,7 +371,7 @@ inline NoiseReport measureNoise(const MeasuredSurface& surface,
 		const double edge = edgeSum[c] / edgeCount[c] / surface.diagonal(c);
 		const auto isClean = [&](const NoiseLevel& own) {
 			const double level = own.deviation / surface.diagonal(c);
-			return level < least || level < leastOfEdge * edge || own.whiteness < leastWhiteness;
+			return level < minimum || level < minOfEdge * edge || own.whiteness < minWhiteness;
 		};
 		if (edge > coarsestEdge) {
 			report.rounds.push_back(0);
@@ -381,10 +381,10 @@ inline NoiseReport measureNoise(const MeasuredSurface& surface,
 		const double level = whereThick[c].deviation / surface.diagonal(c);
 		// Both: what is left where most is thin are the few vertices of its thickest part.
 		const bool clean = isClean(all[c]) || isClean(whereThick[c]);
-		const bool isShape = whereThin[c].relative > mostOfThickness;
+		const bool isShape = whereThin[c].relative > maxOfThickness;
 		const double relative = isShape ? 0 : whereThin[c].relative;
 		const bool cleanWhereThin =
-			relative < leastOfThickness || whereThin[c].whiteness < leastWhiteness;
+			relative < minOfThickness || whereThin[c].whiteness < minWhiteness;
 		report.level = std::max(
 			{report.level, level, isShape ? 0 : whereThin[c].deviation / surface.diagonal(c)});
 		report.ofThickness = std::max(report.ofThickness, relative);

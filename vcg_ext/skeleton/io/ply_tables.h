@@ -71,13 +71,13 @@ public:
 		return FormatError::atRow(element->name, row, what);
 	}
 
-	/// Finite numbers not below `least`.
+	/// Finite numbers not below `minimum`.
 	std::vector<double> reals(
-		const std::string& name, double least = -std::numeric_limits<double>::infinity()) const
+		const std::string& name, double minimum = -std::numeric_limits<double>::infinity()) const
 	{
 		const PlyColumn& column = scalars(name);
 		for (size_t row = 0; row < rows(); ++row)
-			if (!std::isfinite(column.values[row]) || column.values[row] < least)
+			if (!std::isfinite(column.values[row]) || column.values[row] < minimum)
 				throw bad(row, name, column.values[row]);
 		return column.values;
 	}
@@ -88,10 +88,10 @@ public:
 		return scalars(name).values;
 	}
 
-	/// Integers in [least, greatest].
-	std::vector<int> integers(const std::string& name, int least, int greatest) const
+	/// Integers in [minimum, maximum].
+	std::vector<int> integers(const std::string& name, int minimum, int maximum) const
 	{
-		return checkedIntegers(scalars(name), 1, least, greatest);
+		return checkedIntegers(scalars(name), 1, minimum, maximum);
 	}
 
 	/// Points from the columns PREFIXx, PREFIXy, PREFIXz as they are, not finite ones included.
@@ -106,9 +106,9 @@ public:
 		return result;
 	}
 
-	/// Lists of N integers in [least, greatest].
+	/// Lists of N integers in [minimum, maximum].
 	template <size_t N>
-	std::vector<std::array<int, N>> tuples(const std::string& name, int least, int greatest) const
+	std::vector<std::array<int, N>> tuples(const std::string& name, int minimum, int maximum) const
 	{
 		const PlyColumn* column = element->find(name);
 		if (rows() > 0 && (!column || column->listLength != N))
@@ -116,7 +116,7 @@ public:
 		std::vector<std::array<int, N>> result(rows());
 		if (rows() == 0)
 			return result;
-		const std::vector<int> values = checkedIntegers(*column, N, least, greatest);
+		const std::vector<int> values = checkedIntegers(*column, N, minimum, maximum);
 		for (size_t row = 0; row < rows(); ++row)
 			for (size_t i = 0; i < N; ++i)
 				result[row][i] = values[N * row + i];
@@ -138,13 +138,13 @@ private:
 	}
 
 	std::vector<int> checkedIntegers(
-		const PlyColumn& column, size_t perRow, int least, int greatest) const
+		const PlyColumn& column, size_t perRow, int minimum, int maximum) const
 	{
 		std::vector<int> result(column.values.size());
 		for (size_t i = 0; i < result.size(); ++i) {
 			const double value = column.values[i];
 			// Negated, so that NaN fails as well.
-			if (!(value >= least && value <= greatest) || value != std::floor(value))
+			if (!(value >= minimum && value <= maximum) || value != std::floor(value))
 				throw bad(i / perRow, column.name, value);
 			result[i] = int(value);
 		}

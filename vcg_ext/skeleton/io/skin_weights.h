@@ -58,7 +58,7 @@ struct SkinSystem
 inline SkinSystem skinSystem(
 	const SkinnedSurface& surface, const std::vector<int>& at, const std::vector<double>& reach)
 {
-	constexpr double leastWeight = 1e-3, largestCotangent = 100, leastPull = 1e-9;
+	constexpr double minWeight = 1e-3, largestCotangent = 100, minPull = 1e-9;
 	const int n = int(surface.position.size());
 	SkinSystem system;
 	system.pull.assign(size_t(n), 0);
@@ -92,7 +92,7 @@ inline SkinSystem skinSystem(
 	std::vector<double> sum(size_t(n), 0);
 	for (int v = 0; v < n; ++v)
 		for (Eigen::SparseMatrix<double>::InnerIterator e(weights, v); e; ++e) {
-			e.valueRef() = -std::max(e.value(), leastWeight);
+			e.valueRef() = -std::max(e.value(), minWeight);
 			sum[size_t(v)] -= e.value();
 			sum[size_t(e.row())] -= e.value();
 		}
@@ -100,7 +100,7 @@ inline SkinSystem skinSystem(
 	diagonal.reserve(Eigen::VectorXi::Constant(n, 1));
 	for (int v = 0; v < n; ++v) {
 		double& pull = system.pull[size_t(v)];
-		pull = sum[size_t(v)] > 0 ? std::max(pull, leastPull * sum[size_t(v)]) : 1;
+		pull = sum[size_t(v)] > 0 ? std::max(pull, minPull * sum[size_t(v)]) : 1;
 		diagonal.insert(v, v) = sum[size_t(v)] + pull;
 	}
 	system.matrix = weights + diagonal;
@@ -111,9 +111,9 @@ inline SkinSystem skinSystem(
 inline VertexShares fourOfFive(std::array<double, 5> weight, const std::array<int, 5>& bone)
 {
 	constexpr double negligible = 0.01; // so that what is far from a bone does not follow it at all
-	constexpr double leastSum = 1e-3;   // five alike: one of them is as good as another
+	constexpr double minSum = 1e-3;     // five alike: one of them is as good as another
 	const double fifth = std::max(weight[4], negligible);
-	if (weight[0] + weight[1] + weight[2] + weight[3] > 4 * fifth + leastSum)
+	if (weight[0] + weight[1] + weight[2] + weight[3] > 4 * fifth + minSum)
 		for (double& w : weight)
 			w = std::max(w - fifth, 0.0);
 	const double sum = weight[0] + weight[1] + weight[2] + weight[3];

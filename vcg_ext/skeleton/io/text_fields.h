@@ -81,15 +81,15 @@ public:
 		return value;
 	}
 
-	/// @throws FormatError unless field i is an integer in [least, greatest].
-	int integer(std::size_t i, int least, int greatest, const char* what) const
+	/// @throws FormatError unless field i is an integer in [minimum, maximum].
+	int integer(std::size_t i, int minimum, int maximum, const char* what) const
 	{
 		int value = 0;
 		if (!parse(i, value))
 			throw error(std::string(what) + " '" + std::string(fields[i]) + "' is no integer.");
-		if (value < least || value > greatest)
+		if (value < minimum || value > maximum)
 			throw error(std::string(what) + " " + std::to_string(value) + " is not between "
-				+ std::to_string(least) + " and " + std::to_string(greatest) + ".");
+				+ std::to_string(minimum) + " and " + std::to_string(maximum) + ".");
 		return value;
 	}
 

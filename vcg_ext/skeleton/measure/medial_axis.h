@@ -27,21 +27,21 @@ struct MedialLayerParameters
 {
 	/// Least angle between two places where a pole's ball touches the surface, seen from the pole;
 	/// degrees, in [0, 180]. What noise and facets make is narrow.
-	double leastAngle = 60;
+	double minAngle = 60;
 	/// Least radius of a pole's ball, mesh units, >= 0.
-	double leastRadius = 0;
+	double minRadius = 0;
 	/// A triangle of poles no edge of which is longer than this many times the longest edge of the
 	/// triangle of their vertices; > 0. Longer ones join sheets that do not belong together.
-	double mostStretch = 4;
+	double maxStretch = 4;
 
 	/// @throws InvalidParameter naming the first parameter that is out of its range.
 	void check() const
 	{
-		if (!(leastAngle >= 0 && leastAngle <= 180))
+		if (!(minAngle >= 0 && minAngle <= 180))
 			throw InvalidParameter("Parameter min_angle must be between 0 and 180 degrees.");
-		if (!(leastRadius >= 0) || !std::isfinite(leastRadius))
+		if (!(minRadius >= 0) || !std::isfinite(minRadius))
 			throw InvalidParameter("Parameter min_radius must be at least 0.");
-		if (!(mostStretch > 0))
+		if (!(maxStretch > 0))
 			throw InvalidParameter("Parameter max_stretch must be greater than 0.");
 	}
 };
@@ -52,7 +52,7 @@ struct MedialLayer
 	/// Mesh units.
 	std::vector<Point3d> position;
 	std::vector<double> radius;
-	/// Degrees, see MedialLayerParameters::leastAngle.
+	/// Degrees, see MedialLayerParameters::minAngle.
 	std::vector<double> angle;
 	/// The vertex of the surface that each is the pole of.
 	std::vector<int> source;
@@ -134,8 +134,8 @@ inline MedialLayer medialLayer(const SurfaceMesh& surface, const PoleSet& poles,
 	parameters.check();
 	const std::vector<double> angle = poleAngles(surface, poles, progress);
 	const auto counts = [&](int v) {
-		return poles.has(v) && angle[v] >= parameters.leastAngle
-			&& poles.radius[v] >= parameters.leastRadius;
+		return poles.has(v) && angle[v] >= parameters.minAngle
+			&& poles.radius[v] >= parameters.minRadius;
 	};
 	std::vector<Triangle> kept;
 	for (int f = 0; joined && f < surface.faceSlots(); ++f) {
@@ -148,7 +148,7 @@ inline MedialLayer medialLayer(const SurfaceMesh& surface, const PoleSet& poles,
 			longest = std::max(longest, Distance(surface.position[a], surface.position[b]));
 			stretched = std::max(stretched, Distance(poles.centre[a], poles.centre[b]));
 		}
-		if (stretched <= parameters.mostStretch * longest)
+		if (stretched <= parameters.maxStretch * longest)
 			kept.push_back(t);
 	}
 	std::vector<char> used(poles.radius.size(), !joined);

@@ -72,7 +72,7 @@ class CubeMesh : public TriMesh<std::vector<CubeVertex>, std::vector<CubeFace>>
 inline BallUnion unionOfBalls(const std::vector<Point3d>& centre, const std::vector<double>& radius,
 	double voxel, const Progress& progress = Progress())
 {
-	constexpr double mostVoxels = 3e7;
+	constexpr double maxVoxels = 3e7;
 	constexpr int margin = 3; // voxels; the walker leaves out the last two layers
 	const char* what = "Joining the balls";
 	if (!(voxel > 0) || !std::isfinite(voxel))
@@ -91,12 +91,12 @@ inline BallUnion unionOfBalls(const std::vector<Point3d>& centre, const std::vec
 	for (int axis = 0; axis < 3; ++axis) {
 		const double cells = std::ceil(box.Dim()[axis] / voxel) + 2 * margin + 1;
 		voxels *= cells;
-		size[axis] = int(std::min(cells, mostVoxels));
+		size[axis] = int(std::min(cells, maxVoxels));
 	}
-	if (voxels > mostVoxels)
+	if (voxels > maxVoxels)
 		throw InvalidParameter("Voxels as small as this would be "
 			+ std::to_string(std::llround(voxels / 1e6)) + " million: choose a voxel of at least "
-			+ std::to_string(voxel * std::cbrt(voxels / mostVoxels)) + " mesh units.");
+			+ std::to_string(voxel * std::cbrt(voxels / maxVoxels)) + " mesh units.");
 
 	// In coordinates where a voxel is 1.
 	using Volume = SimpleVolume<SimpleVoxel<double>>;
@@ -130,10 +130,10 @@ inline BallUnion unionOfBalls(const std::vector<Point3d>& centre, const std::vec
 				}
 	}
 	// No corner exactly on the surface: it would make triangles of no area.
-	constexpr double least = 1e-4;
+	constexpr double minimum = 1e-4;
 	for (auto& cell : volume.Vol)
-		if (std::abs(cell.V()) < least)
-			cell.V() = cell.V() < 0 ? -least : least;
+		if (std::abs(cell.V()) < minimum)
+			cell.V() = cell.V() < 0 ? -minimum : minimum;
 
 	progress.report(0.8, what);
 	using Walker = TrivialWalker<detail::CubeMesh, Volume>;

@@ -60,10 +60,10 @@ struct TouchingBall
  *                 then sets `where` to the nearest.
  */
 template <class Deepest>
-void shrink(TouchingBall& ball, int mostSteps, const Deepest& deepest)
+void shrink(TouchingBall& ball, int maxSteps, const Deepest& deepest)
 {
 	constexpr double tolerance = 1e-3;
-	for (int i = 0; i < mostSteps; ++i) {
+	for (int i = 0; i < maxSteps; ++i) {
 		Point3d x(0, 0, 0);
 		if (!deepest(ball.centre(), ball.radius * (1 - tolerance), x))
 			return;
@@ -110,7 +110,7 @@ struct DeepestPoint
 };
 
 /// Two places of a ball that are closer together, seen from its centre, are one.
-constexpr double leastSpokeAngle = M_PI / 3;
+constexpr double minSpokeAngle = M_PI / 3;
 
 } // namespace detail
 
@@ -131,7 +131,7 @@ inline MedialReference medialReference(const SurfaceMesh& surface, const Closest
 	constexpr int firstGuess = 20000;    // points that bound the balls before the surface does
 	constexpr double largest = 0.5;      // half the diagonal: no inner ball is larger
 	constexpr double margin = M_PI / 12; // that a first guess may be too narrow by
-	constexpr double leastRadius = 1e-4;
+	constexpr double minRadius = 1e-4;
 	const Progress begin = progress.cancelOnly();
 	std::vector<SurfaceSample> samples = surfaceSamples(surface, count, begin);
 	std::vector<Point3d> outward;
@@ -164,10 +164,10 @@ inline MedialReference medialReference(const SurfaceMesh& surface, const Closest
 				return search.any;
 			});
 			// What near neighbours hold already only shrinks further.
-			if (ball.spokeAngle() < detail::leastSpokeAngle - margin)
+			if (ball.spokeAngle() < detail::minSpokeAngle - margin)
 				continue;
 			detail::shrinkExactly(ball, closest, samples[i].face);
-			isMedial[i] = ball.spokeAngle() >= detail::leastSpokeAngle && ball.radius > leastRadius
+			isMedial[i] = ball.spokeAngle() >= detail::minSpokeAngle && ball.radius > minRadius
 				&& closest.clearance(ball.centre()) > 0;
 			balls[i] = ball;
 		}

@@ -213,9 +213,9 @@ private:
 		return border;
 	}
 
-	/// Rings of neighbours that each vertex is away from a border, up to `most`; -1: farther.
+	/// Rings of neighbours that each vertex is away from a border, up to `maximum`; -1: farther.
 	std::vector<int> ringsFromBorders(
-		int most, std::vector<int>& order, const Progress& progress) const
+		int maximum, std::vector<int>& order, const Progress& progress) const
 	{
 		std::vector<int> rings = filledArray(label.size(), -1, progress);
 		order.clear();
@@ -229,7 +229,7 @@ private:
 		for (size_t i = 0; i < order.size(); ++i) {
 			ticker.tick();
 			const int v = order[i]; // the array may move
-			if (rings[v] < most)
+			if (rings[v] < maximum)
 				surface.forEachOutgoing(v, [&](int h) {
 					const int w = surface.target(h);
 					if (rings[w] < 0) {
@@ -332,12 +332,12 @@ private:
 	int largest(int v) const
 	{
 		int best = label[v];
-		double most = 0;
+		double maximum = 0;
 		for (const auto& [part, value] : mixture[v])
-			if (value > most
-				|| (value == most && best != label[v] && (part < best || part == label[v]))) {
+			if (value > maximum
+				|| (value == maximum && best != label[v] && (part < best || part == label[v]))) {
 				best = part;
-				most = value;
+				maximum = value;
 			}
 		return best;
 	}

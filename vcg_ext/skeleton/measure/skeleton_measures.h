@@ -87,7 +87,7 @@ inline MedialPlace nearestMedial(const Point3d& x, const ClosestSurface::Hit& hi
 		auto ball = TouchingBall::alone(hit.point, (hit.point - x) / hit.distance, 0.5);
 		shrinkExactly(ball, surface, hit.face);
 		const double own = std::abs(ball.radius - hit.distance);
-		if (ball.spokeAngle() >= leastSpokeAngle && own < place.distance)
+		if (ball.spokeAngle() >= minSpokeAngle && own < place.distance)
 			place = {own, ball.radius};
 	}
 	return place;
@@ -131,7 +131,7 @@ inline double quantile(
 /// Terminal branches with a prominence below a tenth.
 inline int countSpurs(const CurveSkeleton& skeleton, const std::vector<double>& clearance)
 {
-	constexpr double least = 0.1;
+	constexpr double minimum = 0.1;
 	CurveSkeleton s = skeleton;
 	for (size_t v = 0; v < clearance.size(); ++v)
 		s.radius[v] = std::max(clearance[v], 0.0);
@@ -143,7 +143,7 @@ inline int countSpurs(const CurveSkeleton& skeleton, const std::vector<double>& 
 			continue;
 		const double out = firstIsTip ? prominence(s, branch.first(), branch.last())
 									  : prominence(s, branch.last(), branch.first());
-		spurs += out < least;
+		spurs += out < minimum;
 	}
 	return spurs;
 }
@@ -153,13 +153,13 @@ inline int countSpurs(const CurveSkeleton& skeleton, const std::vector<double>& 
 inline std::vector<Point3d> interiorPoints(
 	const SurfaceMesh& surface, const ClosestSurface& closest, int count, const Progress& progress)
 {
-	constexpr int mostTries = 50; // for each
+	constexpr int maxTries = 50; // for each
 	const char* const what = "Measuring the volume";
 	const Box3d box = surface.bounds(progress);
 	std::vector<Point3d> inside;
 	const int blockSize = 4096;
 	std::vector<char> isInside(blockSize);
-	for (int first = 0; first < mostTries * count && int(inside.size()) < count;
+	for (int first = 0; first < maxTries * count && int(inside.size()) < count;
 		 first += blockSize) {
 		const auto point = [&](int i) {
 			const auto u = evenPoint<3>(size_t(first) + size_t(i));

@@ -114,32 +114,32 @@ inline std::vector<int> renumberBreadthFirst(
 
 /**
  * Seeds for breadthFirstOrder() that depend on the places of the vertices only: of each component
- * the half-edge out of the vertex with the least coordinates (x before y before z) to its neighbour
- * with the least.
+ * the half-edge out of the vertex with the smallest coordinates (x before y before z) to its neighbour
+ * with the smallest.
  * @param component of each vertex slot, see connectedComponents().
  * @param placeOf   Point3d(vertex): the coordinates that count.
  * @throws Cancelled. Complexity: O(V).
  */
 template <class PlaceOf>
-std::vector<int> leastHalfEdges(const SurfaceMesh& mesh, const std::vector<int>& component,
+std::vector<int> minHalfEdges(const SurfaceMesh& mesh, const std::vector<int>& component,
 	int components, PlaceOf&& placeOf, const Progress& progress = Progress())
 {
 	const auto before = [](const Point3d& p, const Point3d& q) {
 		return p[0] != q[0] ? p[0] < q[0] : p[1] != q[1] ? p[1] < q[1] : p[2] < q[2];
 	};
-	std::vector<int> least(components, -1);
-	std::vector<Point3d> leastPlace(components);
+	std::vector<int> minimum(components, -1);
+	std::vector<Point3d> minPlace(components);
 	detail::reportedLoop(mesh.vertexSlots(), progress, "Ordering the surface", [&](int v) {
 		if (!mesh.isVertex(v))
 			return;
 		const int c = component[v];
 		const Point3d place = placeOf(v);
-		if (least[c] < 0 || before(place, leastPlace[c])) {
-			least[c] = v;
-			leastPlace[c] = place;
+		if (minimum[c] < 0 || before(place, minPlace[c])) {
+			minimum[c] = v;
+			minPlace[c] = place;
 		}
 	});
-	for (int& seed : least) {
+	for (int& seed : minimum) {
 		int best = mesh.outgoing(seed);
 		mesh.forEachOutgoing(seed, [&](int h) {
 			if (before(placeOf(mesh.target(h)), placeOf(mesh.target(best))))
@@ -147,7 +147,7 @@ std::vector<int> leastHalfEdges(const SurfaceMesh& mesh, const std::vector<int>&
 		});
 		seed = best;
 	}
-	return least;
+	return minimum;
 }
 
 /// What `ofVertex` says about each vertex slot, in a new order of `count` vertices.

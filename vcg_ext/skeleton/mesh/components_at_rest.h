@@ -21,7 +21,7 @@ namespace vcg::tri::mcf {
 
 /// Where there are more components than this, those whose diagonal is below this part of the largest one's
 /// are specks. With fewer each has its share of the vertices of defaultTargetLength().
-constexpr int mostWithoutSpecks = 15;
+constexpr int maxWithoutSpecks = 15;
 constexpr double speckSize = 0.01;
 
 /**
@@ -42,7 +42,7 @@ inline std::vector<char> componentsAtRest(
 	const std::vector<detail::VolumeAndArea> measured = detail::measuredAlongLength(
 		surface.mesh(), surface.component(), surface.components(), progress);
 	double largest = 0;
-	if (surface.components() > mostWithoutSpecks)
+	if (surface.components() > maxWithoutSpecks)
 		for (int c = 0; c < surface.components(); ++c)
 			largest = std::max(largest, surface.diagonal(c));
 	std::vector<char> rests;

@@ -74,15 +74,15 @@ inline double areaOf(const std::vector<int>& part, const std::vector<double>& ve
 /**
  * Gives each connected part whose mark is `value` the other mark if it is smaller than allowed.
  * @param area       of each vertex, see vertexAreas().
- * @param component  of each vertex; least: the smallest area of a part, for each component.
+ * @param component  of each vertex; minimum: the smallest area of a part, for each component.
  * @throws Cancelled
  */
 inline void flipSmallParts(const SurfaceMesh& mesh, const std::vector<double>& area,
-	const std::vector<int>& component, const std::vector<double>& least, char value,
+	const std::vector<int>& component, const std::vector<double>& minimum, char value,
 	std::vector<char>& marked, const Progress& progress = Progress())
 {
 	for (const std::vector<int>& part : markedParts(mesh, marked, value, progress))
-		if (areaOf(part, area) < least[component[part.front()]])
+		if (areaOf(part, area) < minimum[component[part.front()]])
 			for (int v : part)
 				marked[v] = !value;
 }

@@ -286,13 +286,13 @@ private:
 	/// Moves the origin to the centroid and turns the axes, where they can be told apart.
 	void align(const Moments& m)
 	{
-		constexpr double leastGap = 1e-6; // of the sum of the eigenvalues
+		constexpr double minGap = 1e-6; // of the sum of the eigenvalues
 		if (!(m.weight > 0))
 			return;
 		origin += m.first * (unit / m.weight);
 		const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(m.spread());
 		const Eigen::Vector3d& value = solver.eigenvalues();
-		const double gap = leastGap * value.sum();
+		const double gap = minGap * value.sum();
 		if (!(value[1] - value[0] > gap && value[2] - value[1] > gap))
 			return;
 		for (int k = 0; k < 3; ++k)
@@ -303,15 +303,15 @@ private:
 	/// Chooses the signs of the axes.
 	void orient(const Moments& m)
 	{
-		constexpr double leastSkew = 1e-6, leastSkewOfMiddles = 1e-8;
+		constexpr double minSkew = 1e-6, minSkewOfMiddles = 1e-8;
 		if (axes == coordinateAxes())
 			return;
 		int symmetric = -1;
 		for (int k = 0; k < 3; ++k) {
 			double towards = m.third[k];
-			if (std::abs(towards) <= leastSkew * m.weight) {
+			if (std::abs(towards) <= minSkew * m.weight) {
 				towards = m.thirdOfMiddles[k];
-				if (std::abs(towards) <= leastSkewOfMiddles * m.cells) {
+				if (std::abs(towards) <= minSkewOfMiddles * m.cells) {
 					symmetric = k;
 					towards = axes[k][0];
 					for (int i = 1; i < 3; ++i)

@@ -59,12 +59,12 @@ inline std::vector<VolumeAndArea> measuredAlongLength(const SurfaceMesh& mesh,
 		Point3d along = mesh.position[end[c]] - mesh.position[start[c]];
 		const double length = along.Norm();
 		along = length > 0 ? along / length : Point3d(1, 0, 0);
-		int least = 0; // coordinate
+		int minimum = 0; // coordinate
 		for (int k = 1; k < 3; ++k)
-			if (std::abs(along[k]) < std::abs(along[least]))
-				least = k;
+			if (std::abs(along[k]) < std::abs(along[minimum]))
+				minimum = k;
 		Point3d e(0, 0, 0);
-		e[least] = 1;
+		e[minimum] = 1;
 		const Point3d across = (along ^ e) / (along ^ e).Norm();
 		axes.push_back({along, across, along ^ across});
 	}

@@ -84,15 +84,15 @@ struct Touch
 
 /// The tolerance of a ball that has none, in a unit frame: coincident samples, and the steps of rounding
 /// in flat regions, are no contacts.
-inline double leastTolerance(const UnitFrame& frame)
+inline double minTolerance(const UnitFrame& frame)
 {
-	constexpr double least = 1e-9; // of the diagonal
-	return least * frame.diagonal();
+	constexpr double minimum = 1e-9; // of the diagonal
+	return minimum * frame.diagonal();
 }
 
 inline double ballTolerance(const UnitFrame& frame, double delta)
 {
-	return std::max(frame.lengthIn(delta), leastTolerance(frame));
+	return std::max(frame.lengthIn(delta), minTolerance(frame));
 }
 
 /**
@@ -153,12 +153,12 @@ PoleSet maximalBalls(const std::vector<Touch>& touches, size_t count, const Unit
 				poles.radius[touch.place] = radius;
 				return true;
 			};
-			const double least = leastTolerance(frame);
-			isDoubtful = isDoubtful && touch.delta > least
+			const double minimum = minTolerance(frame);
+			isDoubtful = isDoubtful && touch.delta > minimum
 				&& isThinner(touch.place, touch.normal, frame.lengthOut(touch.delta));
 			isDoubtful = isDoubtful || !findPole(touch.delta);
-			if (isDoubtful && touch.delta > least)
-				findPole(least);
+			if (isDoubtful && touch.delta > minimum)
+				findPole(minimum);
 		}
 	});
 	return poles;
@@ -208,10 +208,10 @@ inline OsculatingNormals osculatingNormals(const SurfaceMesh& mesh, const Progre
 	});
 	reportedLoop(mesh.faceSlots(), progress.part(0.5, 1), what, [&](int f) {
 		const Point3d areaVector = mesh.areaVector(f);
-		const double least = byFar * byFar * areaVector.SquaredNorm();
+		const double minimum = byFar * byFar * areaVector.SquaredNorm();
 		for (int v : mesh.triangle(f)) {
 			const double along = areaVector * found.normal[v];
-			found.leadsInside[v] &= (along > 0) & (along * along > least);
+			found.leadsInside[v] &= (along > 0) & (along * along > minimum);
 		}
 	});
 	return found;

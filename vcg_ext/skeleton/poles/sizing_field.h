@@ -97,10 +97,10 @@ inline void twoRings(const NeighbourLists& neighbours, int v, std::vector<int>& 
 template <class Scratch, class Visit>
 void forEachVertex(int vertices, const Progress& progress, const Visit& visit)
 {
-	constexpr int leastForTeam = 1 << 12;
+	constexpr int minForTeam = 1 << 12;
 	if (vertices == 0)
 		return;
-	forEachPart(rangesForThreads(vertices, leastForTeam), progress, sizing,
+	forEachPart(rangesForThreads(vertices, minForTeam), progress, sizing,
 		[&](int begin, int end, const Progress& part) {
 			Scratch scratch(vertices);
 			reportedLoop(end - begin, part, sizing, [&](int i) { visit(begin + i, scratch); });
@@ -160,7 +160,7 @@ struct RingScratch
 inline bool isThin(const SurfaceMesh& mesh, const NeighbourLists& neighbours,
 	const std::vector<double>& radius, int v, RingScratch& scratch)
 {
-	constexpr double reachOfRadius = 2, step = 0.1, slope = 0.25, mostLarger = 0.25;
+	constexpr double reachOfRadius = 2, step = 0.1, slope = 0.25, maxGrowth = 0.25;
 	constexpr int always = 3, farthest = 6; // edges
 	std::vector<int>& around = scratch.around;
 	std::vector<char>& seen = scratch.seen;
@@ -184,7 +184,7 @@ inline bool isThin(const SurfaceMesh& mesh, const NeighbourLists& neighbours,
 	}
 	for (int w : around)
 		seen[w] = 0;
-	return countLarger <= mostLarger * double(around.size() - 1);
+	return countLarger <= maxGrowth * double(around.size() - 1);
 }
 
 /**
@@ -263,8 +263,7 @@ inline SizingField sizingField(const MeasuredSurface& surface, const PoleSet& po
 	double relativeLength, const std::vector<double>& bound, const Progress& progress = Progress())
 {
 	constexpr double infinity = std::numeric_limits<double>::infinity();
-	constexpr double leastBackToBack =
-		2.0 / 3; // clean shapes have 0.88 and more, noise 0.6 and less
+	constexpr double minBackToBack = 2.0 / 3; // clean shapes have 0.88 and more, noise 0.6 and less
 	const SurfaceMesh& mesh = surface.mesh();
 	const std::vector<int>& component = surface.component();
 	using Entry = std::pair<double, int>; // length, vertex
@@ -305,7 +304,7 @@ inline SizingField sizingField(const MeasuredSurface& surface, const PoleSet& po
 		length = std::max(length, shortestLength * surface.diagonal(component[v]));
 	const detail::OppositeSides opposite(mesh, poles, progress.part(0.6, 0.7));
 	std::vector<int> across(size_t(mesh.vertexSlots()), -1); // of seeds
-	std::vector<double> least(bound.size(), infinity);
+	std::vector<double> minimum(bound.size(), infinity);
 	const auto forget = [&](const auto& isNone) {
 		seeds.erase(std::remove_if(seeds.begin(), seeds.end(), isNone), seeds.end());
 	};
@@ -317,12 +316,12 @@ inline SizingField sizingField(const MeasuredSurface& surface, const PoleSet& po
 	forget([&](const Entry& seed) { return across[seed.second] < 0; });
 	const std::vector<double> backToBack =
 		detail::partBackToBack(seeds, across, opposite, component, surface.components());
-	forget([&](const Entry& seed) { return backToBack[component[seed.second]] < leastBackToBack; });
+	forget([&](const Entry& seed) { return backToBack[component[seed.second]] < minBackToBack; });
 	for (const auto& [length, v] : seeds)
-		least[component[v]] = std::min(least[component[v]], length);
+		minimum[component[v]] = std::min(minimum[component[v]], length);
 	forget([&](const Entry& seed) {
 		const int c = component[seed.second];
-		return least[c] >= relativeLength * thin[c];
+		return minimum[c] >= relativeLength * thin[c];
 	});
 	if (seeds.empty())
 		return field;
@@ -357,26 +356,26 @@ inline SizingField sizingField(const MeasuredSurface& surface, const PoleSet& po
 
 /**
  * A field that is no smaller than it has to be for a mesh, or its edges, to cost no more than what is given:
- * max(field, b) for the smallest b with cost(max(field, b)) <= most, to 40 halvings of its logarithm.
+ * max(field, b) for the smallest b with cost(max(field, b)) <= maximum, to 40 halvings of its logarithm.
  * @param field   finite somewhere. @param high an upper bound of b, mesh units.
- * @param cost    double(SizingField): falls where the field grows; cost(field) > most.
+ * @param cost    double(SizingField): falls where the field grows; cost(field) > maximum.
  * @return b. Complexity: 40 costs.
  */
 template <class Cost>
-double raiseToCost(SizingField& field, double high, double most, Cost&& cost)
+double raiseToCost(SizingField& field, double high, double maximum, Cost&& cost)
 {
 	constexpr int halvings = 40;
 	double low = *std::min_element(field.begin(), field.end());
 	high = std::max(low, high);
 	SizingField raised = field;
-	const auto raiseTo = [&](double least) {
+	const auto raiseTo = [&](double minimum) {
 		for (size_t v = 0; v < field.size(); ++v)
-			raised[v] = std::max(field[v], least);
+			raised[v] = std::max(field[v], minimum);
 	};
 	for (int i = 0; i < halvings && low < high; ++i) {
 		const double middle = std::sqrt(low * high);
 		raiseTo(middle);
-		(cost(raised) > most ? low : high) = middle;
+		(cost(raised) > maximum ? low : high) = middle;
 	}
 	raiseTo(high);
 	field.swap(raised);
@@ -386,11 +385,11 @@ double raiseToCost(SizingField& field, double high, double most, Cost&& cost)
 /**
  * A field as much longer everywhere as it has to be for a mesh, or its edges, to cost no more than what is given,
  * but at most `factor` times; what then still is too much, raiseToCost() takes from the shortest lengths.
- * @param factor >= 1. @param field, high, most, cost as above.
+ * @param factor >= 1. @param field, high, maximum, cost as above.
  * @return no length is shorter: 0 where that was not needed. Complexity: 60 costs.
  */
 template <class Cost>
-double coarsenToCost(SizingField& field, double factor, double high, double most, Cost&& cost)
+double coarsenToCost(SizingField& field, double factor, double high, double maximum, Cost&& cost)
 {
 	constexpr int halvings = 20;
 	const SizingField given = field;
@@ -399,13 +398,13 @@ double coarsenToCost(SizingField& field, double factor, double high, double most
 			field[v] = by * given[v];
 	};
 	multiply(factor);
-	if (cost(field) > most)
-		return raiseToCost(field, high, most, cost);
+	if (cost(field) > maximum)
+		return raiseToCost(field, high, maximum, cost);
 	double low = 1, enough = factor;
 	for (int i = 0; i < halvings && low < enough; ++i) {
 		const double middle = std::sqrt(low * enough);
 		multiply(middle);
-		(cost(field) > most ? low : enough) = middle;
+		(cost(field) > maximum ? low : enough) = middle;
 	}
 	multiply(enough);
 	return 0;

@@ -102,8 +102,8 @@ public:
 			qh_init_B(qh, coordinates.data(), int(coordinates.size() / 3), 3, False);
 		});
 		const auto report = [&](double done) {
-			mostDone = std::max(mostDone, done);
-			progress.report(mostDone, what);
+			maxDone = std::max(maxDone, done);
+			progress.report(maxDone, what);
 		};
 		while (!joggleAndStart() || !addPoints(report) || !isConvex(report))
 			report(0);
@@ -119,7 +119,7 @@ private:
 	std::string command;
 	std::unique_ptr<FILE, int (*)(FILE*)> log;
 	bool started = false; ///< there is a simplex that points are added to
-	double mostDone = 0;  ///< of the work, in any try
+	double maxDone = 0;   ///< of the work, in any try
 
 	/// @return whether the job was done; not if the input is to be joggled again.
 	template <class Job>
@@ -162,12 +162,12 @@ private:
 	template <class Report>
 	bool addPoints(const Report& report)
 	{
-		constexpr int mostBetweenReports = 256;
+		constexpr int maxBetweenReports = 256;
 		qhT* qh = &state;
 		bool goesOn = true;
 		while (goesOn) {
 			// The first points are above all others: each takes a time linear in their number.
-			const int some = std::min(mostBetweenReports, 1 + qh->num_vertices / 64);
+			const int some = std::min(maxBetweenReports, 1 + qh->num_vertices / 64);
 			const bool added = attempt([qh, some, &goesOn] {
 				for (int i = 0; goesOn && i < some; ++i) {
 					facetT* facet;

@@ -46,7 +46,7 @@ public:
 	int deepest(const Point3d& point) const
 	{
 		int holding = -1;
-		double least = 1;
+		double minimum = 1;
 		for (size_t block = 0; block < boxes.size(); ++block) {
 			if (!boxes[block].IsIn(point))
 				continue;
@@ -54,8 +54,8 @@ public:
 			for (size_t v = block * blockSize; v < end; ++v)
 				if (const double r = skeleton.radius[v]; r > 0)
 					if (const double depth = Distance(skeleton.position[v], point) / r;
-						depth < least) {
-						least = depth;
+						depth < minimum) {
+						minimum = depth;
 						holding = int(v);
 					}
 		}

@@ -19,7 +19,7 @@ namespace vcg::tri::mcf::refining {
 /**
  * The factor of every length of the refinement at a place, in (0, 1]: a thin part is refined as it would be
  * if it were enlarged until its sizing field is neutralLength. Where nodes have to be fewer than that, it
- * does not fall below a least factor; what depends on how thick the shape is, whatever the distance of its
+ * does not fall below a minimum; what depends on how thick the shape is, whatever the distance of its
  * nodes, follows the thickness all the same.
  */
 class LocalScale
@@ -46,7 +46,7 @@ public:
 	}
 
 	/// At a triangle of the surface.
-	double atFace(int face) const { return std::max(ofThicknessAtFace(face), leastScale); }
+	double atFace(int face) const { return std::max(ofThicknessAtFace(face), minScale); }
 
 	/// Where the surface is closest to a point.
 	double at(const Point3d& point, const ClosestSurface& closest) const
@@ -54,24 +54,24 @@ public:
 		return isUniform() ? 1 : atFace(closest.closest(point).face);
 	}
 
-	/// The least of some vertices. @param vertices as a connected component's.
-	double least(const std::vector<int>& vertices) const
+	/// The minimum over some vertices. @param vertices as a connected component's.
+	double minimum(const std::vector<int>& vertices) const
 	{
-		double least = 1;
+		double minimum = 1;
 		if (!isUniform())
 			for (int v : vertices)
-				least = std::min(least, std::max(ofVertex[v], leastScale));
-		return least;
+				minimum = std::min(minimum, std::max(ofVertex[v], minScale));
+		return minimum;
 	}
 
 	/// The factor below which it does not fall from now on; 0: it follows the thickness wherever.
-	void setLeast(double least) { leastScale = least; }
-	double least() const { return leastScale; }
+	void setMin(double minimum) { minScale = minimum; }
+	double minimum() const { return minScale; }
 
 private:
 	const SurfaceMesh* surface = nullptr;
 	std::vector<double> ofVertex;
-	double leastScale = 0;
+	double minScale = 0;
 };
 
 /// The scale of shapes of one scale.

@@ -118,11 +118,11 @@ private:
 namespace refining {
 
 /**
- * The smallest scale with which a curve has no more than mostNodes(): where it is thin all along, as in a
+ * The smallest scale with which a curve has no more than maxNodes(): where it is thin all along, as in a
  * needle, it needs no node every half radius.
  * Complexity: O(E log V).
  */
-inline double leastScale(const CurveSkeleton& curve, const ClosestSurface& closest,
+inline double minScale(const CurveSkeleton& curve, const ClosestSurface& closest,
 	const LocalScale& scale, double spacing)
 {
 	constexpr int halvings = 30;
@@ -133,19 +133,19 @@ inline double leastScale(const CurveSkeleton& curve, const ClosestSurface& close
 		pieces.emplace_back(Distance(from, to), scale.at((from + to) / 2, closest));
 		length += pieces.back().first;
 	}
-	const auto nodes = [&](double least) {
+	const auto nodes = [&](double minimum) {
 		double sum = 0;
 		for (const auto& [piece, own] : pieces)
-			sum += piece / (spacing * std::max(own, least));
+			sum += piece / (spacing * std::max(own, minimum));
 		return sum;
 	};
-	const double most = mostNodes(length);
-	if (nodes(0) <= most)
+	const double maximum = maxNodes(length);
+	if (nodes(0) <= maximum)
 		return 0;
 	double low = 0, high = 1;
 	for (int i = 0; i < halvings; ++i) {
 		const double middle = (low + high) / 2;
-		(nodes(middle) > most ? low : high) = middle;
+		(nodes(middle) > maximum ? low : high) = middle;
 	}
 	return high;
 }
@@ -181,7 +181,7 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 			progress.report(double(++done) / total, what);
 		}
 	};
-	const CurveBounds bounds(skeleton, parameters.spacing * scale.least(component.vertices));
+	const CurveBounds bounds(skeleton, parameters.spacing * scale.minimum(component.vertices));
 	KnownClearances clearances(surface);
 	const auto tidy = [&](double spurProminence, double tipDistinctness) {
 		measureBranchEnds(skeleton, clearances);
@@ -196,9 +196,9 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 		skeleton = evenlySampled(skeleton, surface, parameters.spacing, scale);
 		// A tip may have been extended to where the shape is far thinner than along the curve that was given.
 		if (!scale.isUniform()
-			&& double(skeleton.position.size()) > mostNodes(statistics(skeleton).length)) {
-			scale.setLeast(
-				std::max(scale.least(), leastScale(skeleton, surface, scale, parameters.spacing)));
+			&& double(skeleton.position.size()) > maxNodes(statistics(skeleton).length)) {
+			scale.setMin(
+				std::max(scale.minimum(), minScale(skeleton, surface, scale, parameters.spacing)));
 			skeleton = evenlySampled(skeleton, surface, parameters.spacing, scale);
 		}
 		moveInside(skeleton, surface); // long edges of a coarse shape's curve may have left it
@@ -256,15 +256,15 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 inline int nearestAlong(const CurveSkeleton& skeleton,
 	const std::vector<std::vector<int>>& neighbours, int node, const Point3d& point)
 {
-	double least = SquaredDistance(skeleton.position[node], point);
+	double minimum = SquaredDistance(skeleton.position[node], point);
 	for (int from = -1;;) {
 		int nearest = node;
 		for (int w : neighbours[node]) {
 			if (w == from)
 				continue; // it was farther
 			const double squared = SquaredDistance(skeleton.position[w], point);
-			if (squared < least) {
-				least = squared;
+			if (squared < minimum) {
+				minimum = squared;
 				nearest = w;
 			}
 		}
@@ -433,13 +433,13 @@ inline std::optional<CurveSkeleton> broughtBack(
 	std::vector<std::array<int, 2>> edges;
 	for (const auto& [a, b] : curve.edges)
 		edges.push_back({a, b});
-	constexpr double mostOutside = 0.1; // of the edges: more is no slip, but another curve
-	constexpr double mostEdges = 1000;  // which take ten seconds
+	constexpr double maxOutside = 0.1; // of the edges: more is no slip, but another curve
+	constexpr double maxEdges = 1000;  // which take ten seconds
 	const auto isOutside = [&](const std::array<int, 2>& edge) {
 		return !solid.segmentIsInside(place[edge[0]], place[edge[1]], detail::outsideTolerance);
 	};
 	if (double(std::count_if(edges.begin(), edges.end(), isOutside))
-		> std::min(mostOutside * double(edges.size()), mostEdges))
+		> std::min(maxOutside * double(edges.size()), maxEdges))
 		return std::nullopt;
 	CurveSkeleton inside = curve;
 	// Exactly if possible: ways along the surface itself are within the rounding only.
@@ -485,7 +485,7 @@ inline Defect refineChecked(CurveSkeleton& refined, ClosestSurface& surface,
 	const SurfaceComponent& component, const LocalScale& scale, const RefineParameters& parameters,
 	const Progress& progress)
 {
-	constexpr size_t mostNodesOfExact = 10000;
+	constexpr size_t maxNodesOfExact = 10000;
 	constexpr double usual = 0.8,
 					 second = 0.9; // of the time: few shapes need more than one attempt
 	const CurveSkeleton unrefined = refined;
@@ -497,7 +497,7 @@ inline Defect refineChecked(CurveSkeleton& refined, ClosestSurface& surface,
 				unrefined, surface, component, own, parameters, progress.part(from, to));
 			nodes = curve.position.size();
 			const Progress end = progress.cancelOnly();
-			const double spacing = parameters.spacing * own.least(component.vertices);
+			const double spacing = parameters.spacing * own.minimum(component.vertices);
 			Defect defect = defectOf(curve, unrefined, spacing, inside, end);
 			if (defect == Defect::Outside && !own.isUniform())
 				if (auto back = broughtBack(curve, component, end);
@@ -516,7 +516,7 @@ inline Defect refineChecked(CurveSkeleton& refined, ClosestSurface& surface,
 	Defect defect = attempt(scale, 0, usual);
 	if (defect != Defect::None && !scale.isUniform())
 		defect = attempt(sameEverywhere, usual, second);
-	if ((defect == Defect::Outside || defect == Defect::TooLong) && nodes <= mostNodesOfExact) {
+	if ((defect == Defect::Outside || defect == Defect::TooLong) && nodes <= maxNodesOfExact) {
 		surface.makeExact();
 		defect = attempt(sameEverywhere, second, 1);
 	}
@@ -606,7 +606,7 @@ inline Refinement refineChecked(const CurveSkeleton& curve, const SurfaceMesh& s
 	refining::LocalScale scale(unit,
 		refining::scaleOfVertices(
 			surface, component, components, frame, parameters, poles, progress.cancelOnly()));
-	const auto isThin = [&](int c) { return scale.least(vertices.ids[c]) < 1; };
+	const auto isThin = [&](int c) { return scale.minimum(vertices.ids[c]) < 1; };
 	for (int c = 0; c < components; ++c) {
 		if (nodes[c].empty())
 			continue;
@@ -623,9 +623,9 @@ inline Refinement refineChecked(const CurveSkeleton& curve, const SurfaceMesh& s
 			progress.part(0.03 + 0.97 * c / components, 0.03 + 0.97 * (c + 1) / components);
 		ClosestSurface closest(unit, vertices.ids[c], sampleSpacing, ofComponent.part(0, 0.1));
 		const refining::SurfaceComponent own = {unit, vertices.ids[c], vertices.place};
-		scale.setLeast(0);
+		scale.setMin(0);
 		if (isThin(c))
-			scale.setLeast(refining::leastScale(part, closest, scale, parameters.spacing));
+			scale.setMin(refining::minScale(part, closest, scale, parameters.spacing));
 		const refining::Defect defect = refining::refineChecked(part, closest, own,
 			isThin(c) ? scale : refining::sameEverywhere, parameters, ofComponent.part(0.1, 0.95));
 		const bool isRefined = defect == refining::Defect::None;

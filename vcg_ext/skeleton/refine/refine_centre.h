@@ -42,11 +42,11 @@ constexpr double contactTolerance = 0.02;
 /// A maximal ball whose contacts are near each other is held by the surface's curvature or its noise,
 /// not by the other side: it says nothing about the middle of the shape. Balls count from the first
 /// angle between their contacts on, and fully from the second.
-constexpr double leastSpokeAngle = 20 * M_PI / 180, fullSpokeAngle = 50 * M_PI / 180;
+constexpr double minSpokeAngle = 20 * M_PI / 180, fullSpokeAngle = 50 * M_PI / 180;
 
 inline bool isMedial(const ClosestSurface::Ball& ball)
 {
-	return ball.spokeAngle >= leastSpokeAngle;
+	return ball.spokeAngle >= minSpokeAngle;
 }
 
 /// Searches the whole surface. @pre node is inside, and hit its closest point.
@@ -76,14 +76,14 @@ inline Point3d medialSlope(const Point3d& contact, const ClosestSurface::Ball& b
 	return (ball.centre * 2 - contact - ball.contact) / (2 * ball.radius);
 }
 
-/// The point moved across a direction towards the centre of a ball, by `most` at most.
-inline Point3d movedAside(
-	const Point3d& point, const ClosestSurface::Ball& ball, const Point3d& direction, double most)
+/// The point moved across a direction towards the centre of a ball, by `maximum` at most.
+inline Point3d movedAside(const Point3d& point, const ClosestSurface::Ball& ball,
+	const Point3d& direction, double maximum)
 {
 	Point3d aside = ball.centre - point;
 	aside -= direction * (direction * aside);
 	const double length = aside.Norm();
-	return point + (length > most ? aside * (most / length) : aside);
+	return point + (length > maximum ? aside * (maximum / length) : aside);
 }
 
 /**
@@ -92,10 +92,10 @@ inline Point3d movedAside(
  */
 inline void ascendAside(Contact& contact, const Point3d& tangent, const ClosestSurface& surface)
 {
-	constexpr int mostSteps = 3;
+	constexpr int maxSteps = 3;
 	constexpr double pace = 0.3, flattest = 150 * M_PI / 180;
 	Contact here = contact;
-	for (int i = 0; i < mostSteps; ++i) {
+	for (int i = 0; i < maxSteps; ++i) {
 		const ClosestSurface::Ball& ball = here.ball;
 		if (!isMedial(ball) || ball.spokeAngle > flattest)
 			return;
@@ -168,14 +168,14 @@ inline void followContacts(
 
 /**
  * Weight of the centring term per node. Inside the junction's maximal ball the medial axis of the body
- * dominates, so weights ramp from `least` to 1 as a node's ball leaves it, relative to its radius; from
+ * dominates, so weights ramp from `minimum` to 1 as a node's ball leaves it, relative to its radius; from
  * `whole` on they are 1.
  * @param distance  of each node from the surface.
  */
 inline std::vector<double> sharesOfCentring(const CurveSkeleton& skeleton,
 	const std::vector<std::vector<int>>& neighbours, const std::vector<double>& distance)
 {
-	constexpr double least = 0.1, whole = 0.35;
+	constexpr double minimum = 0.1, whole = 0.35;
 	std::vector<double> share(skeleton.position.size(), 1);
 	for (const Branch& branch : skeletonBranches(skeleton))
 		for (int end : {branch.nodes.front(), branch.nodes.back()}) {
@@ -187,7 +187,7 @@ inline std::vector<double> sharesOfCentring(const CurveSkeleton& skeleton,
 				const double out = Distance(skeleton.position[v], skeleton.position[end])
 					+ distance[v] - distance[end];
 				share[v] =
-					std::min(share[v], std::clamp(out / (whole * distance[end]), least, 1.0));
+					std::min(share[v], std::clamp(out / (whole * distance[end]), minimum, 1.0));
 			}
 		}
 	return share;
@@ -260,8 +260,8 @@ inline void centre(CurveSkeleton& skeleton, const std::vector<Contact>& contacts
 		Point3d target = x;
 		double weight = weightWithoutBall;
 		if (skeleton.radius[v] > 0 && isMedial(contacts[v].ball)) {
-			weight = std::clamp((contacts[v].ball.spokeAngle - leastSpokeAngle)
-					/ (fullSpokeAngle - leastSpokeAngle),
+			weight = std::clamp(
+				(contacts[v].ball.spokeAngle - minSpokeAngle) / (fullSpokeAngle - minSpokeAngle),
 				weightWithoutBall, 1.0);
 			target = contacts[v].target;
 			if (degree == 1 || degree == 2) {
@@ -301,10 +301,11 @@ inline void centre(CurveSkeleton& skeleton, const std::vector<Contact>& contacts
 	for (int v = 0; v < n; ++v) {
 		const Point3d x(solution(v, 0), solution(v, 1), solution(v, 2));
 		const Point3d move = x - before.position[v];
-		const double length = move.Norm(), most = before.radius[v] / 2;
-		skeleton.position[v] = length > most ? before.position[v] + move * (most / length) : x;
+		const double length = move.Norm(), maximum = before.radius[v] / 2;
+		skeleton.position[v] =
+			length > maximum ? before.position[v] + move * (maximum / length) : x;
 		// The distance from the surface cannot fall faster than the node moves.
-		skeleton.radius[v] = before.radius[v] - std::min(length, most);
+		skeleton.radius[v] = before.radius[v] - std::min(length, maximum);
 	}
 	keepEdgesInside(skeleton, before, surface);
 }

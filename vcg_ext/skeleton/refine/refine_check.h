@@ -30,8 +30,8 @@ enum class Defect {
 	Outside,   ///< a node or an edge is outside the surface
 };
 
-/// The most nodes that the sampling gives a curve whose length is so many diagonals.
-inline double mostNodes(double length)
+/// The maximum number of nodes that the sampling gives a curve whose length is so many diagonals.
+inline double maxNodes(double length)
 {
 	constexpr double nodesOfDiagonal = 1500;
 	return nodesOfDiagonal * (1 + length);
@@ -47,7 +47,7 @@ class CurveBounds
 public:
 	/// A curve may become three times as long as itself and the shape's diagonal together, and have twice
 	/// the nodes that it has and that are as far apart as `spacing` on such a length. In no case may it have more
-	/// nodes than before and a third more than mostNodes().
+	/// nodes than before and a third more than maxNodes().
 	CurveBounds(const CurveSkeleton& unrefined, double spacing) :
 			nodesBefore(unrefined.position.size())
 	{
@@ -65,7 +65,7 @@ public:
 		for (const auto& [a, b] : curve.edges)
 			sum += Distance(curve.position[a], curve.position[b]);
 		return sum <= length // not if it is no number
-			&& double(curve.position.size()) <= double(nodesBefore) + more * mostNodes(sum);
+			&& double(curve.position.size()) <= double(nodesBefore) + more * maxNodes(sum);
 	}
 
 private:
@@ -133,8 +133,8 @@ private:
 	/// if that takes more closest points than take as long as isEnclosed().
 	bool isCovered(const Point3d& a, double radiusA, const Point3d& b, double radiusB) const
 	{
-		constexpr int least = 64, verticesOfQuery = 8;
-		int queries = least + int(component.vertices.size()) / verticesOfQuery;
+		constexpr int minimum = 64, verticesOfQuery = 8;
+		int queries = minimum + int(component.vertices.size()) / verticesOfQuery;
 		return isCovered(a, radiusA, b, radiusB, 0, queries);
 	}
 	/// @param queries that are left.

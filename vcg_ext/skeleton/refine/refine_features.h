@@ -144,13 +144,13 @@ inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const HoldingBal
 	const ClosestSurface& surface, const Point3d& start, int towards, double spacing,
 	const LocalScale& scale)
 {
-	constexpr int mostSteps = 400;
+	constexpr int maxSteps = 400;
 	// Of the next direction; the slope is 1 where the way leads straight away from the surface.
 	constexpr double pull = 0.3, keeping = 0.5;
 	FeatureBranch branch;
 	int flat = 0, rim = 0, bare = 0;
 	Point3d x = start, direction(0, 0, 0);
-	for (int i = 0; i < mostSteps; ++i) {
+	for (int i = 0; i < maxSteps; ++i) {
 		ClosestSurface::Hit hit = surface.closest(x);
 		if (hit.distance <= 0 || !surface.isInside(x, hit))
 			return branch;
@@ -203,25 +203,25 @@ inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const HoldingBal
  */
 inline bool leadsIntoLimb(const FeatureBranch& branch, const Peak& peak, const FeatureRule& rule)
 {
-	constexpr double mostFlatIfSpiky = 1.7, evenGain = 0.8, mostFlatIfEven = 0.1, mostRim = 0.5;
-	constexpr double lobeSpikiness = 0.25, mostlyFlat = 0.5, leastWayIfFlat = 2;
+	constexpr double maxFlatnessIfSpiky = 1.7, evenGain = 0.8, maxFlatnessIfEven = 0.1,
+					 maxRim = 0.5;
+	constexpr double lobeSpikiness = 0.25, mostlyFlat = 0.5, minWayIfFlat = 2;
 	if (branch.joint < 0)
 		return false;
 	const double way = branch.way(), radius = branch.radii.back();
 	const double gain = way > 0 ? 1 + (branch.radii.front() - radius) / way : 0;
 	const double wide = gain > evenGain ? branch.bare : std::max(branch.flat, branch.rim);
-	const bool isSpike = peak.spikiness >= rule.leastOfSpike && wide * way <= radius;
-	const double leastWay = isSpike
-		? rule.leastWay
-		: std::max(rule.leastWay, rule.leastProtrusion / peak.relativeHeight);
-	if (way < leastWay * radius || gain < rule.leastGain)
+	const bool isSpike = peak.spikiness >= rule.minOfSpike && wide * way <= radius;
+	const double minWay =
+		isSpike ? rule.minWay : std::max(rule.minWay, rule.minProtrusion / peak.relativeHeight);
+	if (way < minWay * radius || gain < rule.minGain)
 		return false;
-	const bool isLobe = peak.height >= std::max(lobeHeight * radius, rule.leastLobe)
+	const bool isLobe = peak.height >= std::max(lobeHeight * radius, rule.minLobe)
 		&& peak.spikiness >= lobeSpikiness;
 	return isLobe || isSpike
-		|| (branch.rim <= mostRim && (branch.flat <= mostlyFlat || way >= leastWayIfFlat * radius)
+		|| (branch.rim <= maxRim && (branch.flat <= mostlyFlat || way >= minWayIfFlat * radius)
 			&& branch.flat
-				<= (gain > evenGain ? mostFlatIfEven : mostFlatIfSpiky * peak.spikiness));
+				<= (gain > evenGain ? maxFlatnessIfEven : maxFlatnessIfSpiky * peak.spikiness));
 }
 
 /// A feature, whether it gets its branch or not.
@@ -241,18 +241,18 @@ struct Feature
 inline bool leadsIntoLoneCorner(const CurveSkeleton& skeleton, const SurfaceComponent& surface,
 	const Feature& corner, const std::vector<Feature>& features, const FeatureRule& rule)
 {
-	constexpr double leastGain = 0.4, mostFlat = 0.35, leastSpikiness = 0.3, likeHeight = 0.5;
-	constexpr double leastWay = 0.7;
+	constexpr double minGain = 0.4, maxFlatness = 0.35, minSpikiness = 0.3, likeHeight = 0.5;
+	constexpr double minWay = 0.7;
 	const FeatureBranch& branch = corner.branch;
-	if (branch.joint < 0 || corner.peak.height < rule.leastCorner
-		|| corner.peak.spikiness < leastSpikiness)
+	if (branch.joint < 0 || corner.peak.height < rule.minCorner
+		|| corner.peak.spikiness < minSpikiness)
 		return false;
 	const double radius = branch.radii.back(), way = branch.way();
 	// From the surface itself, where the balls have no radius: the same wherever the branch starts.
 	const double whole =
 		way + Distance(surface.position(corner.peak.vertex), branch.points.front());
-	if (way < leastWay * radius || whole * (1 - leastGain) < radius
-		|| std::max(branch.flat, branch.rim) * way > mostFlat * whole)
+	if (way < minWay * radius || whole * (1 - minGain) < radius
+		|| std::max(branch.flat, branch.rim) * way > maxFlatness * whole)
 		return false;
 	return std::none_of(features.begin(), features.end(), [&](const Feature& other) {
 		return other.peak.vertex != corner.peak.vertex && other.branch.joint >= 0
@@ -290,7 +290,7 @@ inline FeatureBranch branchInto(const Peak& peak, const CurveSkeleton& skeleton,
 	// Down from the peak until what is above encloses a point with a way to the curve.
 	const auto branchTowards = [&](int node) {
 		FeatureBranch branch;
-		for (double down = rule.leastRise; branch.joint < 0 && down < peak.height; down *= 2)
+		for (double down = rule.minRise; branch.joint < 0 && down < peak.height; down *= 2)
 			branch = traceBranch(skeleton, balls, surface,
 				middleOfTip(component, heights, peak.vertex, peak.height - down, progress), node,
 				rule.spacing, rule.scale);

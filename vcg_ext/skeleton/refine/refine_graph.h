@@ -92,20 +92,20 @@ inline bool isEdgeInside(CurveSkeleton& skeleton, const ClosestSurface& surface,
 }
 
 /**
- * Removes the spurs: terminal branches whose prominence() is below `least`, the worst first, since a
+ * Removes the spurs: terminal branches whose prominence() is below `minimum`, the worst first, since a
  * branch that loses its junction becomes part of a longer one. What had merged there goes to the
  * junction. A component that is a single chain keeps it.
  * @pre the radius of junctions and tips is their distance from the surface.
  */
-inline CurveSkeleton withoutSpurs(const CurveSkeleton& skeleton, double least)
+inline CurveSkeleton withoutSpurs(const CurveSkeleton& skeleton, double minimum)
 {
-	return withoutTerminalBranches(skeleton, least, terminalProminence);
+	return withoutTerminalBranches(skeleton, minimum, terminalProminence);
 }
 
 /// A terminal branch goes on for at least so many radii of the ball that it hangs on.
-constexpr double leastWayOfBranch = 0.75;
+constexpr double minWayOfBranch = 0.75;
 /// A blunt end is a feature of the shape if it is so many diagonals high.
-constexpr double leastBluntHeight = 0.04;
+constexpr double minBluntHeight = 0.04;
 
 /// The axis of a branch where it has left the ball of its junction: the line through its points one and three radii of
 /// that ball away, or its end if that is nearer; none where the end is nearer than one and a half.
@@ -161,19 +161,19 @@ inline bool isCornerOfBend(const CurveSkeleton& skeleton,
 
 /**
  * Removes the stubs, the shortest first: terminal branches whose tip is nearer to their junction than
- * leastWayOfBranch radii of the ball there, or leads into a corner that the curve cuts, see isCornerOfBend(), as at
+ * minWayOfBranch radii of the ball there, or leads into a corner that the curve cuts, see isCornerOfBend(), as at
  * a heel. A branch this short sticks out only if its own ball is about as large: it is a blunt end, not a limb. It
- * stays if it sticks out by leastBluntHeight, as in one half of a large round body.
+ * stays if it sticks out by minBluntHeight, as in one half of a large round body.
  * @pre the radius of junctions and tips is their distance from the surface; the diagonal is 1.
  */
 inline CurveSkeleton withoutStubs(const CurveSkeleton& skeleton)
 {
 	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
 	return withoutTerminalBranches(
-		skeleton, leastWayOfBranch, [&](const CurveSkeleton& s, const Branch& fromJunction) {
+		skeleton, minWayOfBranch, [&](const CurveSkeleton& s, const Branch& fromJunction) {
 			const int junction = fromJunction.first(), tip = fromJunction.last();
-			if (protrusion(s, tip, junction) >= leastBluntHeight)
-				return leastWayOfBranch;
+			if (protrusion(s, tip, junction) >= minBluntHeight)
+				return minWayOfBranch;
 			return isCornerOfBend(s, neighbours, fromJunction)
 				? 0
 				: Distance(s.position[tip], s.position[junction])
@@ -234,23 +234,23 @@ struct BranchProfile
 			- along.begin());
 	}
 
-	/// Where the last stretch as long as the radius at its start begins that gains at least `least`; the
+	/// Where the last stretch as long as the radius at its start begins that gains at least `minimum`; the
 	/// last node if there is none.
-	size_t lastStretch(double least) const
+	size_t lastStretch(double minimum) const
 	{
 		size_t start = last();
 		for (size_t from = 0; from < last(); ++from)
-			if (const size_t to = oneRadiusOn(from); to <= last() && gain(from, to) >= least)
+			if (const size_t to = oneRadiusOn(from); to <= last() && gain(from, to) >= minimum)
 				start = from;
 		return start;
 	}
 
-	/// The last node from `from` on up to which going on gains at least `least` all the time.
-	size_t endOfGain(size_t from, double least) const
+	/// The last node from `from` on up to which going on gains at least `minimum` all the time.
+	size_t endOfGain(size_t from, double minimum) const
 	{
 		size_t end = from;
 		for (size_t i = from; i <= last(); ++i)
-			if (along[i] > along[end] && gain(end, i) >= least)
+			if (along[i] > along[end] && gain(end, i) >= minimum)
 				end = i;
 		return end;
 	}
@@ -268,26 +268,26 @@ inline double distinctness(
 {
 	const BranchProfile profile(skeleton, clearances, branch);
 	const size_t last = profile.last();
-	double most = -1, upToTip = -1;
+	double maximum = -1, upToTip = -1;
 	for (size_t from = 0; from < last; ++from)
 		if (const size_t to = profile.oneRadiusOn(from); to <= last)
-			most = std::max(most, profile.gain(from, to));
+			maximum = std::max(maximum, profile.gain(from, to));
 		else {
 			const double length = profile.along[last] - profile.along[from];
 			upToTip = std::max(upToTip, profile.gain(from, last) * length / profile.radius[from]);
 		}
-	return most < 0 ? profile.gain(0, last) : std::max(most, upToTip);
+	return maximum < 0 ? profile.gain(0, last) : std::max(maximum, upToTip);
 }
 
 /**
- * Removes the terminal branches whose distinctness() is below `least`, as withoutSpurs(): they lead
+ * Removes the terminal branches whose distinctness() is below `minimum`, as withoutSpurs(): they lead
  * into corners and edges of the surface, of which a shape has many and a skeleton none.
  */
 inline CurveSkeleton withoutCornerBranches(
-	const CurveSkeleton& skeleton, KnownClearances& clearances, double least)
+	const CurveSkeleton& skeleton, KnownClearances& clearances, double minimum)
 {
 	return withoutTerminalBranches(
-		skeleton, least, [&](const CurveSkeleton& s, const Branch& branch) {
+		skeleton, minimum, [&](const CurveSkeleton& s, const Branch& branch) {
 			return distinctness(s, clearances, branch);
 		});
 }
@@ -319,42 +319,42 @@ CurveSkeleton withEndsCut(
 
 /**
  * Cuts the ends off that lead from a limb into a corner: behind the last stretch of the branch that
- * gains `least`, see distinctness(), the branch ends where going on gains less, unless what is left is
+ * gains `minimum`, see distinctness(), the branch ends where going on gains less, unless what is left is
  * shorter than half a radius.
  */
 inline CurveSkeleton withoutCornerEnds(
-	const CurveSkeleton& skeleton, KnownClearances& clearances, double least)
+	const CurveSkeleton& skeleton, KnownClearances& clearances, double minimum)
 {
 	constexpr double shortest = 0.5;
 	return withEndsCut(skeleton, clearances, [&](const BranchProfile& profile) {
-		const size_t end = profile.endOfGain(profile.lastStretch(least), least);
+		const size_t end = profile.endOfGain(profile.lastStretch(minimum), minimum);
 		const double rest = profile.along.back() - profile.along[end];
 		return rest < shortest * profile.radius[end] ? profile.last() : end;
 	});
 }
 
 /**
- * Takes tips back to where the balls last reached further by `least` of the way: a curve that went past
+ * Takes tips back to where the balls last reached further by `minimum` of the way: a curve that went past
  * the centre of a round or flat end, where the balls shrink as fast as it advances, ends in that centre.
  */
 inline CurveSkeleton withoutBluntEnds(
-	const CurveSkeleton& skeleton, KnownClearances& clearances, double least)
+	const CurveSkeleton& skeleton, KnownClearances& clearances, double minimum)
 {
 	return withEndsCut(skeleton, clearances, [&](const BranchProfile& profile) {
-		return profile.endOfGain(profile.lastStretch(least), least);
+		return profile.endOfGain(profile.lastStretch(minimum), minimum);
 	});
 }
 
 /**
- * Merges junctions that are one: those whose smaller ball, by less than `least` of its own radius, sticks
- * out of the larger one, the least first. So a limb that forks right where it leaves a body keeps its
+ * Merges junctions that are one: those whose smaller ball, by less than `minimum` of its own radius, sticks
+ * out of the larger one, the smallest first. So a limb that forks right where it leaves a body keeps its
  * fork. What the connecting branch is longer than straight counts as sticking out. The junction with the
  * larger ball stays in its place. Branches that close a cycle of the shape are kept.
  * @pre the radius of junctions and tips is their distance from the surface.
  */
-inline CurveSkeleton withWholeJunctions(CurveSkeleton skeleton, double least)
+inline CurveSkeleton withWholeJunctions(CurveSkeleton skeleton, double minimum)
 {
-	return withMergedJunctions(std::move(skeleton), least,
+	return withMergedJunctions(std::move(skeleton), minimum,
 		[](const CurveSkeleton& s, int larger, int smaller, double detour) {
 			return (protrusion(s, smaller, larger) + detour) / std::max(s.radius[smaller], 1e-300);
 		});
@@ -423,9 +423,10 @@ inline std::vector<double> spacingsAlong(
 /**
  * Points of a polyline, both ends included, whose distances follow spacings that are given at its points:
  * at equal steps of the integral of 1 / spacing.
- * @param least fewest segments, >= 1.
+ * @param minimum fewest segments, >= 1.
  */
-inline BallChain gradedPoints(const BallChain& line, const std::vector<double>& spacings, int least)
+inline BallChain gradedPoints(
+	const BallChain& line, const std::vector<double>& spacings, int minimum)
 {
 	std::vector<double> along(line.points.size(), 0), steps(line.points.size(), 0);
 	for (size_t i = 1; i < along.size(); ++i) {
@@ -433,7 +434,7 @@ inline BallChain gradedPoints(const BallChain& line, const std::vector<double>& 
 		along[i] = along[i - 1] + length;
 		steps[i] = steps[i - 1] + length * 2 / (spacings[i - 1] + spacings[i]);
 	}
-	const int segments = std::max(least, int(std::lround(steps.back())));
+	const int segments = std::max(minimum, int(std::lround(steps.back())));
 	BallChain graded = {{line.points.front()}, {line.radii.front()}};
 	size_t i = 1;
 	for (int k = 1; k < segments; ++k) {
@@ -540,7 +541,7 @@ inline CurveSkeleton evenlySampled(const CurveSkeleton& skeleton, const ClosestS
 		++parallel[std::minmax(branch.first(), branch.last())];
 	for (const Branch& branch : branches) {
 		keep(branch.first()); // of a free cycle
-		const int least = branch.isClosed()                            ? 3
+		const int minimum = branch.isClosed()                          ? 3
 			: parallel[std::minmax(branch.first(), branch.last())] > 1 ? 2
 																	   : 1;
 		BallChain line;
@@ -551,12 +552,12 @@ inline CurveSkeleton evenlySampled(const CurveSkeleton& skeleton, const ClosestS
 		const double length = branchLength(skeleton, branch);
 		std::vector<double> spacings = spacingsAlong(line, surface, spacing, scale);
 		BallChain chain = scale.isUniform()
-			? evenPoints(line, std::max(least, int(std::lround(length / spacing))))
-			: gradedPoints(line, spacings, least);
+			? evenPoints(line, std::max(minimum, int(std::lround(length / spacing))))
+			: gradedPoints(line, spacings, minimum);
 		if (!isInside(chain, surface)) {
 			const BallChain thinned = withoutCrowdedNodes(line, spacings, surface);
 			const BallChain kept = withShortEdges(thinned, spacings);
-			if (int(kept.points.size()) > least)
+			if (int(kept.points.size()) > minimum)
 				chain = kept;
 		}
 		const int segments = int(chain.points.size()) - 1;

@@ -30,26 +30,26 @@ namespace vcg::tri::mcf::refining {
 struct FeatureRule
 {
 	/// On the branch into a feature the balls reach further by at least this part of the way.
-	double leastGain;
+	double minGain;
 	/// The peak of a feature is as high as this part of the radius of the ball that is nearest.
-	double leastHeight;
+	double minHeight;
 	/// Longest step of a branch, in diagonals.
 	double spacing;
 	/// Of the spacing.
 	const LocalScale& scale = sameEverywhere;
 	/// The way is at least this many radii of the ball that it ends in.
-	double leastWay = leastWayOfBranch;
+	double minWay = minWayOfBranch;
 	/// The way, in such radii, times the relative height of the peak is at least this, but for spikes: low features are
 	/// long ones.
-	double leastProtrusion = 0.56;
+	double minProtrusion = 0.56;
 	/// Spikiness from which on a peak is a spike: a cone with a half angle of 60 degrees has 0.5.
-	double leastOfSpike = 0.5;
+	double minOfSpike = 0.5;
 	/// The peak rises from its surroundings by this part of the radius of the nearest ball, and by this many diagonals.
-	double leastProminence = 0.05, leastRise = 0.005;
+	double minProminence = 0.05, minRise = 0.005;
 	/// The lobe of a plate is at least this many diagonals high.
-	double leastLobe = 0.05;
+	double minLobe = 0.05;
 	/// A blunt corner is at least this many diagonals high.
-	double leastCorner = leastBluntHeight;
+	double minCorner = minBluntHeight;
 };
 
 /// A component of a surface; its vertices are numbered by their place in it.
@@ -105,16 +105,16 @@ inline void selectNearBalls(const CurveSkeleton& skeleton, const std::vector<int
 {
 	const Point3d middle = box.Center();
 	const double extent = box.Diag() / 2;
-	double most = std::numeric_limits<double>::infinity();
+	double maximum = std::numeric_limits<double>::infinity();
 	std::vector<double> height;
 	height.reserve(balls.size());
 	for (int node : balls) {
 		height.push_back(Distance(middle, skeleton.position[node]) - skeleton.radius[node]);
-		most = std::min(most, height.back() + extent);
+		maximum = std::min(maximum, height.back() + extent);
 	}
 	near.clear();
 	for (size_t i = 0; i < balls.size(); ++i)
-		if (height[i] - extent <= most)
+		if (height[i] - extent <= maximum)
 			near.push_back(balls[i]);
 }
 
@@ -143,16 +143,16 @@ inline Heights heightsAbove(const CurveSkeleton& skeleton, const std::vector<int
 			selectNearBalls(skeleton, nearBlock, boxOf(first, last), nearGroup);
 			for (int i = first; i < last; ++i) {
 				const Point3d& p = surface.position(order[i]);
-				double least = std::numeric_limits<double>::infinity();
+				double minimum = std::numeric_limits<double>::infinity();
 				int nearest = -1;
 				for (int node : nearGroup)
 					if (const double height =
 							Distance(p, skeleton.position[node]) - skeleton.radius[node];
-						height < least) {
-						least = height;
+						height < minimum) {
+						minimum = height;
 						nearest = node;
 					}
-				heights.height[order[i]] = least;
+				heights.height[order[i]] = minimum;
 				heights.node[order[i]] = nearest;
 			}
 		}
@@ -174,7 +174,7 @@ struct Peak
 	double height = 0, relativeHeight = 0;
 };
 
-/// The vertices of positive height, the highest first; of several the one with the least coordinates.
+/// The vertices of positive height, the highest first; of several the one with the smallest coordinates.
 class VerticesByHeight
 {
 public:
@@ -239,14 +239,14 @@ private:
 inline std::vector<Peak> peaks(const CurveSkeleton& skeleton, const SurfaceComponent& surface,
 	const Heights& heights, const FeatureRule& rule, const Progress& progress)
 {
-	constexpr double leastSpikiness = 0.12;
+	constexpr double minSpikiness = 0.12;
 	const std::vector<double>& height = heights.height;
-	const auto leastRise = [&](int peak) {
-		return std::max(rule.leastRise, rule.leastProminence * skeleton.radius[heights.node[peak]]);
+	const auto minRise = [&](int peak) {
+		return std::max(rule.minRise, rule.minProminence * skeleton.radius[heights.node[peak]]);
 	};
 	const auto isHigh = [&](int v) {
-		return height[v] >= rule.leastHeight * skeleton.radius[heights.node[v]]
-			&& height[v] >= leastRise(v);
+		return height[v] >= rule.minHeight * skeleton.radius[heights.node[v]]
+			&& height[v] >= minRise(v);
 	};
 	const char* const what = "Refining the skeleton";
 	VerticesByHeight falling(surface, height, progress.part(0, 0.4));
@@ -263,7 +263,7 @@ inline std::vector<Peak> peaks(const CurveSkeleton& skeleton, const SurfaceCompo
 	int open = 0;
 	const auto isOpen = [&](const Peak& peak) {
 		return isHigh(peak.vertex)
-			&& height[peak.vertex] > std::max(peak.spikiness, leastSpikiness) * peak.extent;
+			&& height[peak.vertex] > std::max(peak.spikiness, minSpikiness) * peak.extent;
 	};
 	const auto join = [&](int a, int b) {
 		if (partOfRoot[a] > partOfRoot[b])
@@ -306,7 +306,7 @@ inline std::vector<Peak> peaks(const CurveSkeleton& skeleton, const SurfaceCompo
 		grown.extent =
 			std::max(grown.extent, Distance(surface.position(grown.vertex), surface.position(v)));
 		const double rise = height[grown.vertex] - height[v];
-		if (rise >= leastRise(grown.vertex))
+		if (rise >= minRise(grown.vertex))
 			grown.spikiness = std::max(grown.spikiness, rise / grown.extent);
 		open += isOpen(grown);
 	}
@@ -315,7 +315,7 @@ inline std::vector<Peak> peaks(const CurveSkeleton& skeleton, const SurfaceCompo
 		peak.relativeHeight = peak.height / skeleton.radius[heights.node[peak.vertex]];
 	}
 	const auto isSmall = [&](const Peak& peak) {
-		return peak.spikiness < leastSpikiness || !isHigh(peak.vertex);
+		return peak.spikiness < minSpikiness || !isHigh(peak.vertex);
 	};
 	parts.erase(std::remove_if(parts.begin(), parts.end(), isSmall), parts.end());
 	return parts;

@@ -27,10 +27,10 @@ struct TipRule
 	/// Longest step, in diagonals.
 	double spacing;
 	/// Each step must add at least this part of its length to the reach of the balls, ...
-	double leastGain;
+	double minGain;
 	/// ... and end in a ball no smaller than this, in diagonals. Where the balls hardly shrink, half the radius of
 	/// the tip will do: the local thickness of a limb is not known between long triangles.
-	double leastRadius;
+	double minRadius;
 	/// Of both lengths; of the radius as the thickness says.
 	const LocalScale& scale = sameEverywhere;
 };
@@ -56,9 +56,9 @@ inline Point3d tipDirection(
 
 /**
  * Extends each tip along its direction, in steps of at most a quarter of its ball, each recentred
- * sideways, as long as the balls reach further by it: (step + r' - r) / step >= leastGain.
+ * sideways, as long as the balls reach further by it: (step + r' - r) / step >= minGain.
  * In a round end the ball shrinks as fast as the tip advances, and it stays; in a tapered or
- * pointed one it goes on to the least radius. It never enters balls that are already there. In a limb it may go any
+ * pointed one it goes on to the smallest radius. It never enters balls that are already there. In a limb it may go any
  * distance, since the flow stops early between long triangles, but bends no more than 30 degrees in three radii. Where
  * the shape is wide it goes no farther than three radii: a sheet would lead it around its rim.
  * A tip outside stays where it is.
@@ -99,11 +99,11 @@ inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, c
 			const double reached = std::max(surface.clearance(y), 0.0);
 			const Point3d front = y + (y - x) * (reached / s);
 			scale = rule.scale.atFace(hit.face);
-			const double least = rule.leastRadius * rule.scale.ofThicknessAtFace(hit.face);
+			const double minimum = rule.minRadius * rule.scale.ofThicknessAtFace(hit.face);
 			const double gain = (s + reached - r) / s;
-			const bool isTooThin = reached < least
+			const bool isTooThin = reached < minimum
 				&& (gain < gainOfLimb || reached < std::max(skeleton.radius[v] / 2, thinnestLimb));
-			if (isTooThin || gain < rule.leastGain || balls.deepest(front) >= 0
+			if (isTooThin || gain < rule.minGain || balls.deepest(front) >= 0
 				|| !isSegmentInside(surface, x, r, y, reached))
 				break;
 			left -= isWide ? s : 0;

@@ -38,9 +38,9 @@ struct CutLimits
 	/// The part of a cap that may run into the surface: the teeth of a jagged border.
 	double crossing = 0.01;
 	/// Smaller caps than this part of the surface are holes, and no cuts.
-	double least = 0.003;
+	double minimum = 0.003;
 	/// The time grows with the square of the border's edges.
-	int most = 10000;
+	int maximum = 10000;
 };
 
 namespace detail {
@@ -187,11 +187,12 @@ inline int capCuts(const std::vector<Point3d>& points, std::vector<Triangle>& tr
 	std::vector<PlaneCut> cuts;
 	for (const std::vector<int>& loop : loops) {
 		const int n = int(loop.size());
-		if (n < 3 || n > limits.most)
+		if (n < 3 || n > limits.maximum)
 			continue;
 		PlaneCut cut(points, borderPolygon(points, triangles, piece, loop), limits);
 		if (cut.border.pieces.size() == 1
-			&& cut.area >= limits.least * area[size_t(*cut.border.pieces.begin())] && cut.isFlat())
+			&& cut.area >= limits.minimum * area[size_t(*cut.border.pieces.begin())]
+			&& cut.isFlat())
 			cuts.push_back(std::move(cut));
 	}
 	if (cuts.empty())

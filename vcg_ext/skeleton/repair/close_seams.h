@@ -67,11 +67,11 @@ inline ClosedSeams closeSeams(const std::vector<Point3d>& points, std::vector<Tr
 	const Progress& progress = Progress())
 {
 	constexpr double nearness = 0.01; // of an edge
-	constexpr int mostRounds = 3;     // each cuts one edge of a face
+	constexpr int maxRounds = 3;      // each cuts one edge of a face
 	ClosedSeams done;
 	MergeForest vertices(int(points.size()));
-	for (int round = 0; round < mostRounds; ++round) {
-		const Progress part = progress.part(double(round) / mostRounds, (round + 1.0) / mostRounds);
+	for (int round = 0; round < maxRounds; ++round) {
+		const Progress part = progress.part(double(round) / maxRounds, (round + 1.0) / maxRounds);
 		const std::vector<detail::BorderEdge> border =
 			detail::borderEdges(points.size(), triangles, part.part(0, 0.5));
 		if (border.empty())
@@ -110,16 +110,16 @@ inline ClosedSeams closeSeams(const std::vector<Point3d>& points, std::vector<Tr
 					(void)unused;
 					if (a == v || b == v)
 						return;
-					const double whole = length(e), most = std::min(reach, nearness * whole);
+					const double whole = length(e), maximum = std::min(reach, nearness * whole);
 					for (int w : {a, b})
 						if (Distance(points[size_t(w)], p)
-							<= std::min(most, nearness * shortest[size_t(w)]))
+							<= std::min(maximum, nearness * shortest[size_t(w)]))
 							lowest = std::min(lowest, w);
 					const Point3d along = points[size_t(b)] - points[size_t(a)];
 					const double t =
 						whole > 0 ? (p - points[size_t(a)]) * along / (whole * whole) : 0;
 					const double away = Distance(p, points[size_t(a)] + along * t);
-					if (t > nearness && t < 1 - nearness && away <= most && away < nearest) {
+					if (t > nearness && t < 1 - nearness && away <= maximum && away < nearest) {
 						nearest = away;
 						edge = e;
 						at = t;

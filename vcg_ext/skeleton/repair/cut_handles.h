@@ -153,7 +153,7 @@ private:
 	Patch patchAround(int v, int edges)
 	{
 		Patch patch;
-		const double most = reach(v);
+		const double maximum = reach(v);
 		const auto add = [&](int w, int steps) {
 			placeOf[size_t(w)] = int(patch.vertices.size());
 			patch.vertices.push_back(w);
@@ -165,7 +165,7 @@ private:
 				break;
 			for (int h : cornersAt[size_t(patch.vertices[i])])
 				if (const int w = origin(next(h)); placeOf[size_t(w)] < 0
-					&& Distance(points[size_t(w)], points[size_t(v)]) <= most)
+					&& Distance(points[size_t(w)], points[size_t(v)]) <= maximum)
 					add(w, patch.steps[i] + 1);
 		}
 		for (int w : patch.vertices)
@@ -297,13 +297,13 @@ private:
 					for (int k = 0; k < 3 * faces; ++k)
 						seen[size_t(k)] |= distance[size_t(k)] < infinity;
 				}
-			double least = infinity;
+			double minimum = infinity;
 			std::vector<int> best;
 			for (int i = 0; i < 3 * faces; ++i)
 				if (isSource[size_t(i)]) {
 					const std::vector<int> ends = growFrom(i);
-					if (!ends.empty() && sizeOver(ends.back()) < least) {
-						least = sizeOver(ends.back());
+					if (!ends.empty() && sizeOver(ends.back()) < minimum) {
+						minimum = sizeOver(ends.back());
 						best = wayOver(ends.back());
 					}
 				}

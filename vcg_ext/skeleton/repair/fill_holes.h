@@ -416,7 +416,7 @@ inline FilledHoles fillHoles(const std::vector<Point3d>& points, std::vector<Tri
 		detail::edgesBetween(triangles, detail::borderVertices(points.size(), triangles, partner));
 	const std::vector<Triangle> given = triangles;
 	const TriangleTree tree(points, given, progress.part(0, 0.3));
-	const double mostTurn = 1 - std::cos(limits.turn * M_PI / 180);
+	const double maxTurn = 1 - std::cos(limits.turn * M_PI / 180);
 	const Progress filling = progress.part(0.3, 1);
 	for (size_t i = 0; i < loops.size(); ++i) {
 		filling.report(double(i) / double(loops.size()), what);
@@ -442,7 +442,7 @@ inline FilledHoles fillHoles(const std::vector<Point3d>& points, std::vector<Tri
 			const double turn = best.weight().turn;
 			size = best.weight().area;
 			const bool anyhow = std::isfinite(turn) && size <= limits.anyhow * surface;
-			if (!(turn <= mostTurn || anyhow) || (isMain && size > limits.area * surface)
+			if (!(turn <= maxTurn || anyhow) || (isMain && size > limits.area * surface)
 				|| before + size > limits.allAreas * surface)
 				return false;
 			made.clear();
@@ -459,7 +459,7 @@ inline FilledHoles fillHoles(const std::vector<Point3d>& points, std::vector<Tri
 			return fits;
 		};
 		// The one that turns least; of all that turn little enough, the smallest.
-		if (!isFilled(0) && !isFilled(mostTurn))
+		if (!isFilled(0) && !isFilled(maxTurn))
 			continue;
 		edges.insert(chords.begin(), chords.end());
 		triangles.insert(triangles.end(), made.begin(), made.end());

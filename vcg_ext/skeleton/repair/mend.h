@@ -306,8 +306,8 @@ inline MendedSurface mend(const std::vector<Point3d>& points,
 		report.holesClosed += capped;
 		report.holesLeft -= capped;
 	}
-	constexpr int mostCuts = 3;
-	for (int round = 0; round < mostCuts && report.holesLeft > 0; ++round) {
+	constexpr int maxCuts = 3;
+	for (int round = 0; round < maxCuts && report.holesLeft > 0; ++round) {
 		const Progress again = progress.cancelOnly();
 		std::vector<Triangle> fewer = faces;
 		const size_t pointsBefore = mended.points.size();

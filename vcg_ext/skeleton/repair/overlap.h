@@ -63,11 +63,11 @@ inline WindingVolumes windingVolumes(const std::vector<Point3d>& points,
 		const Point3d n = (b - a) ^ (c - a);
 		if (n[2] == 0)
 			return;
-		const auto first = [&](double least, double low, double step) {
-			return std::max(0, int(std::ceil((least - low) / step - offset)));
+		const auto first = [&](double minimum, double low, double step) {
+			return std::max(0, int(std::ceil((minimum - low) / step - offset)));
 		};
-		const auto last = [&](double most, double low, double step) {
-			return std::min(across - 1, int(std::floor((most - low) / step - offset)));
+		const auto last = [&](double maximum, double low, double step) {
+			return std::min(across - 1, int(std::floor((maximum - low) / step - offset)));
 		};
 		const int x1 = last(std::max({a[0], b[0], c[0]}), box.min[0], dx);
 		const int y0 = first(std::min({a[1], b[1], c[1]}), box.min[1], dy);

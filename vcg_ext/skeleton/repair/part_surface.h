@@ -136,10 +136,10 @@ inline std::vector<int> pairedHalfEdges(const std::vector<Point3d>& points,
 inline PartedSurface partSurface(std::vector<Point3d>& points, std::vector<Triangle>& triangles,
 	std::vector<int>& partedFrom, bool keepOpenFans, const Progress& progress = Progress())
 {
-	constexpr int mostRounds = 4;
+	constexpr int maxRounds = 4;
 	PartedSurface parted;
-	for (int round = 0; round < mostRounds; ++round) {
-		const Progress part = progress.part(double(round) / mostRounds, (round + 1.0) / mostRounds);
+	for (int round = 0; round < maxRounds; ++round) {
+		const Progress part = progress.part(double(round) / maxRounds, (round + 1.0) / maxRounds);
 		int crowded = 0;
 		parted.partner = detail::pairedHalfEdges(points, triangles, &crowded, part.part(0, 0.5));
 		if (round == 0)

@@ -231,17 +231,17 @@ inline std::optional<SurfaceMesh> withCavitiesInward(const SurfaceMesh& mesh,
  * A cavity is a closed piece that lies wholly inside a body and was given turned against it: see
  * CheckedSurface::turned. What is inside a cavity is a body again.
  *
- * @param least     volume, as a part of that of the largest piece, below which a piece is left out; 0: none is.
+ * @param minimum     volume, as a part of that of the largest piece, below which a piece is left out; 0: none is.
  * @param cavities  what becomes of them.
  * @throws Cancelled. Complexity: O(V + F); O(F log F) for each piece in the box of another one, where some are
  *         turned against others.
  */
-inline LeftOutPieces keepSolidPieces(
-	CheckedSurface& surface, double least, Cavities cavities, const Progress& progress = Progress())
+inline LeftOutPieces keepSolidPieces(CheckedSurface& surface, double minimum, Cavities cavities,
+	const Progress& progress = Progress())
 {
 	LeftOutPieces leftOut;
 	const bool areSought = cavities != Cavities::Kept && !surface.turned.empty();
-	if (!(least > 0) && !areSought)
+	if (!(minimum > 0) && !areSought)
 		return leftOut;
 	SurfaceMesh& mesh = surface.mesh;
 	const detail::ClosedPieces pieces(mesh, progress.part(0, 0.3));
@@ -264,7 +264,7 @@ inline LeftOutPieces keepSolidPieces(
 		if (!drop[p])
 			largest = std::max(largest, pieces.volume[p]);
 	for (size_t p = 0; p < pieces.count(); ++p)
-		if (!drop[p] && pieces.volume[p] < least * largest) {
+		if (!drop[p] && pieces.volume[p] < minimum * largest) {
 			drop[p] = 1;
 			++leftOut.small;
 		}

@@ -42,7 +42,7 @@ inline Specks specksOf(const std::vector<Point3d>& points, const std::vector<Tri
 	constexpr double smallest = 0.01, small = 0.05; // diagonal, of that of the largest piece
 	constexpr double thin = 1e-4; // volume, of that of the largest piece, of what is small
 	// Of the whole area, all of them: beyond, they are the surface.
-	constexpr double mostAll = 0.05, mostFlat = 0.2;
+	constexpr double maxOfAll = 0.05, maxFlatness = 0.2;
 	constexpr double flat = 1e-10; // volume over area^1.5
 	const std::vector<int> piece = pieceOfFaces(partner);
 	struct Piece
@@ -94,7 +94,8 @@ inline Specks specksOf(const std::vector<Point3d>& points, const std::vector<Tri
 	Specks found;
 	std::set<int> drop;
 	for (const auto& [first, p] : pieces)
-		if ((isSpeck(p) && specks <= mostAll * whole) || (isFlat(p) && flats <= mostFlat * whole)
+		if ((isSpeck(p) && specks <= maxOfAll * whole)
+			|| (isFlat(p) && flats <= maxFlatness * whole)
 			|| (!p.open && std::abs(p.volume) <= flat * std::pow(p.area, 1.5)))
 			drop.insert(first);
 	found.isOne.assign(triangles.size(), 0);

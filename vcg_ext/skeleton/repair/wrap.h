@@ -46,10 +46,9 @@ namespace detail {
 class Wrapping
 {
 public:
-	Wrapping(
-		const TriangleTree& tree, const WindingNumber& winding, double spacing, int mostNodes) :
-			tree(tree),
-			winding(winding), mostNodes(mostNodes), lattice(originOf(tree, spacing), spacing)
+	Wrapping(const TriangleTree& tree, const WindingNumber& winding, double spacing, int maxNodes) :
+			tree(tree), winding(winding), maxNodes(maxNodes),
+			lattice(originOf(tree, spacing), spacing)
 	{
 	}
 
@@ -68,7 +67,7 @@ private:
 
 	const TriangleTree& tree;
 	const WindingNumber& winding;
-	int mostNodes;
+	int maxNodes;
 	Lattice lattice;
 	std::vector<double> value;    ///< of w, for each node
 	std::vector<int> firstVertex; ///< of those on the edges forward from each node
@@ -86,7 +85,7 @@ private:
 
 	void limitNodes() const
 	{
-		if (lattice.size() > mostNodes)
+		if (lattice.size() > maxNodes)
 			throw SolverError("The surface has too many places of detail to be wrapped.");
 	}
 
@@ -299,15 +298,15 @@ private:
  *
  * @param tree      of the triangles, and @param winding their winding number.
  * @param spacing   of the lattice, mesh units, > 0: about the edge length of the result.
- * @param mostNodes of the lattice.
+ * @param maxNodes of the lattice.
  * @throws SolverError if more nodes were needed; Cancelled.
  * Complexity: O(A / spacing^2 log F) for the area A of the triangles.
  * Source: ours; marching tetrahedra after Doi and Koide, 1991, on the lattice of Labelle and Shewchuk, 2007.
  */
 inline WrappedSurface wrap(const TriangleTree& tree, const WindingNumber& winding, double spacing,
-	int mostNodes, const Progress& progress = Progress())
+	int maxNodes, const Progress& progress = Progress())
 {
-	return detail::Wrapping(tree, winding, spacing, mostNodes).run(progress);
+	return detail::Wrapping(tree, winding, spacing, maxNodes).run(progress);
 }
 
 } // namespace vcg::tri::mcf

@@ -19,7 +19,7 @@ namespace vcg::tri::mcf {
 
 namespace detail {
 
-/// A triangle is thin if its least height is below this part of both its longest edge and the
+/// A triangle is thin if its smallest height is below this part of both its longest edge and the
 /// length that matters there.
 constexpr double thinness = 1e-3;
 
@@ -32,7 +32,7 @@ inline bool isThin(const Point3d& a, const Point3d& b, const Point3d& c, double 
 		<= thinness * thinness * longest * std::min(longest, length * length);
 }
 
-/// The half-edge of triangle f that is least by `less`, which compares squared lengths.
+/// The half-edge of triangle f that is the minimum by `less`, which compares squared lengths.
 template <class Less>
 int extremeEdge(const SurfaceMesh& mesh, int f, Less&& less)
 {

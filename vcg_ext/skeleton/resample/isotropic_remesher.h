@@ -32,12 +32,12 @@ class IsotropicRemesher
 {
 public:
 	/// @see TrackedMesh::TrackedMesh()
-	/// @param mostVertices beyond which splitLongEdges() gives up.
+	/// @param maxVertices beyond which splitLongEdges() gives up.
 	IsotropicRemesher(const SurfaceMesh& surface, const std::vector<int>& componentOfVertex,
-		const std::vector<double>& targetLength, size_t mostVertices, const Progress& progress,
+		const std::vector<double>& targetLength, size_t maxVertices, const Progress& progress,
 		const std::vector<double>& localLength = {}) :
 			tracked(surface, componentOfVertex, targetLength, localLength, progress),
-			mesh(tracked.mesh), mostVertices(mostVertices)
+			mesh(tracked.mesh), maxVertices(maxVertices)
 	{
 	}
 
@@ -79,11 +79,11 @@ public:
 		Ticker ticker(progress.part(0.1, 1), what, queue.size());
 		for (int h = queue.pop(); h >= 0; h = queue.pop()) {
 			ticker.tick();
-			if (size_t(mesh.vertexCount()) >= mostVertices)
+			if (size_t(mesh.vertexCount()) >= maxVertices)
 				throw InvalidParameter(
 					"Parameter target_length is too small for so narrow a surface: "
 					"it needs more than "
-					+ std::to_string(mostVertices / 1000)
+					+ std::to_string(maxVertices / 1000)
 					+ " thousand vertices. Give a larger one, or do not resample.");
 			const int m = tracked.split(h);
 			// The halves, the new edges, and the two outer edges whose ids have changed, b c and d b:
@@ -239,7 +239,7 @@ private:
 
 	TrackedMesh tracked;
 	SurfaceMesh& mesh; ///< tracked.mesh
-	size_t mostVertices;
+	size_t maxVertices;
 
 	/// What smoothAndProject() adds up over the triangles of a vertex.
 	struct Sum

@@ -277,8 +277,8 @@ private:
 		const double squared = normal.SquaredNorm();
 		const double y = squared > 0 ? ((p - a) ^ ac) * normal / squared : 1.0 / 3;
 		const double z = squared > 0 ? (ab ^ (p - a)) * normal / squared : 1.0 / 3;
-		const auto [least, most] = std::minmax({at[0], at[1], at[2]});
-		own[v] = std::clamp(at[0] + y * (at[1] - at[0]) + z * (at[2] - at[0]), least, most);
+		const auto [minimum, maximum] = std::minmax({at[0], at[1], at[2]});
+		own[v] = std::clamp(at[0] + y * (at[1] - at[0]) + z * (at[2] - at[0]), minimum, maximum);
 	}
 
 	/// What `ofVertex` says about each vertex that remains, in the order that there was.

@@ -67,19 +67,19 @@ inline SurfaceMesh resampleAll(const MeasuredSurface& surface,
 	const std::vector<double>& targetLengthOfComponent, const SizingField& field, int iterations,
 	const Progress& progress)
 {
-	constexpr double mostVertices = 2e7, mostOfExpected = 4, fewestAllowed = 3e6;
+	constexpr double maxVertices = 2e7, maxOfExpected = 4, fewestAllowed = 3e6;
 	const std::vector<int>& component = surface.component();
 	const int components = surface.components();
 	std::vector<double> targetLength;
 	for (int c = 0; c < components; ++c)
 		targetLength.push_back(surface.frame(c).lengthOnGrid(targetLengthOfComponent[c]));
 	const double expected = expectedVertices(surface, targetLengthOfComponent, field);
-	if (!(expected <= mostVertices))
+	if (!(expected <= maxVertices))
 		throw InvalidParameter("Parameter target_length is too small: the surface would need "
 			+ std::to_string(std::llround(expected / 1e6)) + " million vertices.");
 	// Needles are cut more often than their area tells, but not endlessly.
 	const double limit =
-		std::max(mostOfExpected * expected, fewestAllowed) + surface.mesh().vertexCount();
+		std::max(maxOfExpected * expected, fewestAllowed) + surface.mesh().vertexCount();
 	// The input as the passes like it: neighbours near each other, no triangles without a normal.
 	const char* const what = "Ordering the surface";
 	const auto onGrid = [&](int c, const Point3d& p) { return surface.frame(c).onGrid(p); };
@@ -90,7 +90,7 @@ inline SurfaceMesh resampleAll(const MeasuredSurface& surface,
 			turnOverMirrored(*turnedOver, component, surface.allFrames(), progress);
 		}
 	const SurfaceMesh& outwards = turnedOver ? *turnedOver : surface.mesh();
-	const std::vector<int> seeds = leastHalfEdges(
+	const std::vector<int> seeds = minHalfEdges(
 		outwards, component, components,
 		[&](int v) { return onGrid(component[v], outwards.position[v]); }, progress.part(0, 0.01));
 	const Numbering number = breadthFirstOrder(outwards, seeds, progress.part(0.01, 0.06));

@@ -110,29 +110,28 @@ inline std::optional<SizingField> fieldOfResampling(const MeasuredSurface& surfa
 	if (field.empty())
 		return field;
 	double expected = expectedVertices(surface, length, field);
-	const double most = std::min(std::max(maxVertices, 1.01 * anyway), resolved);
-	if (expected > most) {
-		constexpr double leastResolved = 0.5, longest = 1; // of what is thin; local thicknesses
+	const double maximum = std::min(std::max(maxVertices, 1.01 * anyway), resolved);
+	if (expected > maximum) {
+		constexpr double minResolved = 0.5, longest = 1; // of what is thin; local thicknesses
 		const std::string cost =
 			detail::sentence(3, "Parts of the shape are thin. To resolve them would take ",
 				expected / 1e6, " million vertices, more than ",
 				resolved < maxVertices ? "30 for each of the mesh" : "0.4 million");
 		const SizingField wanted = field;
-		const double least = coarsenToCost(field,
+		const double minimum = coarsenToCost(field,
 			std::max(1.0, longest / parameters.relativeLength),
-			*std::max_element(length.begin(), length.end()), most,
+			*std::max_element(length.begin(), length.end()), maximum,
 			[&](const SizingField& raised) { return expectedVertices(surface, length, raised); });
-		if (resolvedPart(surface.mesh(), wanted, field, parameters.relativeLength)
-			< leastResolved) {
+		if (resolvedPart(surface.mesh(), wanted, field, parameters.relativeLength) < minResolved) {
 			if (onNote)
 				onNote(cost
 					+ ": lengths are the same everywhere, and such parts may be left out or simplified.");
 			return std::nullopt;
 		}
-		if (onNote && least == 0)
+		if (onNote && minimum == 0)
 			onNote(cost + ": edges are longer there than relative_length says.");
 		else if (onNote) {
-			const double thinnest = least / longest;
+			const double thinnest = minimum / longest;
 			const std::vector<double> diagonals = surface.diagonals();
 			const double diagonal = *std::max_element(diagonals.begin(), diagonals.end());
 			onNote(detail::sentence(3, cost, ": what is thinner than a radius of ", thinnest,
@@ -158,8 +157,8 @@ inline void tellNoise(const NoiseReport& noise, bool isSmoothed, const NoteCallb
 				+ (isSmoothed ? "smoothing it in " + std::to_string(rounds) + " rounds."
 							  : "it may show in the skeleton; 'denoise' would smooth it."));
 	};
-	tell(noise.mostRounds(), "The surface has", noise.level, "its diagonal");
-	tell(noise.mostRoundsWhereThin(), "The thin parts of the surface have", noise.ofThickness,
+	tell(noise.maxRounds(), "The surface has", noise.level, "its diagonal");
+	tell(noise.maxRoundsWhereThin(), "The thin parts of the surface have", noise.ofThickness,
 		"the local thickness");
 }
 

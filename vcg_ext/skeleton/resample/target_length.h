@@ -59,8 +59,8 @@ inline std::vector<double> cutsOfLongEdges(
 inline std::vector<double> defaultTargetLength(
 	const MeasuredSurface& surface, const Parameters& parameters = Parameters())
 {
-	constexpr double totalVertices = 45000, fewestVertices = 3000, mostVertices = 200000;
-	constexpr double mostCuts = 2e6;
+	constexpr double totalVertices = 45000, fewestVertices = 3000, maxVertices = 200000;
+	constexpr double maxCuts = 2e6;
 	constexpr double shortestOfEpsilon = 0.05;
 	const double areaOfVertex = std::sqrt(3.0) / 2; // for edges of length 1
 	const int count = surface.components();
@@ -76,7 +76,7 @@ inline std::vector<double> defaultTargetLength(
 	}
 	const double parts = std::max(count, 1);
 	const double vertices =
-		std::max(std::min(fewestVertices, mostVertices / parts), totalVertices / parts);
+		std::max(std::min(fewestVertices, maxVertices / parts), totalVertices / parts);
 	for (int c = 0; c < count; ++c) {
 		const double epsilon = parameters.epsilon * surface.diagonal(c);
 		length[c] = std::clamp(std::sqrt(surface.area(c) / (areaOfVertex * vertices)),
@@ -84,7 +84,7 @@ inline std::vector<double> defaultTargetLength(
 	}
 	const std::vector<double> cuts = cutsOfLongEdges(surface, length);
 	for (int c = 0; c < count; ++c)
-		length[c] *= std::max(1.0, cuts[c] / mostCuts);
+		length[c] *= std::max(1.0, cuts[c] / maxCuts);
 	return length;
 }
 

@@ -55,11 +55,11 @@ inline bool ringAllowsMove(
 /// Whether the flip of h leaves the two triangles within 60 degrees of where they were.
 inline bool flipKeepsShape(const SurfaceMesh& mesh, int h)
 {
-	constexpr double leastCosine = 0.5;
+	constexpr double minCosine = 0.5;
 	const Point3d &a = mesh.position[mesh.origin(h)], &b = mesh.position[mesh.target(h)];
 	const Point3d &c = mesh.position[mesh.apex(h)], &d = mesh.position[mesh.apex(mesh.twin(h))];
 	const Point3d before = ((b - a) ^ (c - a)) + ((d - a) ^ (b - a));
-	const double scale = leastCosine * before.Norm();
+	const double scale = minCosine * before.Norm();
 	const Point3d left = (c - d) ^ (a - d), right = (d - c) ^ (b - c);
 	return left * before > scale * left.Norm() && right * before > scale * right.Norm()
 		&& mesh.isFlippable(h);

@@ -145,11 +145,11 @@ inline std::vector<char> sheetVertices(const Stage& stage, const Progress& progr
 		for (size_t v = 0; v < kinds.size(); ++v)
 			sheet[v] = kinds[v] == VertexKind::Sheet;
 	}
-	std::vector<double> least;
+	std::vector<double> minimum;
 	for (double diagonal : stage.diagonal)
-		least.push_back(smallestSheet * diagonal * diagonal);
+		minimum.push_back(smallestSheet * diagonal * diagonal);
 	flipSmallParts(stage.mesh, vertexAreas(stage.mesh, progress.part(0.8, 0.9)), stage.component,
-		least, 1, sheet, progress.part(0.9, 1));
+		minimum, 1, sheet, progress.part(0.9, 1));
 	return sheet;
 }
 

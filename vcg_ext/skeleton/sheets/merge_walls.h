@@ -150,13 +150,13 @@ inline std::map<EdgeOfComplex, int> faceCounts(const std::set<FaceOfComplex>& fa
  * @param inside  edges that no other face than those of the pocket had.
  * @param count   how many faces each edge has; kept up to date.
  * @param left    the number of faces of the pocket to leave.
- * @param least   edges shorter than this stay.
+ * @param minimum   edges shorter than this stay.
  * Complexity: O(F log F).
  */
 inline void thinPocket(SiteComplex& complex, std::set<FaceOfComplex>& pocket,
 	const FaceOfComplex& opened, const std::set<EdgeOfComplex>& inside,
 	std::map<EdgeOfComplex, int>& count, const std::vector<Point3d>& position, size_t left,
-	double least)
+	double minimum)
 {
 	std::map<EdgeOfComplex, std::vector<FaceOfComplex>> around;
 	for (const FaceOfComplex& f : pocket)
@@ -168,7 +168,7 @@ inline void thinPocket(SiteComplex& complex, std::set<FaceOfComplex>& pocket,
 			std::vector<FaceOfComplex>& of = around[e];
 			of.erase(std::find(of.begin(), of.end(), face));
 			const double length = Distance(position[e[0]], position[e[1]]);
-			if (--count[e] == 1 && inside.count(e) && length >= least)
+			if (--count[e] == 1 && inside.count(e) && length >= minimum)
 				freeEdges.emplace(-length, e);
 		}
 		complex.faces.erase(face);

@@ -102,17 +102,17 @@ inline bool isFin(const Patch& patch, const MesoSkeleton& skeleton, const SheetF
 		if (count != sheets.uses[size_t(v)])
 			continue;
 		int nearest = -1;
-		double least = std::numeric_limits<double>::max();
+		double minimum = std::numeric_limits<double>::max();
 		for (const EdgeOfComplex& e : patch.seam)
 			for (int w : e) {
 				const double distance =
 					Distance(skeleton.position[size_t(v)], skeleton.position[size_t(w)]);
-				if (distance < least) {
-					least = distance;
+				if (distance < minimum) {
+					minimum = distance;
 					nearest = w;
 				}
 			}
-		if (!(least < skeleton.radius[size_t(nearest)]))
+		if (!(minimum < skeleton.radius[size_t(nearest)]))
 			return false;
 		ends.emplace_back(v, nearest);
 	}
@@ -195,15 +195,16 @@ inline void openFolds(MesoSkeleton& skeleton)
 		if (faces.size() != 3 || seamsAt[size_t(e[0])] > 1 || seamsAt[size_t(e[1])] > 1)
 			continue;
 		int smallest = -1;
-		double least = std::numeric_limits<double>::max();
+		double minimum = std::numeric_limits<double>::max();
 		for (int f : faces) {
 			const FaceOfComplex& face = skeleton.faces[size_t(f)];
 			std::multiset<size_t> counts;
 			for (const EdgeOfComplex& side : edgesOf(face))
 				counts.insert(sheets.count(side));
 			const double area = faceArea(skeleton.position, face);
-			if (counts == std::multiset<size_t> {1, 2, 3} && area < least && !besideRemoved(face)) {
-				least = area;
+			if (counts == std::multiset<size_t> {1, 2, 3} && area < minimum
+				&& !besideRemoved(face)) {
+				minimum = area;
 				smallest = f;
 			}
 		}

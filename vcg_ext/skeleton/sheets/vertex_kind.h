@@ -32,12 +32,12 @@ enum class VertexKind : char {
 namespace detail {
 
 // What tells the kinds, in epsilon, see vertexKinds().
-constexpr double mostThickness = 2;
+constexpr double maxThickness = 2;
 constexpr double sheetReach = 8;
 constexpr double longestPiece = 4;
 constexpr double toldTogether = 3; // in the middle of a sheet, a ball of 4.2 has enough
 // No point of a piece is farther from the mean of its corners than 2/3 of its longest edge.
-constexpr double wallReach = mostThickness + longestPiece * 2 / 3;
+constexpr double wallReach = maxThickness + longestPiece * 2 / 3;
 constexpr double kindCell = std::max(wallReach, (sheetReach + toldTogether) / 2);
 
 constexpr const char* tellingKinds = "Telling curves from sheets";
@@ -65,7 +65,7 @@ public:
 		std::int64_t number;
 		int first, last; ///< its pieces: from first to last - 1
 		/// Bounds of the middles and of the normals.
-		Point3f lowest, highest, leastNormal, greatestNormal;
+		Point3f lowest, highest, minNormal, greatestNormal;
 		double area;
 	};
 
@@ -92,7 +92,7 @@ public:
 			unit(unitOf(epsilon, box))
 	{
 		const double longest = longestPiece * epsilon;
-		const int halvings = mostHalvings(mesh, faces, longest, progress.part(0, 0.05));
+		const int halvings = maxHalvings(mesh, faces, longest, progress.part(0, 0.05));
 		std::vector<Piece> unsorted;
 		unsorted.reserve(faces.size());
 		reportedLoop(int(faces.size()), progress.part(0.05, 0.3), tellingKinds, [&](int i) {
@@ -122,7 +122,7 @@ public:
 			for (int axis = 0; axis < 3; ++axis) {
 				cell.lowest[axis] = std::min(cell.lowest[axis], piece.middle[axis]);
 				cell.highest[axis] = std::max(cell.highest[axis], piece.middle[axis]);
-				cell.leastNormal[axis] = std::min(cell.leastNormal[axis], piece.normal[axis]);
+				cell.minNormal[axis] = std::min(cell.minNormal[axis], piece.normal[axis]);
 				cell.greatestNormal[axis] = std::max(cell.greatestNormal[axis], piece.normal[axis]);
 			}
 			cell.area += piece.area;
@@ -139,28 +139,28 @@ private:
 	}
 
 	/// How often a triangle may be halved: two halvings halve its longest edge.
-	static int mostHalvings(const SurfaceMesh& mesh, const std::vector<int>& faces, double longest,
+	static int maxHalvings(const SurfaceMesh& mesh, const std::vector<int>& faces, double longest,
 		const Progress& progress)
 	{
-		constexpr int most = 16;
+		constexpr int maximum = 16;
 		// Of all components together as of one.
 		const double maxPieces =
 			double(faces.size()) * std::max(double(1 << 22) / mesh.faceSlots(), 64.0);
-		std::array<double, most + 1> triangles = {}; // by the halvings that they need
+		std::array<double, maximum + 1> triangles = {}; // by the halvings that they need
 		reportedLoop(int(faces.size()), progress, tellingKinds, [&](int i) {
 			const int h = 3 * faces[size_t(i)];
 			const double length = std::sqrt(std::max(
 				{mesh.squaredLength(h), mesh.squaredLength(h + 1), mesh.squaredLength(h + 2)}));
 			const double ratio = length / longest;
-			++triangles[size_t(std::clamp(std::ceil(2 * std::log2(ratio)), 0.0, double(most)))];
+			++triangles[size_t(std::clamp(std::ceil(2 * std::log2(ratio)), 0.0, double(maximum)))];
 		});
 		const auto pieces = [&](int halvings) {
 			double count = 0;
-			for (int k = 0; k <= most; ++k)
+			for (int k = 0; k <= maximum; ++k)
 				count += triangles[size_t(k)] * std::exp2(std::min(k, halvings));
 			return count;
 		};
-		int halvings = most;
+		int halvings = maximum;
 		while (halvings > 0 && pieces(halvings) > maxPieces)
 			--halvings;
 		return halvings;
@@ -237,14 +237,14 @@ private:
 	}
 };
 
-/// Looks for a wall that faces a vertex and is no farther from it than mostThickness.
+/// Looks for a wall that faces a vertex and is no farther from it than maxThickness.
 class OppositeWall
 {
 public:
 	OppositeWall(
 		const Stage& stage, const PiecesByCell& surface, int v, const Point3d& vertexNormal) :
 			mesh(stage.mesh),
-			surface(surface), place(mesh.position[v]), limit(mostThickness * epsilonAt(stage, v)),
+			surface(surface), place(mesh.position[v]), limit(maxThickness * epsilonAt(stage, v)),
 			middle(surface.inside(place)), normal(Point3f::Construct(vertexNormal)),
 			height(float(limit * roomForRounding / surface.unit))
 	{
@@ -258,8 +258,8 @@ public:
 		const Piece& piece = surface.pieces[size_t(i)];
 		const Point3f d = piece.middle - middle;
 		// Most are turned alike, too far, or in a plane that is: one branch, since each is unpredictable.
-		if ((piece.normal * normal > opposite) | (std::abs(d * piece.normal) > height)
-			| (d.SquaredNorm() > squaredReach))
+		if (int(piece.normal * normal > opposite) | int(std::abs(d * piece.normal) > height)
+			| int(d.SquaredNorm() > squaredReach))
 			return false;
 		const Triangle t = mesh.triangle(piece.face);
 		const std::vector<Point3d>& corner = mesh.position;
@@ -272,11 +272,11 @@ public:
 	{
 		for (int c : cells) {
 			const PiecesByCell::Cell& cell = surface.cells[size_t(c)];
-			float least = 0;
+			float minimum = 0;
 			for (int axis = 0; axis < 3; ++axis)
-				least += std::min(normal[axis] * cell.leastNormal[axis],
-					normal[axis] * cell.greatestNormal[axis]);
-			if (least > opposite)
+				minimum += std::min(
+					normal[axis] * cell.minNormal[axis], normal[axis] * cell.greatestNormal[axis]);
+			if (minimum > opposite)
 				continue;
 			for (int i = cell.first; i < cell.last; ++i)
 				if (isIn(i))
@@ -355,12 +355,12 @@ inline bool hasOppositeWall(
 inline void tellSomeKinds(const Stage& stage, const PiecesByCell& surface,
 	const std::vector<int>& cells, std::vector<int>& closed, std::vector<VertexKind>& kind)
 {
-	constexpr double leastSheet = 0.27; // of 2 pi R^2
+	constexpr double minSheet = 0.27; // of 2 pi R^2
 	const int v = closed.back();
 	const Point3d& centre = stage.mesh.position[v];
 	const double epsilon = epsilonAt(stage, v), R = sheetReach * epsilon;
 	const auto isSheet = [&](double radius) {
-		return hasAreaWithin(surface, cells, centre, radius, leastSheet * 2 * M_PI * R * R);
+		return hasAreaWithin(surface, cells, centre, radius, minSheet * 2 * M_PI * R * R);
 	};
 	double d = 0;
 	const auto isApart = [&](int w) {

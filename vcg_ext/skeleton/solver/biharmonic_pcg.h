@@ -102,11 +102,11 @@ inline std::vector<Point3d> solveBiharmonic(const SymmetricRows& M, const std::v
 	// reach the target and leave a vertex between soft triangles far from its place.
 	double fall = 0.1;
 	FloatQuad alpha; // the step along p, which y has not made yet
-	constexpr int mostIterations = 200;
+	constexpr int maxIterations = 200;
 	for (int iteration = 0;; ++iteration) {
-		progress.report(0.5 + 0.5 * iteration / mostIterations, "Contracting");
+		progress.report(0.5 + 0.5 * iteration / maxIterations, "Contracting");
 		alpha = quotient(rz, apply());
-		if (fall * rz.sum() <= target || iteration + 1 == mostIterations)
+		if (fall * rz.sum() <= target || iteration + 1 == maxIterations)
 			break;
 		for (int i = 0; i < n; ++i)
 			z[i] = r[i] -= alpha * Ap[i];

@@ -55,7 +55,7 @@ public:
 		for (int k = 0; k < n; ++k) {
 			const float own = M.diagonal[k] + shift[k];
 			rows[k].pivot = own;
-			rows[k].least = dropTolerance * dropTolerance * own;
+			rows[k].minimum = dropTolerance * dropTolerance * own;
 		}
 		std::vector<Sum> sums(n);
 		std::vector<Column> columns(n);
@@ -95,7 +95,7 @@ public:
 				next = column.nextInChain;
 				const int begin = column.position++, end = column.end;
 				const float y = entries[begin].value * column.diagonal;
-				// The lowest index and its entry as one number, of which the least is found without a branch.
+				// The lowest index and its entry as one number, of which the minimum is found without a branch.
 				std::int64_t lowest = std::numeric_limits<std::int64_t>::max();
 				for (int e = begin + 1; e < end; ++e) {
 					add(entries[e].index, -entries[e].value * y);
@@ -105,9 +105,9 @@ public:
 			}
 			const int first = start[k];
 			int lowest = first;
-			const size_t most = size_t(first) + count + Group;
-			if (entries.size() < most)
-				entries.resize(std::max(entries.size() * 3 / 2, most));
+			const size_t maximum = size_t(first) + count + Group;
+			if (entries.size() < maximum)
+				entries.resize(std::max(entries.size() * 3 / 2, maximum));
 			int end = first;
 			float dropped = 0;
 			for (int i = 0; i < count; ++i) {
@@ -115,7 +115,7 @@ public:
 				const float value = sum.value;
 				sum.value = 0;
 				Row& row = rows[pattern[i]];
-				if (value * value * inverse < row.least) {
+				if (value * value * inverse < row.minimum) {
 					const float moved = Compensation * value;
 					row.pivot += moved;
 					dropped += moved;
@@ -175,7 +175,7 @@ private:
 	struct Row
 	{
 		float pivot;    ///< what is left of its diagonal
-		float least;    ///< entries that take less from it are dropped
+		float minimum;  ///< entries that take less from it are dropped
 		int chain = -1; ///< the first column with its next entry in this row
 	};
 

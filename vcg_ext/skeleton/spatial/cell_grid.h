@@ -33,9 +33,9 @@ struct CellGrid
 	CellGrid(const Box3d& box, double wanted) : low(box.min)
 	{
 		// Whoever looks up to two cells away, past an end of a row too, comes to cells that no point is in.
-		constexpr double most = (1 << bits) - 4;
+		constexpr double maximum = (1 << bits) - 4;
 		const double longest = std::max({box.DimX(), box.DimY(), box.DimZ()});
-		size = std::max(wanted, longest / most);
+		size = std::max(wanted, longest / maximum);
 		if (!(size > 0))
 			size = 1;
 	}

@@ -150,7 +150,7 @@ public:
 		const detail::TrianglePoint on = detail::closestOnTriangle(
 			surface.position[surface.origin(h)], surface.position[surface.origin(h + 1)],
 			surface.position[surface.origin(h + 2)], query);
-		constexpr double leastNormal = 0.01; // part of the sum of the lengths
+		constexpr double minNormal = 0.01; // part of the sum of the lengths
 		Point3d normal(0, 0, 0);
 		double weights = 0;
 		bool isClear = true;
@@ -172,7 +172,7 @@ public:
 				add(out / 3, std::atan2((a ^ b).Norm(), a * b));
 			});
 		}
-		if (!isClear || normal.Norm() < leastNormal * weights)
+		if (!isClear || normal.Norm() < minNormal * weights)
 			return solid().isInside(solid().in(query));
 		return (query - on.point) * normal < 0;
 	}
@@ -363,10 +363,10 @@ private:
 	/// Shrinks a ball by walking to the point deepest in it, until it holds; its face is -1 if nothing does.
 	Ball heldBall(const Hit& hit, const Point3d& outward, double radius, int face) const
 	{
-		constexpr int mostSteps = 8;
+		constexpr int maxSteps = 8;
 		constexpr double settled = 1e-4;
 		Point3d contact = hit.point;
-		for (int i = 0; i < mostSteps; ++i) {
+		for (int i = 0; i < maxSteps; ++i) {
 			contact = trackSurface(surface, hit.point - outward * radius, face);
 			const Point3d e = contact - hit.point;
 			const double depth = -(e * outward);

@@ -216,7 +216,7 @@ private:
 	bool crossesFace(const Triangle& t, int v, const Point3d& segment) const
 	{
 		constexpr double rounding = 1e-9; // a segment through an edge must hit one of its triangles
-		if ((t[0] == v) | (t[1] == v) | (t[2] == v)) // nearly always
+		if (int(t[0] == v) | int(t[1] == v) | int(t[2] == v)) // nearly always
 			return false;
 		const Point3d& a = mesh.position[t[0]];
 		const Point3d e1 = mesh.position[t[1]] - a, e2 = mesh.position[t[2]] - a;

@@ -21,7 +21,7 @@ namespace detail {
  * The ball of radius r has its centre at c = p - r n. A sample q, with e = p - q, lies exactly
  * delta deep where |c - q| = r - delta, that is at
  *     r(q) = (|e|^2 - delta^2) / (2 (e.n - delta)),   e.n > delta,
- * and the balls grow monotonically with r, so the answer is the least r(q) over all q. A search
+ * and the balls grow monotonically with r, so the answer is the minimum of r(q) over all q. A search
  * finds it whatever the order of its visits, to the last bit: the test that skips a sample leaves
  * room for rounding, and what passes is compared by r(q) itself.
  */

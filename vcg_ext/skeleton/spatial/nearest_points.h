@@ -46,7 +46,7 @@ inline std::vector<int> nearestPoints(const std::vector<Point3d>& points,
 {
 	constexpr double cellOfSpacing =
 		0.85; // on even triangles no place is farther than 0.58 from a corner
-	constexpr size_t mostCandidates = 256;
+	constexpr size_t maxCandidates = 256;
 	const char* const what = "Finding the nearest points";
 	Box3d box;
 	for (const std::vector<Point3d>* some : {&points, &queries})
@@ -87,24 +87,24 @@ inline std::vector<int> nearestPoints(const std::vector<Point3d>& points,
 				while (at < sources.cell.size() && sources.cell[at] < cell + row[i] - 1)
 					++at;
 				for (size_t s = at; s < sources.cell.size() && sources.cell[s] <= cell + row[i] + 1
-					 && candidates.size() <= mostCandidates;
+					 && candidates.size() <= maxCandidates;
 					 ++s)
 					candidates.push_back({points[sources.id[s]], sources.id[s]});
 			}
 			for (; begin < end && asked.cell[begin] == cell; ++begin) {
-				if (candidates.size() > mostCandidates)
+				if (candidates.size() > maxCandidates)
 					continue;
 				const Point3d& query = queries[asked.id[begin]];
-				double least = certain, squaredReach = certain * certain;
+				double minimum = certain, squaredReach = certain * certain;
 				int nearest = -1;
 				for (const Candidate& c : candidates) {
 					// Most are farther: told without a root, with room for its rounding.
 					if (SquaredDistance(c.point, query) > squaredReach)
 						continue;
 					const double distance = Distance(c.point, query);
-					if (distance < least || (distance == least && c.id < nearest)) {
-						least = distance;
-						squaredReach = least * least * (1 + 1e-12);
+					if (distance < minimum || (distance == minimum && c.id < nearest)) {
+						minimum = distance;
+						squaredReach = minimum * minimum * (1 + 1e-12);
 						nearest = c.id;
 					}
 				}
