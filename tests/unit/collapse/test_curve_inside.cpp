@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -180,6 +181,43 @@ TEST(CurveInside, TheEndsOfAnEdgeInABentSheetTakeTheSameWall)
 			EXPECT_LT(outside(curve.surface, inside), 5e-7);
 			EXPECT_LT(statistics(inside).length, 1.5 * Distance(from, to)) << i << " " << j;
 		}
+}
+
+TEST(CurveInside, ToAPlaceOnTheSurfaceTheWayIsInside)
+{
+	// A frame of thin bars, turned so that places on its surface are on it but for rounding.
+	constexpr double thickness = 0.01, length = 5;
+	const auto plane = [](double t) {
+		return std::floor(t / 2) * length + std::fmod(t, 2) * thickness;
+	};
+	const shapes::Soup soup = shapes::transformed(
+		shapes::cells(5, 5, 5,
+			[](int i, int j, int k) { return (i % 2 == 0) + (j % 2 == 0) + (k % 2 == 0) > 1; }),
+		[&](const Point3d& p) {
+			const double x = plane(p[0]), y = plane(p[1]), z = plane(p[2]);
+			return Point3d(2 * x - y + 2 * z, 2 * x + 2 * y - z, 2 * z + 2 * y - x) / 3.0;
+		});
+	std::mt19937 random(1);
+	std::uniform_real_distribution<double> part(0, 1);
+	const auto place = [&](double deepest) {
+		const Triangle& t = soup.triangles[random() % soup.triangles.size()];
+		const Point3d &p = soup.points[t[0]], u = soup.points[t[1]] - p, v = soup.points[t[2]] - p;
+		double a = part(random), b = part(random);
+		if (a + b > 1) {
+			a = 1 - a;
+			b = 1 - b;
+		}
+		const Point3d normal = (u ^ v) / (u ^ v).Norm();
+		return p + u * a + v * b - normal * (deepest > 0 ? deepest * part(random) : 0);
+	};
+	for (int tried = 0; tried < 300;) {
+		const Point3d from = place(0.4 * thickness), to = place(0);
+		if (Distance(from, to) > 1)
+			continue;
+		++tried;
+		Curve curve(soup, {from, to}, {{0, 1}});
+		EXPECT_LE(outside(curve.surface, curve.inside()), 5e-7) << tried;
+	}
 }
 
 TEST(CurveInside, ANodeFarOutsideGoesToTheNearestPlaceOfTheTrianglesThatMergedIntoIt)

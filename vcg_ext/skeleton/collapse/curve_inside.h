@@ -404,8 +404,10 @@ private:
 		if (on.distance > 0 && solid.isInside(p)) {
 			const Point3d across = (p - on.point) / on.distance;
 			const SolidTest::Crossing other = solid.chord(on.point, across);
-			if (other.face >= 0)
-				walls.push_back({on.point + across * other.distance, other.face});
+			const Point3d there = on.point + across * other.distance;
+			// Of a point on the surface but for rounding, the direction across is any.
+			if (other.face >= 0 && segmentIsInside(p, there))
+				walls.push_back({there, other.face});
 		}
 		return walls;
 	}
