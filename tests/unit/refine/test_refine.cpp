@@ -1261,8 +1261,9 @@ TEST(Refine, HoweverThinTheShapeTheNodesAreBounded)
 		return curve;
 	};
 	const refining::CurveBounds bounds(line(4), spacing);
-	EXPECT_TRUE(bounds.hold(line(int(refining::maxNodes(1)))));
-	EXPECT_FALSE(bounds.hold(line(int(2 * refining::maxNodes(1)))));
+	EXPECT_TRUE(bounds.holdAtEnd(line(int(refining::maxNodes(1)))));
+	EXPECT_TRUE(bounds.hold(line(int(2 * refining::maxNodes(1))))) << "on the way";
+	EXPECT_FALSE(bounds.holdAtEnd(line(int(2 * refining::maxNodes(1)))));
 }
 
 TEST(Refine, AFewEdgesThatHaveLeftTheSurfaceAreBroughtBack)

@@ -46,8 +46,7 @@ class CurveBounds
 {
 public:
 	/// A curve may become three times as long as itself and the shape's diagonal together, and have twice
-	/// the nodes that it has and that are as far apart as `spacing` on such a length. In no case may it have more
-	/// nodes than before and a third more than maxNodes().
+	/// the nodes that it has and that are as far apart as `spacing` on such a length.
 	CurveBounds(const CurveSkeleton& unrefined, double spacing) :
 			nodesBefore(unrefined.position.size())
 	{
@@ -56,21 +55,33 @@ public:
 		nodes = size_t(denser * (double(nodesBefore) + length / spacing));
 	}
 
+	/// Whether a curve may be refined further.
 	bool hold(const CurveSkeleton& curve) const
 	{
+		return curve.position.size() <= nodes
+			&& lengthOf(curve) <= length; // not if it is no number
+	}
+
+	/// Whether a curve may be the result: with no more nodes than before and a third more than maxNodes() besides.
+	bool holdAtEnd(const CurveSkeleton& curve) const
+	{
 		constexpr double more = 4.0 / 3;
-		if (curve.position.size() > nodes)
-			return false;
-		double sum = 0;
-		for (const auto& [a, b] : curve.edges)
-			sum += Distance(curve.position[a], curve.position[b]);
-		return sum <= length // not if it is no number
-			&& double(curve.position.size()) <= double(nodesBefore) + more * maxNodes(sum);
+		return hold(curve)
+			&& double(curve.position.size())
+			<= double(nodesBefore) + more * maxNodes(lengthOf(curve));
 	}
 
 private:
 	double length;
 	size_t nodes, nodesBefore;
+
+	static double lengthOf(const CurveSkeleton& curve)
+	{
+		double sum = 0;
+		for (const auto& [a, b] : curve.edges)
+			sum += Distance(curve.position[a], curve.position[b]);
+		return sum;
+	}
 };
 
 /**
@@ -243,7 +254,7 @@ inline Defect defectOfShape(
 {
 	if (!isFinite(refined))
 		return Defect::NotFinite;
-	if (!CurveBounds(unrefined, spacing).hold(refined))
+	if (!CurveBounds(unrefined, spacing).holdAtEnd(refined))
 		return Defect::TooLong;
 	const SkeletonStatistics before = statistics(unrefined), after = statistics(refined);
 	if (before.components != after.components || before.cycles != after.cycles)

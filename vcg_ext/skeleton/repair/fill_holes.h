@@ -92,7 +92,8 @@ public:
 				for (int m = i + 1; m < k; ++m) {
 					const Weight &left = best[at(i, m)], &right = best[at(m, k)];
 					const double sum = std::max(left.turn, right.turn);
-					if (!(sum <= best[at(i, k)].turn))
+					if (!(sum <= best[at(i, k)].turn)
+						|| std::isinf(sum)) // or an edge is not allowed
 						continue;
 					const Point3d area =
 						((p[size_t(m)] - p[size_t(i)]) ^ (p[size_t(k)] - p[size_t(i)])) / 2.0;
