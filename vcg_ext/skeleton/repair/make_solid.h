@@ -28,6 +28,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -354,9 +356,9 @@ inline int outwardPieces(const SurfaceMesh& mesh, const Progress& progress)
 }
 
 /**
- * Whether a body of a surface is in pieces in its wrap: a noticeable part of its area is closest to one of them, and of
- * another one.
- * Complexity: O(F log F).
+ * Whether a wrap has cut one of the bodies of a surface: two of its pieces have a noticeable part of that body's area
+ * each. A piece's area is that of the bodies that it is closest to.
+ * @throws Cancelled. Complexity: O(F log F).
  */
 inline bool isCutInWrap(
 	const SurfaceMesh& mesh, const SurfaceMesh& wrapped, const Progress& progress)
@@ -809,9 +811,9 @@ private:
  * The closed, oriented, two-manifold surface of the solid that triangles mean.
  *
  * A surface that checkedSurface() takes stays as that leaves it, to the last bit, unless it crosses itself
- * so that a noticeable part of its volume is enclosed more than once, and no noticeable part of it is too thin
- * to be wrapped. Else its small defects are mended, see
- * mend(), and where that is not enough it is wrapped by its winding numbers, see wrap().
+ * so that a noticeable part of its volume is enclosed more than once, or its bodies share walls. Then it is wrapped by its
+ * winding numbers, see wrap(), unless a noticeable part of it is too thin for that, or the wrap cuts a body or joins none.
+ * What checkedSurface() refuses is mended where its defects are small, see mend(), else wrapped.
  *
  * @param points    mesh units. @param triangles corners as indices into `points`.
  * @param choices   repair: Auto: as above; Mend: no wrap; Off: checkedSurface() alone. What is left out of
