@@ -234,6 +234,20 @@ TEST(MakeSolid, LeavesBodiesThatAWrapWouldCut)
 		}
 }
 
+TEST(MakeSolid, WrapsBodiesOfWhichASmallOneIsCut)
+{
+	// Two blocks that cross, and a needle through one of them that is thinner than the lattice half of the way.
+	const shapes::Soup needle = shapes::transformed(
+		shapes::cells(3, 1, 1, [](int, int, int) { return true; }), [](const Point3d& p) {
+			const double thin = p[0] == 1 || p[0] == 2 ? 1e-4 : 0.05;
+			return Point3d(p[0], 0.5 + (p[1] - 0.5) * thin, 0.5 + (p[2] - 0.5) * thin);
+		});
+	const SolidSurface made = solid(shapes::joined({shapes::box(2, 2, 2),
+		shapes::moved(shapes::box(2, 2, 2), {1.2, 1.1, 0.9}), shapes::moved(needle, {-2, 0, 0})}));
+	EXPECT_EQ(made.report.outcome, SolidReport::Wrapped);
+	EXPECT_EQ(piecesOf(made.surface.mesh), 2) << "with what the needle has beyond its thin half";
+}
+
 TEST(MakeSolid, TurnsAWrapThatIsInsideOut)
 {
 	const SolidSurface made = solid(shapes::insideOut(bowl(0.2)));

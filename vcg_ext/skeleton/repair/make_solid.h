@@ -356,15 +356,15 @@ inline int outwardPieces(const SurfaceMesh& mesh, const Progress& progress)
 }
 
 /**
- * Whether a wrap has cut one of the bodies of a surface: two of its pieces have a noticeable part of that body's area
+ * Whether a wrap has cut bodies that make up a tenth of the surface: two of its pieces have a tenth of such a body's area
  * each. A piece's area is that of the bodies that it is closest to.
  * @throws Cancelled. Complexity: O(F log F).
  */
 inline bool isCutInWrap(
 	const SurfaceMesh& mesh, const SurfaceMesh& wrapped, const Progress& progress)
 {
-	constexpr double noticeable = 0.1;
-	constexpr int samples = 100; // of each piece of the wrap
+	constexpr double noticeable = 0.1; // of an area
+	constexpr int samples = 100;       // of each piece of the wrap
 	const std::vector<Triangle> bodies = mesh.triangles(), pieces = wrapped.triangles();
 	int bodyCount = 0, pieceCount = 0;
 	const std::vector<int> body = connectedComponents(mesh, &bodyCount, progress.part(0, 0.1));
@@ -393,7 +393,12 @@ inline bool isCutInWrap(
 		progress.report(
 			0.6 + 0.4 * double(i + 1) / double(ofPiece.size()), "Comparing with the wrap");
 	}
-	return *std::max_element(piecesOfBody.begin(), piecesOfBody.end()) > 1;
+	double cut = 0, all = 0;
+	for (size_t b = 0; b < bodyArea.size(); ++b) {
+		cut += piecesOfBody[b] > 1 ? bodyArea[b] : 0;
+		all += bodyArea[b];
+	}
+	return cut > noticeable * all;
 }
 
 /// Leaves out what is no larger than the lattice can tell from nothing, and then cavities.
@@ -497,8 +502,8 @@ private:
 		return false;
 	}
 
-	/// The wrap of a sound surface, unless that cuts one of its bodies, or joins none where nothing is enclosed more
-	/// than once.
+	/// The wrap of a sound surface, unless that cuts bodies, see isCutInWrap(), or joins none where nothing is enclosed
+	/// more than once.
 	void wrapSound(const Progress& progress)
 	{
 		SolidSurface asItIs = std::exchange(solid, {});
@@ -812,7 +817,7 @@ private:
  *
  * A surface that checkedSurface() takes stays as that leaves it, to the last bit, unless it crosses itself
  * so that a noticeable part of its volume is enclosed more than once, or its bodies share walls. Then it is wrapped by its
- * winding numbers, see wrap(), unless a noticeable part of it is too thin for that, or the wrap cuts a body or joins none.
+ * winding numbers, see wrap(), unless a noticeable part of it is too thin for that, or the wrap cuts bodies or joins none.
  * What checkedSurface() refuses is mended where its defects are small, see mend(), else wrapped.
  *
  * @param points    mesh units. @param triangles corners as indices into `points`.
