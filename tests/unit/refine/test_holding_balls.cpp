@@ -47,8 +47,10 @@ TEST(HoldingBalls, AreThoseOfAllNodesWhileTheSkeletonGrows)
 	refining::HoldingBalls balls(skeleton);
 	int held = 0;
 	for (int round = 0; round < 30; ++round) {
-		for (int i = 0; i < 50; ++i) {
-			const Point3d p(unit(random), unit(random) - 0.5, unit(random) - 0.5);
+		for (int i = 0; i < 200; ++i) {
+			// One after the other: in which order a call's arguments are computed is for the compiler to choose.
+			const double x = unit(random), y = unit(random), z = unit(random);
+			const Point3d p(x, y - 0.5, z - 0.5);
 			const int expected = deepestOf(skeleton, p);
 			ASSERT_EQ(balls.deepest(p), expected);
 			held += expected >= 0;
