@@ -133,7 +133,7 @@ for kind in "${kinds[@]}"; do
 	fi
 	if [ "$what" != jobs ]; then
 		build "$kind" unit_tests
-		# Refused memory, the sanitizers' own would be missing.
+		# A sanitizer allocates memory itself: a test that refuses all of it cannot run.
 		run "$kind" unit_tests "$ROOT/build/sanitize-$kind/tests/unit_tests" \
 			--gtest_filter="$filter:-ForEachBlock.DoesWithOneThreadWhereTheSystemRefusesMore"
 	fi

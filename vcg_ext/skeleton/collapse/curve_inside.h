@@ -405,7 +405,7 @@ private:
 			const Point3d across = (p - on.point) / on.distance;
 			const SolidTest::Crossing other = solid.chord(on.point, across);
 			const Point3d there = on.point + across * other.distance;
-			// Of a point on the surface but for rounding, the direction across is any.
+			// For a point that is on the surface up to rounding, `across` is arbitrary.
 			if (other.face >= 0 && segmentIsInside(p, there))
 				walls.push_back({there, other.face});
 		}

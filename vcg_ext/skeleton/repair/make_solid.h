@@ -334,64 +334,41 @@ inline Distances distances(const std::vector<Point3d>& from, size_t all,
 	return result;
 }
 
-/// The volume of each component of a closed surface, negative if it is turned inward.
-inline std::vector<double> pieceVolumes(
-	const SurfaceMesh& mesh, const std::vector<int>& component, int count)
-{
-	std::vector<double> volume(size_t(count), 0);
-	const Point3d origin = mesh.position[0];
-	for (const Triangle& t : mesh.triangles())
-		volume[size_t(component[size_t(t[0])])] += (mesh.position[size_t(t[0])] - origin)
-			* ((mesh.position[size_t(t[1])] - origin) ^ (mesh.position[size_t(t[2])] - origin)) / 6;
-	return volume;
-}
-
-/// How many components of a closed surface are turned outward.
-inline int outwardPieces(const SurfaceMesh& mesh, const Progress& progress)
-{
-	int count = 0;
-	const std::vector<int> component = connectedComponents(mesh, &count, progress);
-	const std::vector<double> volume = pieceVolumes(mesh, component, count);
-	return int(std::count_if(volume.begin(), volume.end(), [](double v) { return v > 0; }));
-}
-
 /**
  * Whether a wrap has cut bodies that make up a tenth of the surface: two of its pieces have a tenth of such a body's area
  * each. A piece's area is that of the bodies that it is closest to.
  * @throws Cancelled. Complexity: O(F log F).
  */
-inline bool isCutInWrap(
-	const SurfaceMesh& mesh, const SurfaceMesh& wrapped, const Progress& progress)
+inline bool isCutInWrap(const SurfaceMesh& mesh, const ClosedPieces& bodies,
+	const SurfaceMesh& wrapped, const ClosedPieces& pieces, const Progress& progress)
 {
 	constexpr double noticeable = 0.1; // of an area
 	constexpr int samples = 100;       // of each piece of the wrap
-	const std::vector<Triangle> bodies = mesh.triangles(), pieces = wrapped.triangles();
-	int bodyCount = 0, pieceCount = 0;
-	const std::vector<int> body = connectedComponents(mesh, &bodyCount, progress.part(0, 0.1));
-	const std::vector<int> piece =
-		connectedComponents(wrapped, &pieceCount, progress.part(0.1, 0.3));
-	std::vector<double> bodyArea(size_t(bodyCount), 0), pieceArea(size_t(pieceCount), 0);
-	for (const Triangle& t : bodies)
-		bodyArea[size_t(body[size_t(t[0])])] += areaVector(mesh.position, t).Norm();
-	std::vector<std::vector<Triangle>> ofPiece(static_cast<size_t>(pieceCount));
-	for (const Triangle& t : pieces) {
-		pieceArea[size_t(piece[size_t(t[0])])] += areaVector(wrapped.position, t).Norm();
-		ofPiece[size_t(piece[size_t(t[0])])].push_back(t);
-	}
-	const TriangleTree tree(mesh.position, bodies, progress.part(0.3, 0.6));
-	std::vector<int> piecesOfBody(size_t(bodyCount), 0);
-	for (size_t i = 0; i < ofPiece.size(); ++i) {
+	const auto areaOf = [](const SurfaceMesh& surface, const std::vector<Triangle>& faces) {
+		double area = 0;
+		for (const Triangle& t : faces)
+			area += areaVector(surface.position, t).Norm();
+		return area;
+	};
+	const std::vector<Triangle> faces = mesh.triangles();
+	const TriangleTree tree(mesh.position, faces, progress.part(0, 0.5));
+	std::vector<double> bodyArea;
+	for (const std::vector<Triangle>& body : bodies.faces)
+		bodyArea.push_back(areaOf(mesh, body));
+	std::vector<int> piecesOfBody(bodies.count(), 0);
+	for (size_t i = 0; i < pieces.count(); ++i) {
 		const std::vector<SurfacePlace> places =
-			placesByArea(wrapped.position, ofPiece[i], samples);
+			placesByArea(wrapped.position, pieces.faces[i], samples);
+		const double areaOfPlace = areaOf(wrapped, pieces.faces[i]) / double(places.size());
 		std::map<size_t, double> nearArea; // of the piece, by body
 		for (const SurfacePlace& at : places) {
-			const Triangle& t = bodies[size_t(tree.closest(at.point).face)];
-			nearArea[size_t(body[size_t(t[0])])] += pieceArea[i] / double(places.size());
+			const Triangle& t = faces[size_t(tree.closest(at.point).face)];
+			nearArea[size_t(bodies.ofVertex[size_t(t[0])])] += areaOfPlace;
 		}
 		for (const auto& [b, area] : nearArea)
 			piecesOfBody[b] += area > noticeable * bodyArea[b];
 		progress.report(
-			0.6 + 0.4 * double(i + 1) / double(ofPiece.size()), "Comparing with the wrap");
+			0.5 + 0.5 * double(i + 1) / double(pieces.count()), "Comparing with the wrap");
 	}
 	double cut = 0, all = 0;
 	for (size_t b = 0; b < bodyArea.size(); ++b) {
@@ -407,14 +384,13 @@ inline std::pair<int, LeftOutPieces> dropSmallPieces(
 	WrappedSurface& surface, double spacing, const Progress& progress)
 {
 	const SurfaceMesh mesh(surface.points, surface.triangles, progress.part(0, 0.5));
-	int count = 0;
-	const std::vector<int> component = connectedComponents(mesh, &count, progress.part(0.5, 1));
-	const std::vector<double> volume = pieceVolumes(mesh, component, count);
+	const ClosedPieces pieces(mesh, progress.part(0.5, 1));
+	const std::vector<double>& volume = pieces.volume;
 	const double largest = *std::max_element(volume.begin(), volume.end());
 	const double minimum = std::min(2 * spacing * spacing * spacing, largest);
 	std::vector<Triangle> kept;
 	for (const Triangle& t : surface.triangles)
-		if (volume[size_t(component[size_t(t[0])])] >= minimum)
+		if (volume[size_t(pieces.ofVertex[size_t(t[0])])] >= minimum)
 			kept.push_back(t);
 	surface.triangles = std::move(kept);
 	LeftOutPieces leftOut;
@@ -514,12 +490,15 @@ private:
 		if (std::optional<SurfaceMesh> hollow = withCavitiesInward(
 				mesh, asItIs.surface.turned, leftOut.cavities, progress.cancelOnly()))
 			leftOut.hollow = std::make_shared<const SurfaceMesh>(*std::move(hollow));
-		const int before = outwardPieces(mesh, progress.cancelOnly()) - leftOut.cavities;
+		const ClosedPieces bodies(mesh, progress.cancelOnly());
+		const int before = int(bodies.count()) - leftOut.cavities;
 		wrapIt(mesh.position, mesh.triangles(), {}, progress.part(0, 0.95));
 		const SurfaceMesh& wrapped = solid.surface.mesh;
-		const bool isJoined = outwardPieces(wrapped, progress.cancelOnly()) < before
-			|| asItIs.report.overlap >= noticeableOverlap;
-		const bool isCut = isCutInWrap(mesh, wrapped, progress.part(0.95, 1));
+		const ClosedPieces pieces(wrapped, progress.cancelOnly());
+		const auto after = std::count_if(
+			pieces.volume.begin(), pieces.volume.end(), [](double v) { return v > 0; });
+		const bool isJoined = after < before || asItIs.report.overlap >= noticeableOverlap;
+		const bool isCut = isCutInWrap(mesh, bodies, wrapped, pieces, progress.part(0.95, 1));
 		if (isJoined && !isCut)
 			return;
 		solid = std::move(asItIs);

@@ -76,7 +76,7 @@ struct LeftOutPieces
 
 namespace detail {
 
-/// The connected pieces of a closed surface, each turned outward.
+/// The connected pieces of a closed surface; the volume of one that faces inward is negative.
 struct ClosedPieces
 {
 	std::vector<int> ofVertex;
