@@ -89,6 +89,7 @@ under() {
 			TSAN_OPTIONS="ignore_noninstrumented_modules=1 halt_on_error=1 exitcode=66" "$@"
 	else
 		env OMP_NUM_THREADS=2 ASAN_OPTIONS="detect_stack_use_after_return=1" \
+			LSAN_OPTIONS="suppressions=$ROOT/scripts/lib/leaks.supp:print_suppressions=0" \
 			UBSAN_OPTIONS="print_stacktrace=1" "$@"
 	fi
 }

@@ -16,6 +16,14 @@ using vcg::Point3d;
 
 namespace {
 
+// VCG leaves a mesh's attributes to whoever made them; the skeletonization's stay for the caller to read.
+template <class... Containers>
+class OwningMesh : public TriMesh<Containers...>
+{
+public:
+	~OwningMesh() override { this->ClearAttributes(); }
+};
+
 // A mesh in float with all that is needed and no more, one in double with more than that.
 
 class LeanVertex;
@@ -30,7 +38,7 @@ class LeanVertex : public vcg::Vertex<LeanTypes, vcg::vertex::Coord3f, vcg::vert
 class LeanFace : public vcg::Face<LeanTypes, vcg::face::VertexRef, vcg::face::BitFlags>
 {
 };
-class FloatMesh : public TriMesh<std::vector<LeanVertex>, std::vector<LeanFace>>
+class FloatMesh : public OwningMesh<std::vector<LeanVertex>, std::vector<LeanFace>>
 {
 };
 
@@ -46,7 +54,7 @@ class NodeVertex : public vcg::Vertex<CurveTypes, vcg::vertex::Coord3f, vcg::ver
 class CurveEdge : public vcg::Edge<CurveTypes, vcg::edge::VertexRef>
 {
 };
-class FloatCurve : public TriMesh<std::vector<NodeVertex>, std::vector<CurveEdge>>
+class FloatCurve : public OwningMesh<std::vector<NodeVertex>, std::vector<CurveEdge>>
 {
 };
 
@@ -69,7 +77,7 @@ class RichFace
 {
 };
 class DoubleMesh
-		: public TriMesh<std::vector<RichVertex>, std::vector<RichEdge>, std::vector<RichFace>>
+		: public OwningMesh<std::vector<RichVertex>, std::vector<RichEdge>, std::vector<RichFace>>
 {
 };
 

@@ -140,7 +140,7 @@ public:
 	 *                 what was in it goes. The local thickness, the mean distance to the surface, is
 	 *                 its per-vertex attribute `mcfskel_radius`, and its vertex quality where it has one; if the
 	 *                 curve was refined, `mcfskel_significance` is how much of the shape its branch
-	 *                 stands for, 0 to 1.
+	 *                 stands for, 0 to 1. VCG frees attributes in a mesh's ClearAttributes(), not with it.
 	 * @param params   see Params.
 	 * @param cb       progress callback of VCG, or null; to return false cancels.
 	 * @throws mcf::InvalidInput, mcf::InvalidParameter, mcf::SolverError, mcf::Cancelled; std::bad_alloc.
