@@ -113,14 +113,14 @@ inline void contractAllFaces(GluedComplex& complex, const Progress& progress)
 		throw SolverError("The stage could not be collapsed to curves.");
 }
 
-/// The smaller length at two nodes, one of them of the stage, as Stage::epsilonAt().
+/// The smaller of the lengths at two nodes, see Stage::epsilonAt().
 inline double lengthAt(const Stage& stage, int A, int B, double ofDiagonal)
 {
 	const double own = stage.epsilonAt(A, ofDiagonal);
 	return B < stage.mesh.vertexSlots() ? std::min(own, stage.epsilonAt(B, ofDiagonal)) : own;
 }
 
-/// Merges nodes that are closer than makes sense; each component keeps an edge.
+/// Merges nodes that are closer than `shortestEdge`, see lengthAt(); each component keeps an edge.
 /// @param stays  1 for nodes that have to stay; empty if there are none.
 inline void contractShortCurveEdges(GluedComplex& complex, const Stage& stage, double shortestEdge,
 	const std::vector<char>& stays = {})
@@ -144,9 +144,9 @@ inline void contractShortCurveEdges(GluedComplex& complex, const Stage& stage, d
 }
 
 /**
- * Takes the zigzag out of the curves that the order of the collapses leaves, of the size of an edge:
- * twice, each node with two neighbours moves half the way to their middle, but no farther than a few
- * times `shortestEdge`: what is larger is the shape's. Held nodes, tips and junctions stay.
+ * Smooths the zigzag of about the length of an edge that the order of the collapses leaves in the
+ * curves: twice, each node with two neighbours moves half the way to their middle, but by at most
+ * four times `shortestEdge`: larger bends are the shape's. Held nodes, tips and junctions stay.
  */
 inline void straightenZigzag(GluedComplex& complex, const Stage& stage, double shortestEdge)
 {
@@ -175,18 +175,19 @@ inline void straightenZigzag(GluedComplex& complex, const Stage& stage, double s
 } // namespace detail
 
 /**
- * Turns a stage into its curve skeleton: repeatedly collapses the shortest edge that has faces, then, with
- * `tidy`, straightens the zigzag that this leaves and removes the spurs. Lengths are compared in the shape's
- * own coordinates, see StageFrames.
+ * Turns a stage into its curve skeleton: repeatedly collapses the shortest edge that has faces,
+ * then, with `tidy`, straightens the zigzag that this leaves and removes the spurs. Lengths are
+ * compared in the frames of the components, see StageFrames.
  *
  * The stage need not have converged; its sheets and volumes become curves too. The result has a
  * component for each component of the stage and as many cycles as its genus (see GluedComplex), no
  * double edge and no edge of zero length but for a body that is a point in floating point.
  *
  * @param shortestEdge edges shorter than this fraction of the component's diagonal, or than
- *        Stage::epsilonLimit where that is smaller, are contracted at the end, where no cycle vanishes by it.
+ *        Stage::epsilonLimit where that is smaller, are contracted at the end, where no cycle
+ *        vanishes by it.
  * @param tidy         without, the curve is what the collapses leave, as in the paper.
- * @throws SolverError, Cancelled. Complexity: O(V log V).
+ * @throws SolverError, Cancelled. Complexity: O(V log V), with `tidy` and that of withoutSpurs().
  */
 inline CurveSkeleton collapseToCurve(Stage stage, double shortestEdge = 1e-4,
 	const Progress& progress = Progress(), bool tidy = true)
@@ -220,13 +221,13 @@ inline CurveSkeleton collapseToCurve(Stage stage, double shortestEdge = 1e-4,
 	detail::reportedLoop(int(stage.node.size()), progress.part(0.9, 0.95), what,
 		[&](int s) { skeleton.node.push_back(number[complex.find(stage.node[s])]); });
 
-	constexpr double spurProminence = 0.12; // some more than a tenth: balls reach to vertices only
+	constexpr double spurProminence = 0.12; // above a tenth: balls reach to vertices only
 	skeleton.radius.assign(skeleton.position.size(), 0);
 	if (tidy)
 		skeleton = detail::withoutSpurs(
 			std::move(skeleton), stage, component, held, spurProminence, progress.part(0.95, 1));
 
-	// A node of split vertices only has no surface vertex: it takes the mean of its neighbours' radii.
+	// A node of split vertices only has no surface vertex: it takes its neighbours' mean radius.
 	skeleton.radius =
 		meanSurfaceDistance(skeleton.position, *stage.surface, skeleton.node, progress);
 	fillUnknownRadii(skeleton.radius, skeleton.neighbours());

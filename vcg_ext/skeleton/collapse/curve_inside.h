@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief What of a curve has left the solid that it came from is brought back inside.
+/// @brief Brings the parts of a curve that have left the solid that it came from back inside.
 
 #ifndef VCG_MCF_CURVE_INSIDE_H
 #define VCG_MCF_CURVE_INSIDE_H
@@ -36,17 +36,18 @@ namespace vcg::tri::mcf {
 
 namespace detail {
 
-/// How far outside a curve may be, of the diagonal: what rounding in the shape's coordinates makes, see
+/// How far outside a curve may be, of the diagonal: by the rounding of the shape's coordinates, see
 /// PrincipalFrame::onGrid().
 constexpr double promisedTolerance = 5e-7;
-/// How far outside the places may be that are looked at: those between them may be twice as far.
+/// How far outside the sampled places may be: those between them may be twice as far.
 constexpr double outsideTolerance = promisedTolerance / 2;
 
-/// A component of a curve on its way into its solid. Lengths and places are those of the SolidTest.
+/// A component of a curve on its way into its solid, in the coordinates of the SolidTest.
 class CurveIntoSolid
 {
 public:
-	/// @param place of each node. @param edges pairs of nodes. @param tolerance how far outside a point may be.
+	/// @param place of each node. @param edges pairs of nodes.
+	/// @param tolerance how far outside a point may be.
 	CurveIntoSolid(const SolidTest& solid, std::vector<Point3d> place,
 		std::vector<std::array<int, 2>> edges, const Progress& progress,
 		double tolerance = outsideTolerance) :
@@ -56,7 +57,7 @@ public:
 	{
 	}
 
-	/// For each node the vertices of the surface that have merged into it; empty where that is not known.
+	/// For each node the vertices of the surface that have merged into it; empty if not known.
 	std::vector<std::vector<int>> merged;
 
 	const std::vector<Point3d>& places() const { return place; }
@@ -71,9 +72,10 @@ public:
 	};
 
 	/**
-	 * Moves nodes that are outside, then bends the edges that are; not where that would make the curve longer
-	 * than twice itself and three diagonals, as where a surface runs into itself all over.
-	 * @throws SolverError if something still is outside; Cancelled.
+	 * Moves nodes that are outside, then bends the edges that are; not if that would make the curve
+	 * longer than twice its length plus three diagonals, as where a surface runs into itself all
+	 * over.
+	 * @throws SolverError if something is still outside; Cancelled.
 	 */
 	Outcome bringInside()
 	{
@@ -100,11 +102,12 @@ public:
 	}
 
 	/**
-	 * Removes subtrees that are attached by an edge outside. Edges of cycles, and of paths between cycles, are
-	 * bent however long that makes them. In a tree the longest part that is inside is kept.
-	 * @return for each node that was there the one that takes its place: itself, or the nearest along the tree that
-	 *         is left.
-	 * @throws SolverError if something still is outside.
+	 * Removes subtrees that are attached by an edge outside; in a tree, all but the longest part
+	 * inside. Edges of cycles, and of paths between cycles, are bent however long that makes them.
+	 * @pre bringInside() has returned TooLong.
+	 * @return for each node the one that takes its place: itself, or the nearest along the tree
+	 *         that is left.
+	 * @throws SolverError if something is still outside; Cancelled.
 	 */
 	std::vector<int> cutOff()
 	{
@@ -172,7 +175,7 @@ public:
 private:
 	using Path = std::vector<Point3d>;
 
-	/// How long ways inside may make a curve: so many times itself and so many diagonals.
+	/// How long bending may make a curve: so many times its length plus so many diagonals.
 	static constexpr double longerOfCurve = 2, longerOfDiagonal = 3;
 
 	static double lengthOf(const Path& between, const Point3d& first, const Point3d& last)
@@ -201,8 +204,8 @@ private:
 		});
 	}
 
-	/// Bends the edges that are outside. @return false, with nothing changed, if the curve would exceed maxLength.
-	/// @throws SolverError if something still is outside.
+	/// Bends the edges that are outside. @return false, with nothing changed, if the curve would
+	/// become longer than maxLength. @throws SolverError if something is still outside.
 	bool bendEdges(double maxLength)
 	{
 		const size_t nodes = place.size();
@@ -246,7 +249,7 @@ private:
 		for (size_t first = 0; first < place.size(); ++first) {
 			if (seen[first])
 				continue;
-			double length = 0; // twice
+			double length = 0; // each edge counts twice
 			std::vector<int> part(1, int(first));
 			seen[first] = 1;
 			for (size_t i = 0; i < part.size(); ++i)
@@ -271,7 +274,7 @@ private:
 	const Progress& progress;
 	double tolerance;
 	std::vector<char> changed;
-	/// Made when they are needed.
+	/// Made when it is first needed.
 	std::optional<SurfaceWays> overSurface;
 
 	void report() const { progress.report(0, "Bringing the curve inside"); }
@@ -282,7 +285,7 @@ private:
 		return solid.segmentIsInside(p, q, tolerance);
 	}
 
-	/// A chord of the solid: from a point of the surface to half of the way to the other side.
+	/// Half a chord of the solid: from a point of the surface to the middle of the chord.
 	struct HalfChord
 	{
 		Point3d from, along;
@@ -295,7 +298,7 @@ private:
 		return solid.isInside(half.at(1)) ? half : HalfChord {from, Point3d(0, 0, 0)};
 	}
 
-	/// The chord from the closest point of the surface, on the line through it and the point.
+	/// The half chord from the closest point of the surface, on the line through both points.
 	HalfChord closestChord(const Point3d& point, bool isOutside) const
 	{
 		const SolidTest::Closest on = solid.closest(point);
@@ -319,8 +322,9 @@ private:
 	}
 
 	/**
-	 * A node goes to the middle of a chord: from the nearest point of the surface where that is next to it,
-	 * else from the triangles at the vertices that have merged into it, the one whose chord's middle is nearest.
+	 * Moves a node to the middle of a chord: that from the nearest point of the surface if it is
+	 * next to the node, else of those from the triangles at the vertices that have merged into it
+	 * the one whose middle is nearest.
 	 */
 	void moveInside(int A, const std::vector<int>& neighbours)
 	{
@@ -348,7 +352,7 @@ private:
 		changed[A] = 1;
 	}
 
-	/// The nodes between two others whose edge is outside somewhere.
+	/// New nodes between two others whose edge is outside somewhere.
 	Path inside(const Point3d& p, const Point3d& q)
 	{
 		constexpr int deepest = 5;
@@ -365,13 +369,14 @@ private:
 		return between;
 	}
 
-	/// Which points of the segments that bisected() halves go to the middle of a chord.
+	/// Which midpoints of the segments that bisected() halves go to the middle of a chord.
 	enum class Halving {
 		MovesOutside,
-		MovesAll, ///< round a corner of two thin walls points that are inside come ever nearer to it
+		MovesAll, ///< at a corner of two thin walls, midpoints that are inside converge to it
 	};
 
-	/// Halves the segment until its parts are inside. @return whether that is the case within so many levels.
+	/// Halves the segment until its parts are inside. @param between receives the points added.
+	/// @return whether that takes at most so many levels.
 	bool bisected(
 		const Point3d& p, const Point3d& q, Halving halving, int levels, Path& between) const
 	{
@@ -396,7 +401,7 @@ private:
 		int face;
 	};
 
-	/// The nearest point of the surface, and for a point inside the one on the other side of it.
+	/// The nearest point of the surface, and for a point inside the one on its other side.
 	std::vector<OnSurface> wallsAt(const Point3d& p) const
 	{
 		const SolidTest::Closest on = solid.closest(p);
@@ -413,10 +418,10 @@ private:
 	}
 
 	/**
-	 * A way that always is there: straight to the surface, over its triangles, and back. Of the two walls of a
-	 * sheet both ends take the same one: around the rim it may be far. Between them the way is lifted off the
-	 * surface, to the middle of the chords, but no higher than the ends are: from the rim of a sheet chords
-	 * lead far through it.
+	 * A way that always exists: straight to the surface, over its triangles, and back. Of the two
+	 * walls of a sheet both ends take the same one: around the rim it may be far. Between them the
+	 * way is lifted off the surface, to the middle of the chords, but no higher than the ends are:
+	 * from the rim of a sheet chords lead far through it.
 	 */
 	Path alongSurface(const Point3d& p, const Point3d& q)
 	{
@@ -435,7 +440,7 @@ private:
 		return shortest;
 	}
 
-	/// As above, lifted off the surface where it crosses edges as far as it stays inside.
+	/// The same between given points of the surface, lifted by up to `height` if it stays inside.
 	Path alongSurface(const OnSurface& first, const OnSurface& last, double height)
 	{
 		Path path(1, first.point);
@@ -459,14 +464,14 @@ private:
 		return path;
 	}
 
-	/// Whether two places are one in mesh units.
+	/// Whether two places are the same, be it after rounding to mesh units.
 	bool isSame(const Point3d& p, const Point3d& q) const
 	{
 		constexpr double rounding = 1e-12;
 		return Distance(p, q) <= rounding || solid.out(p) == solid.out(q);
 	}
 
-	/// Leaves out points between which the way is inside without them, and such that say nothing.
+	/// Removes points without which the way is inside as well, and repeated ones.
 	void simplify(const Point3d& p, const Point3d& q, Path& between) const
 	{
 		constexpr int rounds = 4;
@@ -514,21 +519,22 @@ enum class TooFarOutside {
 };
 
 /**
- * Brings a curve inside the solids that it came from: nodes go to the middle of a chord of the solid,
- * edges are bent, with new nodes. Its topology stays, as do the nodes that are inside, to the last bit.
- * The flow smooths over a few edges, so that the curve of a coarse surface may cut corners; a surface that
- * crosses itself may be turned inside out by it.
+ * Brings a curve inside the solids that it came from: nodes go to the middle of a chord of the
+ * solid, edges are bent, with new nodes. Its topology is unchanged, as are nodes that are inside,
+ * to the last bit. The flow smooths over a few edges, so that the curve of a coarse surface may cut
+ * corners, and may turn a surface that crosses itself inside out.
  *
  * @param surface     the vertices of all components, mesh units, and @param triangles between them.
  * @param component   of each vertex; @param ofNode of each node, follows the nodes.
- * @param tooFar      for a component whose curve the detours inside would make longer than twice itself plus three
- *                    diagonals, as where a surface intersects itself all over.
+ * @param tooFar      for a component whose curve the detours inside would make longer than twice
+ *        its
+ *                    length plus three diagonals, as where a surface runs into itself all over.
  * @param cut         receives how many such components there are; may be null.
- * @return the curve; edges in order, new nodes last. Radii are not its business.
- * @post no node is outside by more than 5e-7 of the diagonal, and no edge, but for components that are too far
- *       outside and stay.
- * @throws SolverError, Cancelled. Complexity: O(F) for a curve that is inside; at most O(F log F) for each
- *         edge that is not.
+ * @return the curve; edges in order, new nodes last. Radii are not updated.
+ * @post no node or edge is outside by more than 5e-7 of the diagonal, but for components that are
+ *       too far outside and stay.
+ * @throws SolverError, Cancelled. Complexity: O(F log F), and at most as much for each edge
+ *        outside.
  */
 inline CurveSkeleton broughtInside(CurveSkeleton skeleton, const std::vector<Point3d>& surface,
 	const std::vector<Triangle>& triangles, const std::vector<int>& component, int components,
@@ -615,9 +621,10 @@ inline CurveSkeleton broughtInside(CurveSkeleton skeleton, const std::vector<Poi
 }
 
 /**
- * For each component of a resampled surface the one of the surface that it was made from; empty where they do
- * not pair off. The nearest vertex may be a neighbouring body's: most of them tell.
- * @param ofCurve    for each node of the curve the component of the resampled surface, which has `ofSurface`.
+ * For each component of a resampled surface the one of the surface that it was made from; empty if
+ * they do not pair off. The majority decides, since a vertex may have a neighbouring body's node.
+ * @param ofCurve    for each node of the curve the component of the resampled surface.
+ * @param ofSurface  how many components that has.
  * @param node       for each vertex of the other surface its node.
  * @param component  of that vertex; there are `components`.
  */
@@ -641,12 +648,13 @@ inline std::vector<int> resampledFrom(const std::vector<int>& ofCurve, int ofSur
 }
 
 /**
- * Brings the curve of a resampled surface inside the one that was resampled, see broughtInside(): the edges of
- * the resampling cut its corners. Radii and significance are completed.
+ * Brings the curve of a resampled surface inside the one that was resampled, see broughtInside():
+ * the edges of the resampling cut its corners. Radii are measured anew, significance is completed.
  *
  * @param surface  that the curve came from, to which its correspondence refers.
- * @param input    that was resampled, and @param node of each of its vertices its node of the curve.
- * @post nothing has changed where all was inside, or where the components of the two surfaces do not pair off.
+ * @param input    that was resampled.
+ * @param node     for each of its vertices its node of the curve.
+ * @post nothing has changed if all was inside, or if the surfaces' components do not pair off.
  * @throws SolverError, Cancelled. Complexity: O(F log F).
  */
 inline void bringInsideInput(CurveSkeleton& curve, const SurfaceMesh& surface,
@@ -694,9 +702,9 @@ inline void bringInsideInput(CurveSkeleton& curve, const SurfaceMesh& surface,
 }
 
 /**
- * collapseToCurve(), and what of the curve is outside of the surface is brought inside, see broughtInside().
- * Not where vertices are held, which the user may want anywhere, nor where the triangles of the surface are
- * not known.
+ * collapseToCurve(), then broughtInside(); the latter not if vertices are held, which the user may
+ * want anywhere, nor if the triangles of the surface are not known.
+ * @param cut  see broughtInside().
  * @throws SolverError, Cancelled.
  */
 inline CurveSkeleton collapseInside(Stage stage, double shortestEdge = 1e-4,
@@ -713,7 +721,7 @@ inline CurveSkeleton collapseInside(Stage stage, double shortestEdge = 1e-4,
 	std::vector<int> ofNode(curve.position.size(), -1);
 	for (size_t s = 0; s < component.size(); ++s)
 		ofNode[curve.node[s]] = component[s];
-	// A node of split vertices only is of the component of its neighbours.
+	// A node of split vertices only belongs to the component of its neighbours.
 	const std::vector<std::vector<int>> neighbours = curve.neighbours();
 	std::vector<int> told;
 	for (size_t A = 0; A < ofNode.size(); ++A)

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Spurs of the curve that a stage collapses to: the last vertices to be fixed leave some.
+/// @brief Removal of the spurs that the last vertices to be fixed leave on a collapsed curve.
 
 #ifndef VCG_MCF_CURVE_SPURS_H
 #define VCG_MCF_CURVE_SPURS_H
@@ -22,12 +22,12 @@
 namespace vcg::tri::mcf::detail {
 
 /**
- * Removes the terminal branches whose prominence() is below `minimum`: they stand for no feature of the
- * shape. Balls reach to the nearest vertex of their component's surface. What had merged into a spur
- * goes to its junction. Branches with held nodes stay.
+ * Removes the terminal branches whose prominence() is below `minimum`: they stand for no feature of
+ * the shape. Balls reach to the nearest vertex of their component's surface. What had merged into a
+ * spur goes to its junction. Branches with held nodes stay.
  * @param component  that each node belongs to.
  * @param held       for each node, whether it is held in its place.
- * @post radius of junctions and tips is that of their balls.
+ * @post if there are junctions, radius of these and of tips is that of their balls; held: infinite.
  * @throws Cancelled. Complexity: O(surface vertices * (junctions + tips)).
  */
 inline CurveSkeleton withoutSpurs(CurveSkeleton skeleton, const Stage& stage,

@@ -27,21 +27,21 @@ namespace vcg::tri::mcf {
  * The surface starts as the boundary of one piece for each component. Where an edge cannot be
  * contracted because the surface would pinch (three edges a b c that bound no triangle), the piece
  * is cut along a b c and both lips are closed by the triangle a b c: the two copies of the triangle
- * stay glued. A piece that has shrunk to two triangles back to back (a pillow) and is contracted once
- * more leaves a curve edge. So the solid is at any time a union of pieces and curve edges that share
- * nodes; a node is a set of copies of one vertex, one or more in each piece that meets there.
+ * stay glued. A piece that has shrunk to two triangles back to back (a pillow) and is contracted
+ * once more leaves a curve edge. So the solid is at any time a union of pieces and curve edges that
+ * share nodes; a node is a set of copies of one vertex, one or more in each piece that meets there.
  *
  * contract() merges two nodes in all pieces at once, and only if each piece keeps its topology
  * (link condition) and no loop A B C of three edges without a triangle would vanish (a real cycle
- * of the shape). Both together keep the homotopy type of the union, and so do the other steps, which
- * help where every contraction would lose a cycle: the skeleton has a component for each component
- * of the surface, and as many cycles as its genus.
+ * of the shape). Both together keep the homotopy type of the union, and so do the other steps,
+ * which help where every contraction would lose a cycle: the skeleton has a component for each
+ * component of the surface, and as many cycles as its genus.
  */
 class GluedComplex
 {
 public:
 	/**
-	 * @param held  1 where a vertex of the surface is held: a node of held vertices is where these are;
+	 * @param held  1 for held vertices of the surface: nodes of such vertices are where these are;
 	 *              empty if there are none.
 	 * @pre surface is compact.
 	 */
@@ -61,8 +61,8 @@ public:
 	int nodeSlots() const { return int(copies.size()); }
 	/// The node into which node A has merged.
 	int find(int A) { return nodes.find(A); }
-	/// The mean of the vertices that have merged into the node, of the held ones if there are any; or
-	/// where moveTo() has put it.
+	/// The mean of the vertices that have merged into the node, of the held ones if there are any;
+	/// or where moveTo() has put it.
 	const Point3d& position(int A) const { return positions[A]; }
 	/// Whether held vertices have merged into the node.
 	bool isHeld(int A) const { return heldWeight[A] > 0; }
@@ -130,7 +130,7 @@ public:
 				return Outcome::NoFaces;
 			if (!emptyTriangle(A, B, halfEdges).empty())
 				return Outcome::Blocked;
-			// Each cut settles which loops of the piece bound a disc inside: all is to be asked anew.
+			// Each cut settles which loops of the piece bound a disc inside: test all anew.
 			if (!cut(A, B))
 				break;
 		}
@@ -147,9 +147,9 @@ public:
 	}
 
 	/**
-	 * Takes away the edge A B and the only pillow that has it: the other two edges are left as curve
-	 * edges (an elementary collapse).
-	 * @return whether the edge was one that only one pillow has.
+	 * Removes the edge A B and the only pillow that has it, in all its copies: the other two edges
+	 * are left as curve edges (an elementary collapse).
+	 * @return whether there was such an edge: false if another pillow or a solid piece has it.
 	 */
 	bool removeFreeEdge(int A, int B)
 	{
@@ -177,7 +177,7 @@ public:
 	}
 
 	/**
-	 * Empties each ball that has a face which no other piece shares: that face is taken away, and the
+	 * Empties each ball that has a face which no other piece shares: that face is removed, and the
 	 * others stay as pillows (an elementary collapse). Of several such faces the largest.
 	 * Complexity: O(F log F). @return whether there was such a ball.
 	 */
@@ -308,7 +308,7 @@ private:
 		return result;
 	}
 
-	/// Cuts the piece of h where collapsing h would pinch it. @return whether there was such a place.
+	/// Cuts the piece of h where collapsing h would pinch it. @return whether it would.
 	bool cutPinch(int h)
 	{
 		const int c = mesh.pinchVertex(h);

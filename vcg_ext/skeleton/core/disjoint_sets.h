@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Who has merged into whom: the correspondence through collapses (Sec. 4.3).
+/// @brief Disjoint sets of vertices: which one each has merged into by collapses (Sec. 4.3).
 
 #ifndef VCG_MCF_DISJOINT_SETS_H
 #define VCG_MCF_DISJOINT_SETS_H
@@ -14,28 +14,28 @@
 
 namespace vcg::tri::mcf {
 
-/// Disjoint sets of vertices, each with the vertex that stands for it.
+/// Disjoint sets of vertices, each with a representative.
 class MergeForest
 {
 public:
-	/// Each vertex stands for itself. @throws Cancelled
+	/// Each of the vertices 0 to size - 1 is alone in its set. @throws Cancelled
 	explicit MergeForest(int size, const Cancellation& cancel = Cancellation()) :
 			parent(detail::numberedArray(size_t(size), cancel))
 	{
 	}
 
-	/// Adds a vertex that stands for itself.
+	/// Adds a vertex, alone in its set. @return the vertex.
 	int add()
 	{
 		parent.push_back(int(parent.size()));
 		return parent.back();
 	}
 
-	/// From now on `to` stands for all that `from` stood for. @pre both stand for themselves.
+	/// Merges the set of `from` into that of `to`. @pre both are representatives; `to` stays one.
 	void merge(int from, int to) { parent[from] = to; }
 
-	/// Unites the sets of a and b; the lower of the two that stood for them stands for all.
-	/// @return whether they were two sets.
+	/// Unites the sets of a and b; the lower of their representatives represents both.
+	/// @return whether the sets were different.
 	bool join(int a, int b)
 	{
 		a = find(a);
@@ -46,7 +46,7 @@ public:
 
 	int size() const { return int(parent.size()); }
 
-	/// The vertex that stands for v.
+	/// The representative of the set of v; halves the path to it.
 	int find(int v)
 	{
 		while (parent[v] != v)

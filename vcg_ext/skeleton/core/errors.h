@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief The exceptions that the skeleton pipeline throws. Nothing else leaves it but std::bad_alloc.
+/// @brief The exceptions of the skeleton pipeline. It throws no others but std::bad_alloc.
 
 #ifndef VCG_MCF_ERRORS_H
 #define VCG_MCF_ERRORS_H
@@ -30,11 +30,11 @@ enum class Defect {
 	OneSided,            ///< not orientable; there may be border edges, too
 	BorderEdges,         ///< not watertight
 	NoVolume,            ///< a connected component is flat
-	Flat,                ///< all of it is
+	Flat,                ///< the whole mesh is flat
 	OpenSheet            ///< bounds nothing, however its borders are closed
 };
 
-/// The mesh cannot be skeletonized; the text says what is wrong, how many, where, and what cures it.
+/// The mesh cannot be skeletonized; the text says what is wrong, how often, where, and the cure.
 class InvalidInput : public Error
 {
 public:

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Millions of entries sorted in pieces between which the user can cancel.
+/// @brief Sorting of large arrays, by groups, which the user can cancel.
 
 #ifndef VCG_MCF_GROUPED_SORT_H
 #define VCG_MCF_GROUPED_SORT_H
@@ -17,12 +17,12 @@
 
 namespace vcg::tri::mcf::detail {
 
-/// How many entries are visited, or comparisons made, between two questions whether to cancel: some milliseconds.
+/// Entries visited, or comparisons made, between two checks for cancellation: some milliseconds.
 constexpr size_t sortedAtOnce = size_t(1) << 15;
 
 /**
  * Sorts array[from, to) by operator<.
- * @throws Cancelled; the entries are in no order then.
+ * @throws Cancelled; the entries are unspecified then.
  */
 template <class T>
 void sortCancellable(std::vector<T>& array, size_t from, size_t to, const Cancellation& cancel)
@@ -44,8 +44,8 @@ public:
 	SortedGroups() = default;
 
 	/**
-	 * @param groupOf  of an index from 0 to count - 1: its group, below `groups`.
-	 * @param entryOf  of such an index: its entry, to be sorted by operator<.
+	 * @param groupOf  int(i) for i in [0, count): the group of entry i, in [0, groups).
+	 * @param entryOf  Entry(i): the entry itself. Groups are sorted by its operator<.
 	 * @throws Cancelled
 	 * Complexity: O(groups + count log(entries of the largest group)).
 	 */
@@ -53,7 +53,7 @@ public:
 	SortedGroups(int count, size_t groups, const GroupOf& groupOf, const EntryOf& entryOf,
 		const Progress& progress, const char* what)
 	{
-		// A group's place counts up to its end as it is filled, which is where the next one begins.
+		// start[g + 1] is the next free place of group g; once g is full, g + 1 begins there.
 		start = filledArray(groups + 2, 0, progress);
 		reportedLoop(
 			count, progress.part(0.1, 0.25), what, [&](int i) { ++start[size_t(groupOf(i)) + 2]; });
@@ -83,12 +83,12 @@ public:
 	}
 
 private:
-	std::vector<int> start; ///< of each group; the end of the last one; one more
+	std::vector<int> start; ///< of each group; the end of the last one; a spare
 	std::vector<Entry> entries;
 
 	double shareOf(size_t i) const { return double(i) / double(entries.size()); }
 
-	/// Reports by groups and entries, whichever are more.
+	/// As forEach(), with indices into `entries`. Empty groups count for the reports as well.
 	template <class Visit>
 	void forEachRange(const Progress& progress, const char* what, Visit&& visit) const
 	{

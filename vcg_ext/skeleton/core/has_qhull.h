@@ -8,9 +8,9 @@
 #define VCG_MCF_HAS_QHULL_H
 
 /**
- * 1 where the program is linked with the reentrant Qhull (-lqhull_r), as the CMake target mcfskel::mcfskel
- * sees to if it finds one. Not taken from whether the headers are there: that would need the library of
- * programs that never ask for a Voronoi diagram.
+ * 1 where the program is linked with the reentrant Qhull (-lqhull_r); the CMake target
+ * mcfskel::mcfskel does both if it finds one. The presence of the headers does not decide: programs
+ * that never ask for a Voronoi diagram would then need the library.
  */
 #ifndef MCFSKEL_HAS_QHULL
 #define MCFSKEL_HAS_QHULL 0
@@ -18,6 +18,7 @@
 
 namespace vcg::tri::mcf {
 
+/// Whether PoleMethod::Voronoi is available.
 constexpr bool hasQhull = MCFSKEL_HAS_QHULL;
 
 } // namespace vcg::tri::mcf

@@ -4,8 +4,8 @@
 /// @file
 /// @brief Chunked allocation and copying of large arrays, which the user can cancel.
 ///
-/// First-touch page faults can be slow, a few GB in ten seconds on a virtual machine: a single allocation
-/// of 100 MB would block cancellation for half a second.
+/// First-touch page faults can be slow, a few GB in ten seconds on a virtual machine: a single
+/// allocation of 100 MB would block cancellation for half a second.
 
 #ifndef VCG_MCF_LARGE_ARRAYS_H
 #define VCG_MCF_LARGE_ARRAYS_H
@@ -19,11 +19,11 @@
 
 namespace vcg::tri::mcf::detail {
 
-/// How many elements of a large array are made between two questions whether to cancel: 4 MB.
+/// Elements of a large array that are made between two checks for cancellation: 4 MB.
 template <class T>
 constexpr size_t pieceOf = (size_t(1) << 22) / sizeof(T);
 
-/// Makes an array `count` elements long, all of them `value`, whatever it was before. @throws Cancelled
+/// Replaces the contents of an array by `count` copies of `value`. @throws Cancelled
 template <class T>
 void fillArray(std::vector<T>& array, size_t count, const T& value, const Cancellation& cancel)
 {

@@ -19,7 +19,7 @@ using NoteCallback = std::function<void(const std::string&)>;
 
 namespace detail {
 
-/// A sentence made of texts and numbers, these with a number of significant digits, in any locale alike.
+/// A sentence of texts and numbers, these with `digits` significant digits, in the classic locale.
 template <class... Parts>
 std::string sentence(int digits, const Parts&... parts)
 {
@@ -30,7 +30,7 @@ std::string sentence(int digits, const Parts&... parts)
 	return text.str();
 }
 
-/// A number with its own number of significant digits, within a sentence().
+/// A number within a sentence() that has another number of significant digits.
 inline std::string number(double value, int digits)
 {
 	return sentence(digits, value);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Loops whose rounds do not depend on each other, on all cores where OpenMP is there.
+/// @brief Loops over independent blocks or parts of a range, in parallel where there is OpenMP.
 
 #ifndef VCG_MCF_PARALLEL_H
 #define VCG_MCF_PARALLEL_H
@@ -29,7 +29,7 @@ namespace vcg::tri::mcf {
 
 namespace detail {
 
-/// Whether that many threads can be started now. Their memory stays with the system's library for the next ones.
+/// Whether `count` threads can be started now. The system's library keeps their memory for later.
 inline bool canStartThreads(int count)
 {
 	std::mutex all;
@@ -51,7 +51,7 @@ inline bool canStartThreads(int count)
 	return started;
 }
 
-/// Whether there is memory for the small things without which OpenMP and the loader end the process.
+/// Whether 1 MB is free: OpenMP and the loader end the process where a small allocation fails.
 inline bool hasReserve()
 {
 	constexpr size_t reserve = 1 << 20;
@@ -63,8 +63,8 @@ inline bool hasReserve()
 /**
  * The number of threads for a loop: OpenMP's, or 1 where the system refuses that many.
  *
- * GCC's OpenMP ends the process where it cannot start a thread. It keeps its threads for the next loop with
- * as many, so that only a change of their number has to be tried out.
+ * GCC's OpenMP ends the process where it cannot start a thread. It keeps its threads for the next
+ * loop with as many, so that only a change of their number has to be tried out.
  */
 inline int threadsForLoop()
 {
@@ -84,12 +84,12 @@ inline int threadsForLoop()
 #endif
 }
 
-/// Calls work(whether this is the calling thread) on several threads at once. @pre work throws nothing.
+/// Calls work(isCallingThread) on each of several threads. @pre work does not throw.
 template <class Work>
 void onThreads([[maybe_unused]] int threads, const Work& work)
 {
 #ifdef _OPENMP
-	// A team of one would take the place of the others, which are kept for the next loop.
+	// A team of one would replace the larger one that is kept for the next loop.
 	if (threads > 1) {
 #pragma omp parallel num_threads(threads)
 		work(omp_get_thread_num() == 0);
@@ -106,7 +106,7 @@ void onThreads([[maybe_unused]] int threads, const Work& work)
  *
  * The blocks do not depend on the number of threads, so that a body whose result depends on its
  * block alone gives the same bits on any machine. The calling thread reports in between.
- * @param blocksPerReport  fewer where a round takes more than some 10 us.
+ * @param blocksPerReport  fewer where an element takes more than some 10 us.
  * @throws what body throws for one of the blocks, such as std::bad_alloc; Cancelled.
  */
 template <class Body>
@@ -139,12 +139,14 @@ void forEachBlock(int count, const Progress& progress, const char* what, const B
 }
 
 /**
- * Calls body(begin, end, progress) for the parts [start[i], start[i + 1]) of a range, the largest ones first,
- * several at once.
+ * Calls body(begin, end, progress) for the parts [start[i], start[i + 1]) of a range, the largest
+ * ones first, several at once.
  *
- * The calling thread reports: in its own parts, and while it waits for the last ones of others, whose progress
- * only tells them that the job is cancelled.
- * @param start of each part, rising, and the end of the last one; not all parts are empty.
+ * Only the calling thread reports: from its parts, and while it waits for the other threads. The
+ * progress of parts on these shows nothing; it throws Cancelled once the job is cancelled or a part
+ * has failed.
+ * @param start the begin of each part, ascending, and the end of the last one.
+ * @pre not all parts are empty.
  * @throws what body throws for one of the parts; Cancelled.
  */
 template <class Body>
@@ -158,14 +160,14 @@ void forEachPart(
 	std::vector<int> order(count);
 	std::iota(order.begin(), order.end(), 0);
 	std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return size(a) > size(b); });
-	std::vector<double> before(1, 0); // how much of the range is done by then, in this order
+	std::vector<double> before(1, 0); // sizes of the parts before each, in this order
 	for (int part : order)
 		before.push_back(before.back() + size(part));
 	const double total = before.back();
 	std::atomic<int> next = 0, done = 0;
 	std::atomic<bool> stop = false;
 	std::mutex waiting;
-	std::condition_variable oneMore; // is done
+	std::condition_variable oneMore; // part is done
 	std::vector<std::exception_ptr> errors(count + 1);
 	const auto guarded = [&](std::exception_ptr& error, const auto& call) {
 		try {
@@ -202,13 +204,13 @@ void forEachPart(
 				std::rethrow_exception(error);
 			}
 			catch (const Cancelled&) {
-				cancelled = error; // perhaps by an error in another part
+				cancelled = error; // perhaps since another part failed: its error comes first
 			}
 	if (cancelled)
 		std::rethrow_exception(cancelled);
 }
 
-/// Parts of [0, count) for forEachPart(), one for each thread; a single one if count is less than `minForTeam`.
+/// Parts of [0, count) for forEachPart(), one for each thread; a single one if count < minForTeam.
 inline std::vector<int> rangesForThreads(int count, [[maybe_unused]] int minForTeam)
 {
 	int parts = 1;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Every knob of the pipeline: default, unit and the equation it belongs to.
+/// @brief All parameters of the pipeline: default, range, unit and equation.
 
 #ifndef VCG_MCF_PARAMETERS_H
 #define VCG_MCF_PARAMETERS_H
@@ -25,10 +25,10 @@ enum class PoleMethod {
 enum class Repair {
 	Auto, ///< small defects are mended; where that is not enough, the surface is wrapped
 	Mend, ///< small defects are mended, no more
-	Off   ///< it is refused, but for what checkedSurface() repairs
+	Off   ///< it is refused, except for what checkedSurface() repairs
 };
 
-/// A set of values for the parameters that are about the method, not about the shape: see Parameters::apply().
+/// A set of values for the parameters of the method, not of the shape: see Parameters::apply().
 enum class Preset {
 	Default, ///< what gives the best skeletons
 	Paper    ///< the paper's algorithm and nothing else
@@ -36,37 +36,37 @@ enum class Preset {
 
 /**
  * What the user may choose. Lengths are fractions of the bounding box diagonal of a connected
- * component, so that each component of a scene is treated as it would be alone. The box is that along
- * the principal axes, see PrincipalFrame, but for targetLength, where it stands straight.
+ * component, so that each component of a scene is treated as it would be alone. The box is aligned
+ * with the principal axes, see PrincipalFrame; for targetLength, with the coordinate axes.
  */
 struct Parameters
 {
-	/// Smoothness weight w_L (Eq. 6), of the Laplacian whose weights are `cotangentFactor` times the sums of the
-	/// cotangents; > 0.
+	/// Smoothness weight w_L (Eq. 6); > 0. The weights of the Laplacian are `cotangentFactor` times
+	/// the sums of the cotangents.
 	double wL = 1;
 	/// Velocity weight w_H (Eq. 6), in the paper's units; > 0. Larger: smaller steps, more of them.
 	double wH = 20;
 	/// Medial weight w_M (Eq. 6), in the paper's units; >= 0. 0: plain mean curvature skeleton.
 	double wM = 40;
-	/// Edges shorter than this are collapsed (Sec. 4.3); fraction of the diagonal, in (0, maxEpsilon].
+	/// Shorter edges are collapsed (Sec. 4.3); fraction of the diagonal, in (0, maxEpsilon].
 	double epsilon = 0.002;
 	static constexpr double maxEpsilon = 0.1;
-	/// An edge whose two opposite angles are wider is split (Sec. 4.3); degrees, in [60, 180).
+	/// An edge whose two opposite angles are both wider is split (Sec. 4.3); degrees, in [60, 180).
 	double splitAngle = 110;
 	/// The flow stops after this many iterations even if it has not converged; >= 0.
 	int maxIterations = 500;
 	PoleMethod poleMethod = PoleMethod::Balls;
-	/// Keep sheets of the medial axis where the shape is flat, instead of contracting them to curves.
+	/// Keep sheets of the medial axis where the shape is flat, instead of curves.
 	bool keepSheets = false;
-	/// What is a sheet: where the sheetness (see sheetness.h) is above this; in [0, 1]. 0: nearly the
+	/// Sheetness (see sheetness.h) above which the shape is a sheet; in [0, 1]. 0: nearly the
 	/// medial axis; 1: curves only.
 	double sheetThreshold = 0.85;
 	/// Resample the surface first (first line of Fig. 4).
 	bool resample = true;
 	/// Edge length of the resampling, fraction of the diagonal; 0: chosen by defaultTargetLength().
 	double targetLength = 0;
-	/// Lengths follow the local thickness where that is small: see sizingField(). Without, they are the
-	/// same everywhere, as in the paper.
+	/// Lengths follow the local thickness where that is small, see sizingField(); if false, they
+	/// are the same everywhere, as in the paper.
 	bool adaptive = true;
 	/// With `adaptive`, the longest edge of the resampling in local thicknesses; in (0, 2].
 	double relativeLength = 0.6;
@@ -76,33 +76,34 @@ struct Parameters
 	bool denoise = true;
 	/// Refine the curve at the end: see refine.h.
 	bool refine = true;
-	/// With `refine`, how small branches may be, in [0, 1]: those stay whose significance is at least
-	/// 1 - detail, see nestedBranches(). 0: the trunk alone; 1: all.
+	/// With `refine`, the branches whose significance is at least 1 - detail are kept, see
+	/// nestedBranches(); in [0, 1]. 0: the trunk alone; 1: all.
 	double detail = defaultDetail;
 	static constexpr double defaultDetail = 0.9;
-	/// What the sums of the cotangents are multiplied with, > 0. The published weights belong to 1.
+	/// Factor of the sums of the cotangents in the Laplacian, > 0. The published weights are for 1.
 	double cotangentFactor = 0.5;
-	/// Merge edges up to two epsilon before the flow, and halve those far too long: see firstStage().
+	/// Merge edges up to two epsilon before the flow, halve those far too long: see firstStage().
 	bool coarsen = true;
-	/// Leave out the medial term where the pole lies outwards, where the flow has passed the medial axis.
+	/// Leave out the medial term where the pole lies outwards: there the flow has passed the medial
+	/// axis.
 	bool dropOutwardPoles = true;
-	/// Solve the linear systems by a direct Cholesky factorisation in double, instead of to a hundredth by
-	/// conjugate gradients in single precision.
+	/// Solve the linear systems by a direct Cholesky factorisation in double precision, instead of
+	/// to a hundredth by conjugate gradients in single precision.
 	bool directSolver = false;
-	/// Straighten the zigzag of the curve that the last collapse leaves, take its spurs off, and bring inside
-	/// what is outside.
+	/// Straighten the zigzag of the curve that the last collapse leaves, remove its spurs, bring
+	/// inside what is outside.
 	bool tidyCurve = true;
-	/// For meshes that do not bound a solid.
+	/// What is done with a mesh that does not bound a solid.
 	Repair repair = Repair::Auto;
-	/// Pieces whose volume is a smaller part of the largest one's get no skeleton; in [0, 1). 0: all get one.
+	/// Pieces below this fraction of the largest one's volume get no skeleton; in [0, 1). 0: each
+	/// gets one.
 	double minComponent = 0;
-	/// Join the skeletons of all pieces by bridges: see join_pieces.h. Not where there are sheets.
+	/// Join the skeletons of all pieces by bridges, see join_pieces.h; not where there are sheets.
 	bool join = false;
 
 	/**
-	 * Sets the parameters that make the method what it is: poleMethod, adaptive, denoise, coarsen,
-	 * cotangentFactor, dropOutwardPoles, directSolver, tidyCurve and refine. Weights, lengths, iterations,
-	 * sheets and repair stay as they are.
+	 * Sets the parameters of the method: poleMethod, adaptive, denoise, coarsen, cotangentFactor,
+	 * dropOutwardPoles, directSolver, tidyCurve and refine. All others are unchanged.
 	 */
 	void apply(Preset preset)
 	{

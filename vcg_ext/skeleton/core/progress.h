@@ -17,9 +17,10 @@
 namespace vcg::tri::mcf {
 
 /**
- * The cancellation token of a job: what long loops, copies, and sorts ask now and then.
+ * The cancellation token of a job: long loops, copies and sorts check it at intervals.
  *
- * Copies are one token. Only the thread that runs the job asks it, see forEachBlock() and forEachPart().
+ * Copies are the same token. Only the thread that runs the job checks it, see forEachBlock() and
+ * forEachPart().
  */
 class Cancellation
 {
@@ -45,15 +46,15 @@ protected:
 		int percent = 0;
 		const char* what = "Starting";
 	};
-	/// Null where nobody listens.
+	/// Null without a callback.
 	std::shared_ptr<Job> job;
 };
 
 /**
- * A window into a progress bar; the job's cancellation token as well.
+ * A window into a progress bar; also the job's cancellation token.
  *
- * A stage reports fractions in [0, 1] of its own work; whoever calls the stage decides by part()
- * which piece of the whole bar that is. The bar never moves backwards.
+ * A stage reports fractions in [0, 1] of its own work; its caller decides by part() which piece of
+ * the whole bar that is. The bar moves forwards only, if fractions and windows are in order.
  */
 class Progress : public Cancellation
 {
@@ -67,7 +68,7 @@ public:
 			job = std::make_shared<Job>(Job {std::move(callback)});
 	}
 
-	/// The piece [from, to] (fractions of this window) as a window of its own.
+	/// The piece [from, to] of this window, in fractions of it.
 	Progress part(double from, double to) const
 	{
 		Progress piece = *this;
@@ -76,7 +77,7 @@ public:
 		return piece;
 	}
 
-	/// A progress that only asks for cancellation: for steps that are too short to be shown.
+	/// A progress that only checks for cancellation: for steps that are too short to be shown.
 	Progress cancelOnly() const
 	{
 		Progress hidden = *this;

@@ -20,7 +20,7 @@ struct SegmentPoint
 	double t;
 };
 
-/// The point of the segment from a to b that is closest to `query`; of a segment without length its first end.
+/// The point of the segment from a to b that is closest to `query`; a if the ends coincide.
 inline SegmentPoint closestOnSegment(const Point3d& a, const Point3d& b, const Point3d& query)
 {
 	const Point3d along = b - a;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief The coordinates and lengths that can be worked with.
+/// @brief The range of coordinates and lengths that the library accepts.
 
 #ifndef VCG_MCF_SHAPE_LIMITS_H
 #define VCG_MCF_SHAPE_LIMITS_H
@@ -13,8 +13,8 @@
 
 namespace vcg::tri::mcf {
 
-/// What single precision, in which some hosts keep their layers, holds with room for sums; cubes of it
-/// are far from the limits of double precision.
+/// Mesh units. Single precision, in which some hosts keep their layers, holds these with room for
+/// sums; their cubes are far from the limits of double precision.
 constexpr double maxCoordinate = 1e36, minSize = 1e-36;
 
 /// Whether a point is finite and not too far from the origin.
@@ -26,7 +26,7 @@ inline bool isUsablePlace(const Point3d& p)
 	return true;
 }
 
-/// Whether a length can be a shape's unit.
+/// Whether a length can be the diagonal of a shape.
 inline bool isUsableSize(double length)
 {
 	return length >= minSize && length <= 4 * maxCoordinate; // the diagonal of the range is shorter

@@ -14,11 +14,11 @@
 
 namespace vcg::tri::mcf::detail {
 
-/// Counts elements and lets the user cancel now and then.
+/// Counts elements; at intervals, reports progress and checks for cancellation.
 class Ticker
 {
 public:
-	/// @param expected how many elements there will be, as far as it is known.
+	/// @param expected number of elements, exact or estimated.
 	Ticker(const Progress& progress, const char* what, double expected) :
 			progress(progress), what(what), expected(std::max(expected, 1.0))
 	{
@@ -38,7 +38,7 @@ private:
 	std::uint64_t count = 0;
 };
 
-/// Calls visit(i) for all i in [0, count), in this order, and lets the user cancel now and then.
+/// Calls visit(i) for all i in [0, count), in this order, and checks for cancellation at intervals.
 /// @throws Cancelled
 template <class Visit>
 void cancellableLoop(int count, const Cancellation& cancel, Visit&& visit)
@@ -52,7 +52,7 @@ void cancellableLoop(int count, const Cancellation& cancel, Visit&& visit)
 	}
 }
 
-/// The same, and reports how far it is.
+/// As cancellableLoop(), and reports progress.
 /// @throws Cancelled
 template <class Visit>
 void reportedLoop(int count, const Progress& progress, const char* what, Visit&& visit)

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief All that the next step, the collapse and the kinds of vertices take for granted of a stage.
+/// @brief Checks a stage for all that the next step, the collapse and the vertex kinds assume.
 
 #ifndef VCG_MCF_CHECK_STAGE_H
 #define VCG_MCF_CHECK_STAGE_H
@@ -27,12 +27,12 @@ namespace vcg::tri::mcf {
 class InvalidStage : public InvalidInput
 {
 public:
-	/// What of the stage is wrong: one of its vertices, faces, components, vertices or faces of its surface,
-	/// or the stage itself.
+	/// What is wrong: one of the stage's vertices, faces or components, one of its surface's
+	/// vertices or faces, or the stage itself.
 	enum class Part { Vertex, Face, Component, SurfaceVertex, SurfaceFace, Stage };
 
 	/// @param row    the first that is wrong, from 0; count: how many are.
-	/// @param reason what is wrong with it, a sentence that begins with a field's name.
+	/// @param reason what is wrong with it, with a full stop; follows a colon in the text.
 	InvalidStage(Part part, size_t row, size_t count, const std::string& reason) :
 			InvalidInput(text(part, row, count, reason)), wrongPart(part), firstRow(row),
 			countOfRows(count), why(reason)
@@ -63,7 +63,7 @@ private:
 
 namespace detail {
 
-/// Looks through the parts of a stage, and throws at the end of a loop in which it met a wrong one.
+/// Checks one property after the other for all parts of a stage; throws at the first violated one.
 class StageChecker
 {
 public:
@@ -97,7 +97,7 @@ private:
 			throw InvalidStage(Part::Stage, 0, 1, reason);
 	}
 
-	/// @param isRight (i): whether that one of the parts is. @throws InvalidStage, Cancelled
+	/// @param isRight bool(i): whether part i is right. @throws InvalidStage, Cancelled
 	template <class IsRight>
 	static void requireEach(Part part, size_t count, const Progress& progress, const char* reason,
 		const IsRight& isRight)
@@ -139,7 +139,7 @@ private:
 		requireEach(Part::Component, components(), progress.cancelOnly(),
 			"'diagonal' is not of a size that can be worked with.",
 			[&](size_t c) { return isUsableSize(stage.diagonal[c]); });
-		// Fractions of them stay finite, whatever the stage becomes.
+		// So fractions of areas and volumes stay finite, whatever the stage becomes.
 		constexpr double minFraction = 1e-100;
 		requireEach(Part::Component, components(), progress.cancelOnly(),
 			"'initial_area' is not finite, or not above 0.", [&](size_t c) {
@@ -172,7 +172,7 @@ private:
 				return isFlag(stage.fixed[v]) && isFlag(stage.held[v]) && isFlag(stage.sheet[v]);
 			});
 		each("held, but not fixed.", [&](size_t v) { return stage.fixed[v] || !stage.held[v]; });
-		// Once it has arrived, a sheet's vertex is put where its pole is.
+		// The collapse moves the fixed vertices of sheets onto their poles.
 		each("of a sheet, but without a pole.",
 			[&](size_t v) { return !stage.sheet[v] || stage.poleRadius[v] >= 0; });
 		each("'mcfskel_epsilon_limit' is not between 1e-6 and 0.1.", [&](size_t v) {
@@ -260,11 +260,11 @@ private:
 	/// The unit of length fits the surface, and everything is somewhere near it.
 	void checkReach(const Progress& part) const
 	{
-		// The diagonal is that of another box round the same points: a factor of sqrt 3 at most.
+		// The diagonal is that of another box around the same points: a factor of sqrt 3 at most.
 		constexpr double maxRatio = 2;
-		// The flow stays inside but for the worst input; the places of what it cannot hold are bounded
-		// by this, and so are the cells of grids and the splits of long edges.
-		constexpr double maxDistance = 100; // diagonals
+		// The flow stays inside except for the worst input. This bounds how far vertices may be
+		// outside, and so the cells of grids and the splits of long edges.
+		constexpr double maxDistance = 100; // diagonals, from the middle of the box
 		std::vector<Box3d> box(components());
 		reportedLoop(int(stage.node.size()), part.part(0, 0.5), checking,
 			[&](int s) { box[stage.component[stage.node[s]]].Add((*stage.surface)[s]); });
@@ -290,18 +290,18 @@ private:
 } // namespace detail
 
 /**
- * Checks everything that the functions on stages assume without looking: step(), collapseToCurve(),
+ * Checks everything that the functions on stages assume without a check: step(), collapseToCurve(),
  * collapseKeepingSheets(), vertexKinds(), stageRadius().
  *
  * The mesh is compact, a closed two-manifold without double edges; each of its vertices has finite
- * coordinates, flags of 0 or 1, a component that exists; each component is one connected part, and has
- * vertices of the surface, whose size is its unit of length; each vertex of the surface belongs to a
- * vertex of the mesh; numbers that are divided by are above 0; all is of a magnitude that can be
- * squared and cubed, and within 100 diagonals of the surface. Poles of vertices that have none are
- * nobody's business.
+ * coordinates, flags of 0 or 1, and a component that exists; each component is one connected part,
+ * and has vertices of the surface, whose diagonal is its unit of length; each vertex of the surface
+ * belongs to a vertex of the mesh; divisors are above 0; all numbers can be squared and cubed, and
+ * all positions are within 100 diagonals of the surface. The poles of vertices without one are not
+ * checked.
  *
- * What a step makes of a stage that passes, passes.
- * @throws InvalidStage that names what is wrong, the first place and how many there are; Cancelled.
+ * If a stage passes, so does the result of a step on it.
+ * @throws InvalidStage with the first violation and how many there are of its kind; Cancelled.
  * Complexity: about O(V + F + surface).
  */
 inline void checkStage(const Stage& stage, const Progress& progress = Progress())

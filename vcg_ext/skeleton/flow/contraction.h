@@ -24,8 +24,9 @@ namespace vcg::tri::mcf {
 
 namespace detail {
 
-/// How exactly the system is solved: a hundredth does for the default weights. The stronger w_L is against
-/// the others, the smaller is the part of the energy that smooth moves have, so that they come last.
+/// Relative tolerance of the linear solver: 1e-2 suffices for the default weights. The larger w_L
+/// is beside the other weights, the smaller is the share of smooth moves in the energy, so that
+/// they converge last.
 inline double solverTolerance(const Parameters& parameters)
 {
 	const auto stiffness = [](const Parameters& p) {
@@ -43,15 +44,17 @@ inline double solverTolerance(const Parameters& parameters)
  *
  * Fixed vertices are known values, not unknowns with a large weight; the Laplacian rows are those
  * of the free vertices. The medial term is left out for a vertex without a pole and, with
- * parameters.dropOutwardPoles, where the pole lies outwards, (mu(v) - v) . n > 0: there the flow has passed
- * the medial axis, and the term would blow the surface up again. Vertices of sheets (Stage::sheet) have a weight of their own and keep it.
+ * parameters.dropOutwardPoles, where the pole lies outwards, (mu(v) - v) . n > 0: there the flow
+ * has passed the medial axis, and the term would blow the surface up again. Vertices of sheets
+ * (Stage::sheet) always have the term, with the weight sheetWeight2.
  *
- * Weights are squared (Eq. 5 does, Eq. 6 does not; the published values belong to the square).
- * Connected components are independent linear systems, solved in parallel. The result for a component is
- * bitwise identical to solving it alone.
+ * Weights are squared, as in Eq. 5; Eq. 6 has no squares, but the published values belong to them.
+ *
+ * Connected components are independent linear systems, solved in parallel. The result for a
+ * component is bitwise identical to solving it alone.
  * @pre stage.mesh is compact.
- * @throws SolverError if the system breaks down or a position stops being finite; Cancelled. Basic guarantee
- *         only: the stage is unspecified then and must be discarded.
+ * @throws SolverError if the system breaks down or a position stops being finite; Cancelled. Then
+ *         the stage is unspecified and must be discarded.
  * Complexity: that of one sparse factorisation, about O(V log V) on a surface mesh.
  */
 inline void contract(

@@ -15,11 +15,11 @@
 
 namespace vcg::tri::mcf {
 
-/// What the flow needs to know about a triangle.
+/// What the flow measures of a triangle.
 struct TriangleMeasures
 {
-	/// For each half-edge the cotangent of the angle opposite, bounded to [-100, 100], so that a sliver
-	/// cannot stiffen the system.
+	/// For each half-edge the cotangent of the opposite angle, clamped to [-100, 100], so that a
+	/// sliver cannot stiffen the system.
 	std::array<double, 3> cotangent;
 	/// As SurfaceMesh::areaVector().
 	Point3d areaVector;
@@ -43,8 +43,8 @@ inline TriangleMeasures measureTriangle(const SurfaceMesh& mesh, int face)
 }
 
 /**
- * The cotangent weight of an edge: w_ij = (cot(alpha_ij) + cot(beta_ij)) / 2, where alpha and beta are
- * the angles opposite (Desbrun et al. 1999), given their cotangents; dimensionless.
+ * The cotangent weight of an edge: w_ij = (cot(alpha_ij) + cot(beta_ij)) / 2, where alpha and beta
+ * are the opposite angles (Desbrun et al. 1999), given their cotangents; dimensionless.
  *
  * It is at least 1e-3, so that L stays an M-matrix: the flow then never pushes a vertex outwards.
  */

@@ -18,7 +18,7 @@ namespace vcg::tri::mcf {
  * Euler characteristic of the infinitesimal neighbourhood of v: the vertices that can be reached
  * from v along edges without leaving the ball of the given radius, and the edges and faces between
  * them. A disc has 1; anything else means that the surface has closed onto itself at v.
- * Complexity: linear in the neighbourhood.
+ * Complexity: O(k^2) for k vertices in the neighbourhood.
  */
 inline int neighbourhoodEuler(const SurfaceMesh& mesh, int v, double radius)
 {
@@ -46,9 +46,10 @@ inline int neighbourhoodEuler(const SurfaceMesh& mesh, int v, double radius)
 }
 
 /**
- * Fixes the candidates whose neighbourhood of radius epsilon is no disc.
+ * Fixes the candidates whose neighbourhood of radius Stage::epsilonAt() is not a disc.
  * @param candidates vertices with a short edge that failed the link condition: only these can be
  *        degenerate, since any other short edge has been collapsed.
+ * @param epsilon as in Parameters.
  * @return the number of vertices fixed.
  */
 inline int fixDegenerateVertices(Stage& stage, const std::vector<int>& candidates, double epsilon)

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief In which order the flow's unknowns are eliminated, so that the factor stays sparse.
+/// @brief The elimination order of the flow's unknowns, which keeps the factor sparse.
 
 #ifndef VCG_MCF_FILL_REDUCING_ORDER_H
 #define VCG_MCF_FILL_REDUCING_ORDER_H
@@ -16,17 +16,19 @@
 namespace vcg::tri::mcf {
 
 /**
- * Elimination order of the free vertices of a stage: component by component in reverse Cuthill-McKee order,
- * interleaved in blocks of 40.
+ * Elimination order of the free vertices of a stage: component by component in reverse
+ * Cuthill-McKee order, interleaved in blocks of 40.
  *
- * The mesh is numbered breadth first, so reverse Cuthill-McKee is from the last vertex to the first (George
- * and Liu, "Computer Solution of Large Sparse Positive Definite Systems", 1981). A full factor would have
- * more fill than in a minimum degree order; the incomplete one has less, is closer to the matrix, and the
- * entries of each row are near each other in memory. Vertices that splits have added since come first.
+ * The mesh is numbered breadth first, so reverse Cuthill-McKee is from the last vertex to the first
+ * (George and Liu, "Computer Solution of Large Sparse Positive Definite Systems", 1981). A complete
+ * factor would have more fill than in a minimum degree order; the incomplete one has less, is
+ * closer to the matrix, and the entries of each row are near each other in memory. Vertices that
+ * splits have added since the numbering come first.
  *
- * Consecutive unknowns of that order are mostly neighbours on the mesh, so each would wait for the one before
- * it in the triangular solves. Within a block unknowns i and i + 20 alternate: two independent dependency
- * chains overlap (instruction-level parallelism), and blocks this small hardly add fill.
+ * Consecutive unknowns of that order are mostly neighbours on the mesh, so each would wait for the
+ * one before it in the triangular solves. Within a block unknowns i and i + 20 alternate: two
+ * independent dependency chains overlap (instruction-level parallelism), and blocks this small
+ * hardly add fill.
  * Complexity: O(V).
  */
 inline std::vector<int> eliminationOrder(const Stage& stage)

@@ -32,34 +32,35 @@ namespace vcg::tri::mcf {
 
 /**
  * Edges up to this many epsilon are merged before the flow starts. The flow would collapse them in
- * its first iterations, at many times the cost; three epsilon lose the tips of fingers.
+ * its first iterations, at many times the cost; with three epsilon the tips of fingers are lost.
  */
 constexpr double coarseningOfEpsilon = 2;
 
 /**
- * A surface is dense where less than this part of its vertices is left on the mesh that the flow starts
- * on. Its poles are then found on that mesh alone, which is as fine as other input of the flow is.
- * Against the dense surface they cost several times as much, and balls held by its finest bumps, near
- * their vertices, draw them nowhere: the flow takes up to 1.7 times as many iterations.
+ * A surface is dense if less than this part of its vertices is left on the mesh that the flow
+ * starts on. Its poles are then found on that mesh alone, which is as fine as other input of the
+ * flow is. Against the dense surface they cost several times as much, and balls bounded by its
+ * finest bumps, near their vertices, exert no inward pull: the flow takes up to 1.7 times as many
+ * iterations.
  */
 constexpr double leftOfDenseSurface = 0.5;
 
 /**
- * The surface as the flow starts on it: without edges far below epsilon, on which time would go
- * that changes nothing, and without those that are too long for it.
+ * The surface on which the flow starts: without edges far below epsilon, which would take time and
+ * change nothing, and without edges that are too long for the flow.
  *
- * The vertices of `mesh` are a subset of the surface's, where they were, and of the middles of its
+ * The vertices of `mesh` are a subset of the surface's, in their places, and of the middles of its
  * long edges, in breadth-first order: neighbours in the mesh are neighbours in memory.
  */
 struct FlowSurface
 {
 	SurfaceMesh mesh;
-	/// For each vertex of `mesh` the surface's vertex that it is, -1 for the middle of an edge.
+	/// For each vertex of `mesh` the same vertex of the surface, -1 for the middle of an edge.
 	std::vector<int> survivor;
-	/// The surface with its long edges halved, see withHalvedEdges(), in an order that follows from the
-	/// places of its vertices; nothing where none are too long.
+	/// The surface with its long edges halved, see withHalvedEdges(), in an order that depends on
+	/// the places of its vertices only; nothing if no edge is too long.
 	std::optional<SurfaceMesh> finer;
-	/// For each vertex of `mesh` the vertex of `finer` that it is; empty where there is none.
+	/// For each vertex of `mesh` the same vertex of `finer`; empty without `finer`.
 	std::vector<int> inFiner;
 	/// For each vertex of the surface the vertex of `mesh` that it has merged into.
 	std::vector<int> node;
@@ -73,8 +74,8 @@ struct FlowSurface
 	std::vector<double> epsilonLimit;
 };
 
-/// How often the flow would cut the edges of a surface that are longer than epsilonOfField of the field.
-/// Complexity: O(E).
+/// About the number of pieces into which the flow would cut the edges that are longer than
+/// epsilonOfField of the field. Complexity: O(E).
 inline double cutsByField(const SurfaceMesh& mesh, const SizingField& field)
 {
 	double cuts = 0;
@@ -91,11 +92,11 @@ inline double cutsByField(const SurfaceMesh& mesh, const SizingField& field)
 
 /**
  * Stage::epsilonLimit for each vertex of a surface: epsilonOfField of the sizing field, at most
- * Parameters::maxEpsilon. Where edges are much longer than the shape is thick, as on a needle, the shape does
- * not change from one thickness to the next: the field is no smaller than what cuts edges thirty times as
- * often as there are vertices.
+ * Parameters::maxEpsilon. Where edges are much longer than the shape is thick, as on a needle, the
+ * shape does not change from one thickness to the next: the field is raised until cutsByField() is
+ * at most thirty times the number of vertices.
  * @param poles of all vertices.
- * @return empty where epsilon is small enough everywhere, and without parameters.adaptive.
+ * @return empty if epsilon is small enough everywhere, or without parameters.adaptive.
  * @throws Cancelled. Complexity: as sizingField().
  */
 inline std::vector<double> epsilonLimits(const MeasuredSurface& surface, const PoleSet& poles,
@@ -128,9 +129,9 @@ inline std::vector<double> epsilonLimits(const MeasuredSurface& surface, const P
  * are too long, see coarseComponents().
  * @param given    the surface; compact, closed.
  * @param epsilon  as in Parameters, of the diagonal of each component.
- * @param polesOfSurface (progress): gives the poles of all vertices of the surface, a PoleSet; called
- *                 once if a component may be coarse.
- * @param epsilonLimit bounds epsilon at each vertex of the surface, see epsilonLimits(); may be empty.
+ * @param polesOfSurface PoleSet(progress): the poles of all vertices of the surface; called once if
+ *                 a component may be coarse, else not at all.
+ * @param epsilonLimit upper bound of epsilon at each vertex, see epsilonLimits(); may be empty.
  * @throws Cancelled. Complexity: O(V + F), and O(s log s) for s halved edges.
  */
 template <class PolesOfSurface>
@@ -139,7 +140,7 @@ FlowSurface surfaceForFlow(const MeasuredSurface& given, double epsilon,
 	const std::vector<double>& epsilonLimit = {})
 {
 	FlowSurface result;
-	// All orders are those of the surface in its frames, where mirror images are alike.
+	// Orders are those of the surface in its frames, so that mirror images are treated alike.
 	const std::vector<PrincipalFrame>& frames = given.allFrames();
 	std::optional<SurfaceMesh> turnedOver;
 	{
@@ -194,7 +195,7 @@ FlowSurface surfaceForFlow(const MeasuredSurface& given, double epsilon,
 		length.push_back(coarseningOfEpsilon * epsilon * diagonal);
 	std::vector<double>& limit = result.epsilonLimit;
 	if (!epsilonLimit.empty()) {
-		// The vertices in the middle of halved edges follow those of the surface.
+		// The middles of halved edges follow the surface's vertices and have no limit.
 		limit = detail::copiedArray(epsilonLimit, progress);
 		limit.resize(number.vertex.size(), Parameters::maxEpsilon);
 		limit = renumbered(limit, number.vertex, mesh.vertexSlots());
@@ -232,19 +233,19 @@ FlowSurface surfaceForFlow(const MeasuredSurface& given, double epsilon,
 }
 
 /**
- * Stage 0: the surface with edges of the flow's length, and its poles.
+ * Stage 0: surfaceForFlow() and its poles.
  *
  * Components that rest, see componentsAtRest(), are fixed from the start.
  *
- * Lengths, areas and volumes are measured on the surface itself, and its vertices keep their
- * correspondence. Poles are found for the vertices that remain, against all that their component has on the
- * surface; where it is dense, see leftOfDenseSurface, against those that remain. Those in the middle of
- * halved edges have theirs against those of the finer surface.
+ * Diagonals and the initial areas and volume are those of the surface itself, and all its vertices
+ * have a correspondence. Poles are found for the vertices that remain, against all vertices of
+ * their component on the surface; if it is dense, see leftOfDenseSurface, against the remaining
+ * ones. The middles of halved edges have theirs against the vertices of the finer surface.
  *
  * @param surface    compact, closed; see checkedSurface().
  * @param given      epsilon, poleMethod, adaptive and relativeLength are used; see sharedAmong().
- * @param poles      of all vertices of the surface where they are known already; null: they are
- *                   computed. Those in the middle of halved edges are always computed.
+ * @param poles      of all vertices of the surface if they are known already; null: they are
+ *                   computed. Those of the middles of halved edges are always computed.
  * @throws SolverError, Cancelled, InvalidParameter. Complexity: O(V log V), dominated by the poles.
  */
 inline Stage firstStage(const SurfaceMesh& surface, const Parameters& given,
@@ -278,7 +279,7 @@ inline Stage firstStage(const SurfaceMesh& surface, const Parameters& given,
 	const size_t count = start.survivor.size();
 	stage.pole.resize(count);
 	stage.poleRadius.resize(count);
-	// The vertices of the mesh that are the surface's, those that are not, and what they are.
+	// The vertices that are the surface's and those added, with their indices there and in `finer`.
 	std::vector<int> own, added, ownOf, addedOf;
 	for (size_t v = 0; v < count; ++v) {
 		const bool isOwn = start.survivor[v] >= 0;

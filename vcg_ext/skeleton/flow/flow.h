@@ -32,11 +32,11 @@ namespace vcg::tri::mcf {
 
 namespace detail {
 
-/// After this many steps a stage is renumbered breadth first, so that neighbours are near each other in memory
-/// and in the elimination order. Stage 0 is numbered so by surfaceForFlow().
+/// Every so many iterations a stage is renumbered breadth first, so that neighbours are near each
+/// other in memory and in the elimination order. surfaceForFlow() numbers stage 0 in the same way.
 constexpr int renumberEvery = 4;
 
-/// step() of a stage that has entered its frames.
+/// The work of step(), on a stage that has entered its frames.
 inline void stepInFrames(
 	Stage& stage, const StageFrames& frames, const Parameters& parameters, const Progress& progress)
 {
@@ -53,7 +53,7 @@ inline void stepInFrames(
 	fixDegenerateVertices(stage, candidates, parameters.epsilon);
 	fixArrivedSheets(stage, parameters.epsilon);
 
-	// Vertices that have merged, or are new, are between grid points; so are the poles of new ones.
+	// Merged and new vertices are between grid points; so are the poles of new ones.
 	const auto toGrid = [&](int v) {
 		if (!stage.held[v])
 			mesh.position[v] = PrincipalFrame::rounded(mesh.position[v]);
@@ -94,15 +94,19 @@ inline void stepInFrames(
 /**
  * One iteration of the loop of Fig. 4: weights and contraction, then connectivity, then degeneracy.
  *
- * Convergence: in every component the area changed by less than 1e-4 of the surface's area, and there
- * is nothing left to contract: less than 5 % of the volume (in the end it is some 1e-5) and half of the area
- * (where the walls of a box have passed each other, the volume is gone, and the area may stand still for a
- * step), or most vertices are fixed (a body thinner than epsilon keeps its volume, a sheet its area). The area
- * alone would take a flow for finished that a large w_H makes slow; it must do where vertices are held, since
- * they may hold any volume open. A converged stage stays as it is.
+ * Convergence: in every component the area changed by less than 1e-4 of that of its surface, and
+ * one of these holds:
+ *  - Less than 5 % of the volume (in the end it is some 1e-5) and half of the area are left: where
+ *    the walls of a box have passed each other, the volume is gone, and the area may stand still
+ *    for a step.
+ *  - More than half of the vertices are fixed: a body thinner than epsilon keeps its volume, a
+ *    sheet its area.
+ *  - Vertices are held: they may hold any volume open.
+ * Without these conditions a flow that a large w_H makes slow would count as converged. A converged
+ * stage is returned unchanged.
  *
- * All of it happens in the shape's own coordinates, see StageFrames.
- * @return the next stage; the given one is not changed.
+ * The flow works in the shape's own coordinates, see StageFrames.
+ * @return the next stage.
  * @throws SolverError, InvalidParameter, Cancelled.
  */
 inline Stage step(Stage stage, const Parameters& given, const Progress& progress = Progress())
@@ -119,8 +123,8 @@ inline Stage step(Stage stage, const Parameters& given, const Progress& progress
 	return stage;
 }
 
-/// Whether there is nothing more to do: the flow has converged, has made parameters.maxIterations, or spreads the
-/// surface, which will not contract then.
+/// Whether the flow ends: it has converged, has made parameters.maxIterations, or spreads the
+/// surface, see Stage::isSpread().
 inline bool isOver(const Stage& stage, const Parameters& parameters)
 {
 	return stage.isDone() || stage.iteration >= parameters.maxIterations;
@@ -129,17 +133,16 @@ inline bool isOver(const Stage& stage, const Parameters& parameters)
 /// Callbacks invoked during the contraction. Unset ones cost nothing.
 struct StageObserver
 {
-	/// Called with stages as step() would make them, the observer's own, e.g. to keep them; may be empty.
-	/// Each costs a copy.
+	/// Called with a copy of every `every`-th stage, as step() would make it; may be empty.
 	std::function<void(Stage)> onStage;
-	/// Every which iteration onStage is called, >= 1.
+	/// Iterations from one call of onStage to the next, >= 1.
 	int every = 1;
 	/// Called with the figures of each new stage; may be empty.
 	std::function<void(const StageFigures&)> onFigures = {};
 };
 
 /**
- * Repeats step() until isOver().
+ * Repeats step() until isOver(), with the same result bit for bit.
  * @throws as step().
  */
 inline Stage contractToSkeleton(Stage stage, const Parameters& given,
@@ -148,15 +151,16 @@ inline Stage contractToSkeleton(Stage stage, const Parameters& given,
 	given.check();
 	const Parameters parameters = sharedAmong(given, stage.diagonal);
 	progress.report(0, "Contracting");
-	StageFrames frames(stage, progress.cancelOnly()); // found by the surface's own correspondence
-	// The map from surface to stage is composed lazily: the vertices of a checkpoint stage are tracked, a
-	// new checkpoint is taken when half of them have merged, and the maps are composed on request.
+	StageFrames frames(stage, progress.cancelOnly()); // needs stage.node, which is moved next
+	// The map from surface to stage is composed lazily: stage.node tracks the vertices of a
+	// checkpoint stage, a new checkpoint is taken when half of them have merged, and ofSurface,
+	// ofFirst and stage.node are composed on request.
 	const std::vector<int> ofSurface = std::move(stage.node);
 	std::vector<int> ofFirst(stage.mesh.vertexSlots());
 	std::iota(ofFirst.begin(), ofFirst.end(), 0);
 	stage.node = ofFirst;
 	const auto goesOn = [&] { return !isOver(stage, parameters); };
-	// Held vertices have places outside that those inside do not tell: each step finds them again.
+	// The places of held vertices outside do not follow from those inside: each step enters anew.
 	const bool staysInside = stage.heldCount() == 0 && goesOn();
 	if (staysInside)
 		frames.enter(stage);
@@ -172,7 +176,7 @@ inline Stage contractToSkeleton(Stage stage, const Parameters& given,
 	};
 	double done = 0;
 	while (goesOn()) {
-		// The area falls by a like factor each iteration: its logarithm tells how far it is.
+		// The number of iterations is unknown: each takes a tenth of what is left of the bar.
 		const double next = done + 0.1 * (1 - done);
 		const Progress part = progress.part(done, next);
 		if (staysInside)

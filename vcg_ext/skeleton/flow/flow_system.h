@@ -24,33 +24,36 @@
 namespace vcg::tri::mcf {
 
 /**
- * What w_H and w_M are multiplied with: the paper's (w_L, w_H, w_M) = (1, 20, 40) is (1, 0.1, 0.2) for a
- * Laplacian of weights cot(alpha) + cot(beta). The text's numbers are those of its authors' program with mean
- * value weights, which carry 1 / length; the other ones are those of their program with cotangents, and the
- * quotients of the two are equal for equilateral triangles of 0.005 units.
+ * Factor of w_H and w_M: the paper's (w_L, w_H, w_M) = (1, 20, 40) is (1, 0.1, 0.2) for a Laplacian
+ * of weights cot(alpha) + cot(beta). The paper's numbers are those of its authors' program with
+ * mean value weights, which carry 1 / length; the others are those of their program with
+ * cotangents. Relative to the Laplacian both are equal for equilateral triangles with edges of
+ * 0.005 units.
  */
 constexpr double publishedWeightUnit = 1.0 / 200;
 
-/// The medial weight, squared, of vertices that are to become sheets: strong enough to bring both walls
-/// together before the smoothing has pulled the rim in.
+/// The medial weight, squared, of vertices of sheets: strong enough to bring both walls together
+/// before the smoothing has pulled the rim in.
 constexpr double sheetWeight2 = 4;
 
 /**
  * (M^2 + D) y = b for the moves y of the free vertices: the minimum of Eq. 6, see contract().
  *
- * M is w_L L, with parameters.cotangentFactor, restricted to the unknowns, D = w_H^2 + w_M^2. With x = v + y it follows from Eq. 6 that
+ * M is w_L L, with parameters.cotangentFactor, restricted to the free vertices, and D = w_H^2 +
+ * w_M^2, or w_H^2 without the medial term. With x = v + y it follows from Eq. 6 that
  *     b = w_M^2 (mu - v) - M (w_L L v),
- * where fixed neighbours count in L v: differences only, so that far from the origin no digits are lost.
+ * where fixed neighbours count in L v: only differences, so that no digits are lost far from the
+ * origin.
  */
 struct FlowSystem
 {
-	/// Of each unknown, in the order of elimination.
+	/// The vertex of each unknown, in the order of elimination.
 	std::vector<int> vertex;
 	SymmetricRows M;
 	std::vector<float> D;
 	std::vector<Point3d> b;
 
-	/// The system of the unknowns from begin to end. @pre the others do not depend on them.
+	/// The system of the unknowns in [begin, end). @pre the others do not depend on them.
 	FlowSystem part(int begin, int end) const
 	{
 		const auto cut = [&](const auto& values) {
@@ -61,7 +64,7 @@ struct FlowSystem
 };
 
 /**
- * The system of all components, whose unknowns stand together.
+ * The system of all components; the unknowns of each are consecutive.
  * @pre stage.mesh is compact.
  * @throws Cancelled. Complexity: O(V + F).
  */
@@ -69,7 +72,7 @@ inline FlowSystem flowSystem(
 	const Stage& stage, const Parameters& parameters, const Progress& progress = Progress())
 {
 	const SurfaceMesh& mesh = stage.mesh;
-	const double wL = 2 * parameters.cotangentFactor * parameters.wL; // of cotangentWeight()
+	const double wL = 2 * parameters.cotangentFactor * parameters.wL; // for cotangentWeight()
 	const double wH2 = std::pow(parameters.wH * publishedWeightUnit, 2);
 	const double wM2 = std::pow(parameters.wM * publishedWeightUnit, 2);
 
@@ -85,15 +88,16 @@ inline FlowSystem flowSystem(
 	for (int i = 0; i < n; ++i)
 		unknown[vertexOfUnknown[i]] = i;
 	progress.report(0, "Contracting");
-	// Of triangles that can still move: the cotangents, the area-weighted normals of the vertices, and
-	// how many entries the rows of M will have.
+	// Of the triangles with free vertices: the cotangents, the area-weighted normals of the
+	// vertices, and the numbers of entries in the rows of M.
 	M.excess.resize(n);
 	M.diagonal.resize(n);
 	M.start.assign(n + 1, 0);
 	std::vector<float> cotangent(mesh.halfEdgeSlots());
 	std::vector<Point3d> normal(mesh.vertexSlots(), Point3d(0, 0, 0));
-	// Rows are made triangle by triangle, since a walk round each vertex waits for every step. Where they are many,
-	// each thread makes a range of them, and looks for their triangles in the whole mesh.
+	// Rows are assembled triangle by triangle, since a walk around each vertex waits for every
+	// step. If they are many, each thread assembles a range of them, and looks for their triangles
+	// in the whole mesh.
 	constexpr int minForTeam = 1 << 14;
 	const std::vector<int> ranges = rangesForThreads(n, minForTeam);
 	const auto onAllCores = [&](const Progress& part, const auto& make) {
@@ -115,7 +119,7 @@ inline FlowSystem flowSystem(
 	onAllCores(progress.part(0, 0.5), [&](const auto& isMine) {
 		forEachTriangle(isMine, [&](int f, const Triangle& t, const std::array<int, 3>& row) {
 			const TriangleMeasures measures = measureTriangle(mesh, f);
-			if (isMine(std::max({row[0], row[1], row[2]}))) // one thread of those who measure it
+			if (isMine(std::max({row[0], row[1], row[2]}))) // one of the threads that measure it
 				for (int k = 0; k < 3; ++k)
 					cotangent[3 * f + k] = float(measures.cotangent[k]);
 			for (int k = 0; k < 3; ++k)

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Coarse surfaces with vertices in the middle of their long edges, fine enough for the flow.
+/// @brief Coarse surfaces are made fine enough for the flow: their long edges are halved.
 
 #ifndef VCG_MCF_HALVED_EDGES_H
 #define VCG_MCF_HALVED_EDGES_H
@@ -23,14 +23,14 @@
 
 namespace vcg::tri::mcf {
 
-/// Edges up to this many epsilon are good enough for the flow.
+/// Edges up to this many epsilon are short enough for the flow.
 constexpr double longOfEpsilon = 20;
-/// Edges of coarse components are halved until none is longer than so many epsilon.
+/// Edges of coarse components are halved until none is longer than this many epsilon.
 constexpr double fineOfEpsilon = 8;
 
 namespace detail {
 
-/// The epsilon that edges are compared with: a small one does not make more vertices.
+/// The epsilon of these lengths, at least the default: a smaller one does not make more vertices.
 inline double epsilonOfEdges(double epsilon)
 {
 	return std::max(epsilon, Parameters().epsilon);
@@ -39,14 +39,15 @@ inline double epsilonOfEdges(double epsilon)
 } // namespace detail
 
 /**
- * Detects components sampled too coarsely for the flow, whose curve would leave the shape or shrink to a
- * point: at least 25 % of the area is in triangles with an edge longer than 20 epsilon and than the local
- * thickness, the mean radius of the inscribed medial balls at the corners. A few long edges do no harm, and
- * a round body needs no more vertices than show its form. Where no radius is known, the edges alone count.
+ * Detects components sampled too coarsely for the flow, whose curve would leave the shape or shrink
+ * to a point: more than 25 % of the area is in triangles with an edge longer than 20 epsilon and
+ * than the local thickness, the mean radius of the inscribed medial balls at the corners. A few
+ * long edges do no harm, and a round body needs no more vertices than show its form. Where no
+ * radius is known, the edges alone count.
  *
- * @param radius    of the inner medial ball at each vertex, -1 where it has none; empty: by the edges
- *                  alone, which finds all that are coarse, and perhaps more.
- * @return 1 for each component that is. @pre mesh is compact. @throws Cancelled. Complexity: O(F).
+ * @param radius    of the inner medial ball at each vertex, -1 where it has none; empty: the edges
+ *                  alone decide, which finds all coarse components, and perhaps others.
+ * @return 1 for each coarse component. @pre mesh is compact. @throws Cancelled. Complexity: O(F).
  */
 inline std::vector<char> coarseComponents(const MeasuredSurface& surface, double epsilon,
 	const std::vector<double>& radius = {}, const Progress& progress = Progress())
@@ -82,12 +83,12 @@ inline std::vector<char> coarseComponents(const MeasuredSurface& surface, double
 }
 
 /**
- * How long the edges of each component may be: 8 epsilon where it is coarse, as the surface that is
- * resampled (see defaultTargetLength()), else as long as they are.
+ * The longest edges allowed in each component: 8 epsilon where it is coarse, as on a resampled
+ * surface (see defaultTargetLength()), else unbounded.
  *
- * Epsilon counts as the default where it is smaller, so that it does not decide the number of
- * vertices. So that a scene of many coarse bodies stays workable, the lengths are raised, all by the
- * same factor, where half a million vertices would be exceeded.
+ * An epsilon below the default counts as the default, so that it does not decide the number of
+ * vertices. So that a scene of many coarse bodies stays workable, the lengths are raised, all by
+ * the same factor, where half a million vertices would be exceeded.
  * @param coarse see coarseComponents().
  * @return a length for each component, mesh units; infinite for one that is fine enough.
  */
@@ -111,20 +112,19 @@ inline std::vector<double> longestEdgesForFlow(
 }
 
 /**
- * A surface with its long edges halved, the longest first, until none is longer than the limit of its
- * component. The shape is the same, and its vertices keep their ids; those in the middle of edges
- * follow.
+ * Halves long edges, the longest first, until none is longer than the limit of its component. The
+ * shape is the same. Its vertices keep their ids; the middles of edges follow.
  *
- * Halving a triangle's longest edge, again and again, leaves no angle below half of its smallest one
- * (Rosenberg and Stenger, "A lower bound on the angles of triangles constructed by bisecting the
- * longest side", Mathematics of Computation 29, 1975).
+ * Halving a triangle's longest edge, again and again, leaves no angle below half of its smallest
+ * one (Rosenberg and Stenger, "A lower bound on the angles of triangles constructed by bisecting
+ * the longest side", Mathematics of Computation 29, 1975).
  *
- * Which edge is longer is told in the shape's own coordinates, see PrincipalFrame; of edges of the
- * same length it is the one whose middle has the larger coordinates there. So it depends neither on
- * the numbering nor on where the shape stands.
+ * Lengths are compared in the shape's own coordinates, see PrincipalFrame; of edges of the same
+ * length the one whose middle has the larger coordinates there comes first. So the order depends
+ * neither on the numbering nor on the place of the shape.
  *
  * @param longest the limit for each component, mesh units, > 0.
- * @return a compact mesh. @pre so is the surface.
+ * @return a compact mesh. @pre the surface is compact.
  * @throws Cancelled. Complexity: O((F + s) log (F + s)) for s new vertices.
  */
 inline SurfaceMesh withHalvedEdges(const MeasuredSurface& surface,
@@ -143,7 +143,7 @@ inline SurfaceMesh withHalvedEdges(const MeasuredSurface& surface,
 	for (int c = 0; c < surface.components(); ++c)
 		limit.push_back(surface.frame(c).lengthOnGrid(longest[c]));
 
-	// Squared length, middle, half-edge with its ends: a split elsewhere may give it others.
+	// Squared length, middle, half-edge and its ends, which a split may have changed since.
 	using Entry = std::tuple<double, double, double, double, int, int, int>;
 	std::priority_queue<Entry> queue;
 	const auto push = [&](int h) {

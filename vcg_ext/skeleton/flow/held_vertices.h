@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Vertices that the user holds: they stay where they are while the rest contracts.
+/// @brief Vertices that the user holds: they keep their positions while the rest contracts.
 
 #ifndef VCG_MCF_HELD_VERTICES_H
 #define VCG_MCF_HELD_VERTICES_H
@@ -27,8 +27,9 @@ namespace vcg::tri::mcf {
  * Holds vertices of a stage, in addition to those that it holds already: v_i^{t+1} = v_i^t.
  *
  * A held vertex is a fixed one, a known value of the linear system (Sec. 4.4), from the start. A
- * collapse moves its neighbour onto it, never two held vertices onto each other; a split puts a held
- * vertex into a triangle whose corners are all held, so that a held triangle keeps its place too.
+ * collapse moves its neighbour onto it, never two held vertices onto each other; a split puts a
+ * held vertex into a triangle whose corners are all held, so that a held triangle keeps its place
+ * too.
  * @param held  1 where a vertex is to be held, one for each vertex.
  * @throws InvalidInput if there are not as many entries as vertices. Complexity: O(V).
  */

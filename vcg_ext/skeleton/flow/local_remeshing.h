@@ -28,8 +28,8 @@ namespace vcg::tri::mcf {
 
 namespace detail {
 
-/// Sorts edges, each as its squared length and a half-edge: into as many parts of equal widths as there
-/// are edges first, so that hardly any comparison is left. Complexity: O(n) for lengths spread evenly.
+/// Sorts edges, each as its squared length and a half-edge: a bucket sort, with as many buckets of
+/// equal width as there are edges. Complexity: O(n) for evenly spread lengths, else O(n log n).
 inline void sortByLength(std::vector<std::pair<double, int>>& edges)
 {
 	double largest = std::numeric_limits<double>::min();
@@ -50,8 +50,9 @@ inline void sortByLength(std::vector<std::pair<double, int>>& edges)
 	edges.swap(inParts);
 }
 
-/// Of the half-edges of a triangle those opposite to an angle whose cosine may be below `widest`, at most
-/// 0: one at most, but for triangles that are a line. An angle that has it nearly may be told as well.
+/// Whether each half-edge of a triangle is opposite to an angle whose cosine may be below `widest`:
+/// at most one is, unless the triangle is a line. Conservative: the cosine may be above by
+/// rounding. @pre widest <= 0
 inline std::array<bool, 3> maybeWideAngles(const SurfaceMesh& mesh, int face, double widest)
 {
 	constexpr double rounding = 1e-9;
@@ -59,7 +60,7 @@ inline std::array<bool, 3> maybeWideAngles(const SurfaceMesh& mesh, int face, do
 	const Point3d &a = mesh.position[i], &b = mesh.position[j], &c = mesh.position[k];
 	const double ab = SquaredDistance(a, b), bc = SquaredDistance(b, c), ca = SquaredDistance(c, a);
 	const double sum = (ab + bc + ca) * (1 - rounding), minimum = 4 * widest * widest;
-	// The law of cosines: edge = one + other - 2 cosine sqrt(one other), squared lengths all of them.
+	// The law of cosines for squared lengths: edge = one + other - 2 cosine sqrt(one other).
 	const auto isWide = [&](double edge, double one, double other) -> bool {
 		const double excess = 2 * edge - sum;
 		return (excess > 0) & (excess * excess >= minimum * (one * other));
@@ -67,8 +68,8 @@ inline std::array<bool, 3> maybeWideAngles(const SurfaceMesh& mesh, int face, do
 	return {isWide(ab, bc, ca), isWide(bc, ca, ab), isWide(ca, ab, bc)};
 }
 
-/// The edges that splitWideAngles() starts with: those that there are, by the half-edge that stands for
-/// them, and among them those that are due to be looked at.
+/// The edges that splitWideAngles() starts with, each by the lower of its half-edges, and which of
+/// them are due for a test.
 class EdgesToSplit
 {
 public:
@@ -76,7 +77,7 @@ public:
 	{
 		for (int h = 0; h < mesh.halfEdgeSlots(); ++h)
 			state[h] = h < mesh.twin(h) ? edge : 0;
-		std::vector<int> wide(state.size() + 1); // room for one that does not count
+		std::vector<int> wide(state.size() + 1); // one spare, for the branchless writes
 		size_t count = 0;
 		for (int f = 0; f < mesh.faceSlots(); ++f) {
 			if (!mesh.isFace(f))
@@ -96,7 +97,7 @@ public:
 	}
 
 	size_t size() const { return state.size(); }
-	/// The first one from h on that is due: size() if there is none, h if it is no less than that.
+	/// The first due edge from h on, size() if there is none; h itself if h >= size().
 	size_t nextDue(size_t h) const
 	{
 		if (h >= size())
@@ -104,7 +105,7 @@ public:
 		const void* const found = std::memchr(&state[h], edge | due, size() - h);
 		return found ? size_t(static_cast<const char*>(found) - state.data()) : size();
 	}
-	/// Looks at the edges of a changed triangle, if it is their turn yet, again.
+	/// Makes the edges of a changed triangle due; no effect on those that were tested before.
 	void touch(int face)
 	{
 		for (int h = 3 * face; h < 3 * face + 3; ++h)
@@ -122,12 +123,12 @@ private:
 } // namespace detail
 
 /**
- * Collapses edges shorter than epsilon at either end, shortest first, wherever the link condition allows, until
- * none is left. The merged vertex goes to the middle, or to the fixed end if one end is fixed; an
- * edge between two fixed vertices stays.
+ * Collapses edges shorter than the smaller epsilon of their ends, see Stage::epsilonAt(), shortest
+ * first, wherever the link condition allows it, until none is left. The merged vertex goes to the
+ * middle, or to the fixed end if one end is fixed; an edge between two fixed vertices stays.
  *
- * @param forest gets every merge.
- * @return the vertices that have a short edge which cannot be collapsed: candidates for
+ * @param epsilon as in Parameters. @param forest gets every merge.
+ * @return the vertices of short edges that cannot be collapsed: candidates for
  *         fixDegenerateVertices(), ordered by id.
  * @throws Cancelled. Complexity: O(V + c log c) for c short edges.
  */
@@ -153,11 +154,11 @@ inline std::vector<int> collapseShortEdges(
 		const int a = mesh.origin(e.second), b = mesh.target(e.second);
 		return e.first < squaredLimitOf(a, b) && !(stage.fixed[a] && stage.fixed[b]);
 	};
-	// The edges of a round, sorted at once; what a collapse makes short is few, and waits beside them.
+	// The edges of a round are sorted at once; the few that collapses make short wait in a queue.
 	std::vector<Entry> sorted;
 	std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> fresh;
 	std::vector<int> blocked;
-	// A blocked edge stays so until the ring of one of its ends changes.
+	// A blocked edge stays blocked until the ring of one of its ends changes.
 	std::vector<char> changed(mesh.vertexSlots(), 0);
 	const auto collapseQueued = [&] {
 		detail::sortByLength(sorted);
@@ -175,7 +176,7 @@ inline std::vector<int> collapseShortEdges(
 				progress.report(0, "Collapsing short edges");
 			const auto [squaredLength, h] = pop();
 			if (!mesh.isHalfEdge(h) || mesh.squaredLength(h) != squaredLength)
-				continue; // it has changed since, and was queued again if it still is short
+				continue; // it has changed since, and was queued again if it is still short
 			const int a = mesh.origin(h), b = mesh.target(h);
 			if (stage.fixed[a] && stage.fixed[b])
 				continue;
@@ -202,7 +203,7 @@ inline std::vector<int> collapseShortEdges(
 		}
 		sorted.clear();
 	};
-	// Face by face each length is measured twice, but read in the order of the memory, and few are short.
+	// Face by face each edge is measured twice, but memory is read in order, and few are short.
 	for (int f = 0; f < mesh.faceSlots(); ++f) {
 		if (!mesh.isFace(f))
 			continue;
@@ -246,12 +247,14 @@ inline std::vector<int> collapseShortEdges(
 
 /**
  * Splits edges whose two opposite angles are both wider than `splitAngle`, until none is left whose
- * halves are at least epsilon long. The new vertex is the projection of the apex with the wider
- * angle onto the edge; it has no pole. Components without a free vertex rest: nothing is split there.
+ * parts would be at least epsilon long. The new vertex is the projection of the apex with the wider
+ * angle onto the edge; it has no pole, except within a sheet, see VertexStates::addBetween().
+ * Components without a free vertex rest: nothing is split there.
  *
- * The paper splits on one wide angle; taken literally this never ends, since the new edge may have
- * a wide angle opposite in turn. With both angles wide, alpha + beta > 180 degrees, the edge is the
- * one that a Delaunay triangulation would not have, and the process ends.
+ * The paper splits on one wide angle; taken literally this never ends, since the new edge may be
+ * opposite to a wide angle in turn. With both angles above 90 degrees, alpha + beta > 180 degrees,
+ * a Delaunay triangulation would not have the edge, and the process ends.
+ * @param forest gets every new vertex.
  * @throws Cancelled. Complexity: O(V + s) for s splits.
  */
 inline void splitWideAngles(Stage& stage, const Parameters& parameters, MergeForest& forest,
@@ -269,14 +272,14 @@ inline void splitWideAngles(Stage& stage, const Parameters& parameters, MergeFor
 		const double lengths = std::sqrt(u.SquaredNorm() * v.SquaredNorm());
 		return lengths > 0 && dot / lengths < widest ? dot / lengths : 2.0;
 	};
-	// The edges of the beginning have their turn in the order of their ids, those of new triangles then.
+	// The initial edges are tested in the order of their ids, then those of new triangles.
 	detail::EdgesToSplit initial(mesh, widest);
 	std::vector<int> queue;
 	std::vector<char> moves(stage.diagonal.size(), 0); // by component
 	for (int v = 0; v < mesh.vertexSlots(); ++v)
 		if (!stage.fixed[v] && mesh.isVertex(v))
 			moves[stage.component[v]] = 1;
-	// Each split shortens the longest edge of its triangles; the cap only guards against the worst.
+	// Each split shortens the longest edge of its triangles; the cap is for the worst case only.
 	const size_t maxVertices = 4 * size_t(mesh.vertexCount()) + 1000;
 	size_t looked = 0;
 	for (size_t next = initial.nextDue(0);

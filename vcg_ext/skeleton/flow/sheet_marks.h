@@ -21,8 +21,8 @@ namespace vcg::tri::mcf {
 /**
  * Marks the vertices of stage 0 that are to become sheets: those of sheetness above `threshold`.
  *
- * Holes in the marks of less than 0.1 % of the squared diagonal are filled, then marks of less than
- * 0.5 % are dropped: both walls of a sheet of 5 % of the diagonal squared.
+ * Holes in the marks of an area below 0.1 % of the squared diagonal are filled, then marked parts
+ * below 0.5 % are dropped: that is both walls of a square sheet with sides of 5 % of the diagonal.
  * @param sheetness  of each vertex, see sheetness(). @pre no iteration has been made.
  * @throws Cancelled
  */
@@ -46,8 +46,9 @@ inline void markSheets(Stage& stage, const std::vector<double>& sheetness, doubl
 }
 
 /**
- * Fixes the vertices of sheets that have arrived: closer than epsilon / 2 to their pole. A weight alone
- * would never hold the rim of a sheet against the smoothing. @return their number.
+ * Fixes the vertices of sheets that have arrived, closer than epsilon / 2 to their pole. A weight
+ * alone would never hold the rim of a sheet against the smoothing.
+ * @param epsilon as in Parameters. @return the number of vertices fixed.
  */
 inline int fixArrivedSheets(Stage& stage, double epsilon)
 {

@@ -54,7 +54,7 @@ inline std::vector<double> sheetnessOfComponent(
 {
 	constexpr double nearly = 1.15;
 	constexpr int rounds = 3;
-	// Large balls touch many vertices: an eighth of them will do.
+	// Large balls touch many vertices: an eighth of them is enough.
 	constexpr double large = 0.03; // of the diagonal
 	constexpr int stride = 8;
 	const char* const what = "Looking for sheets";
@@ -114,18 +114,19 @@ inline std::vector<double> sheetnessOfComponent(
  * How sheet-like a shape is at each vertex of its surface: 0 where its cross-section is round, 1
  * between parallel walls.
  *
- * At the vertex's pole c of radius r the surface within 1.15 r touches the medial ball, or nearly: two
- * opposite spots in a sheet, a ring in a tube, all around in a ball. With l1 >= l2 >= l3 the
+ * At the vertex's pole c of radius r the surface within 1.15 r touches the medial ball, or nearly:
+ * two opposite spots in a sheet, a ring in a tube, all around in a ball. With l1 >= l2 >= l3 the
  * eigenvalues of the mean of d d^T over the directions d from c to that part of the surface,
  *
  *     s = 1 - l2 / l1,
  *
- * averaged three times over the neighbours. A round tube has 0.25 or less, an elliptic one with axes
- * 1 : 2 about 0.55, with 1 : 4 about 0.8; between parallel walls it is above 0.9. Each component is looked at as if
- * the others were not there.
+ * averaged three times over the neighbours. A round tube has 0.25 or less, an elliptic one with
+ * axes 1 : 2 about 0.55, with 1 : 4 about 0.8; between parallel walls it is above 0.9. Each
+ * component is treated by itself, as if the others were not there.
  * @param poles  one for each vertex; a vertex without one takes its neighbours' mean.
  * @return s of each vertex, in [0, 1]. @pre mesh is compact.
- * @throws Cancelled. Complexity: O(V k) for k vertices around a ball. Same bits on any number of threads.
+ * @throws Cancelled. Complexity: O(V k) for k vertices around a ball. The result does not depend on
+ * the number of threads.
  */
 inline std::vector<double> sheetness(
 	const SurfaceMesh& mesh, const PoleSet& poles, const Progress& progress = Progress())

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief The state of the flow between two iterations: a meso-skeleton and all that it knows.
+/// @brief The state of the flow between two iterations: a meso-skeleton with all its data.
 
 #ifndef VCG_MCF_STAGE_H
 #define VCG_MCF_STAGE_H
@@ -35,7 +35,7 @@ struct Stage : VertexStates
 {
 	/// The contracted mesh, mesh units.
 	SurfaceMesh mesh;
-	/// No `epsilonLimit` is smaller: what the grid of the frames resolves.
+	/// Lower bound of every `epsilonLimit`: about the resolution of the frames' grid.
 	static constexpr double minEpsilonLimit = 1e-6;
 
 	/// Diagonal of each component of the surface, see MeasuredSurface: its unit of length.
@@ -47,23 +47,23 @@ struct Stage : VertexStates
 
 	/// The surface's vertices, shared by all stages.
 	std::shared_ptr<const std::vector<Point3d>> surface;
-	/// Its triangles, shared likewise; null where they are not known, as for a file of an earlier release.
+	/// Its triangles, shared likewise; null if unknown, as from a file of an earlier release.
 	std::shared_ptr<const std::vector<Triangle>> surfaceTriangles;
-	/// The frames of the surface's components once they are known, shared likewise: see StageFrames.
+	/// The frames of its components, shared likewise: see StageFrames. Null until first needed.
 	std::shared_ptr<const std::vector<PrincipalFrame>> frames;
-	/// The correspondence: for each surface vertex the vertex of this stage it has merged into.
+	/// The correspondence: the vertex of this stage that each surface vertex has merged into.
 	std::vector<int> node;
 
 	/// Iterations made so far.
 	int iteration = 0;
-	/// Where the count stops: far more than anybody waits for.
+	/// The largest `iteration`; the count stays there.
 	static constexpr int maxIteration = 1'000'000'000;
-	/// The length epsilon of the last of them, fraction of the diagonal.
+	/// Parameters::epsilon of the last of them, fraction of the diagonal.
 	double epsilon = Parameters().epsilon;
-	/// Whether the area has stopped changing: no volume is left.
+	/// Whether nothing is left to contract: see step().
 	bool converged = false;
 
-	/// Finds the frames. @param points the surface's. @param component of each of them.
+	/// Computes `frames`. @param points the surface's vertices. @param component of each of them.
 	/// @throws Cancelled. Complexity: linear in the points.
 	void findFrames(const std::vector<Point3d>& points, const std::vector<int>& component,
 		const Progress& progress)
@@ -73,28 +73,31 @@ struct Stage : VertexStates
 	}
 
 	/// The length epsilon at a vertex, in the units of `diagonal`.
-	/// @param ofDiagonal as in Parameters.
+	/// @param ofDiagonal epsilon as in Parameters, fraction of the diagonal.
 	double epsilonAt(int v, double ofDiagonal) const
 	{
 		return (epsilonLimit.empty() ? ofDiagonal : std::min(ofDiagonal, epsilonLimit[v]))
 			* diagonal[component[v]];
 	}
 
+	/// Area over that of the surface.
 	double areaFraction() const { return sum(area) / sum(initialArea); }
-	/// Whether the surface is spread instead of contracted: where large parts of it are inside out, it is drawn to
-	/// balls outside. A surface that does contract may grow in its first steps, seldom in more than 50.
+	/// Whether the flow spreads the surface instead of contracting it: where large parts are inside
+	/// out, they are drawn to balls outside. A surface that does contract may grow in its first
+	/// steps, seldom in more than 50.
 	bool isSpread() const
 	{
 		constexpr int firstSteps = 100;
 		return iteration >= firstSteps && areaFraction() > 1;
 	}
-	/// Whether more steps lead nowhere.
+	/// Whether further steps are of no use.
 	bool isDone() const { return converged || isSpread(); }
-	/// In [0, 1]: what the flow has turned inside out encloses nothing.
+	/// Volume over that of the surface, clamped to [0, 1]: parts turned inside out count negative.
 	double volumeFraction() const
 	{
 		return initialVolume > 0 ? std::clamp(volume / initialVolume, 0.0, 1.0) : 0;
 	}
+	/// Fixed vertices over all vertices.
 	double fixedFraction() const
 	{
 		return fixed.empty()
@@ -115,15 +118,15 @@ private:
 	}
 };
 
-/// What can be told of a stage wherever its vertices are, inside its frames or outside.
+/// Figures of a stage that are the same whether its vertices are inside its frames or outside.
 struct StageFigures
 {
 	int iteration = 0;
 	bool converged = false;
 	int vertices = 0, faces = 0;
-	/// Of the surface's.
+	/// Parts of the surface's.
 	double areaFraction = 0, volumeFraction = 0;
-	/// Of the vertices.
+	/// Part of the vertices.
 	double fixedFraction = 0;
 };
 
@@ -140,7 +143,7 @@ struct Extent
 	double volume = 0;
 };
 
-/// @param unit of the coordinates of each component: what the result is in is 1.
+/// @param unit of the coordinates of each component, in units of the result.
 inline Extent measuredExtent(
 	const SurfaceMesh& mesh, const std::vector<int>& component, const std::vector<double>& unit)
 {
@@ -202,7 +205,7 @@ inline Stage initialStage(
 /**
  * Local thickness: for each vertex (or skeleton node) the mean distance to the surface vertices
  * that have merged into it; -1 where there are none.
- * @param position where the vertices are; node: for each surface vertex its vertex.
+ * @param position of each vertex; node: for each surface vertex its vertex, -1 if it has none.
  * @throws Cancelled
  */
 inline std::vector<double> meanSurfaceDistance(const std::vector<Point3d>& position,
@@ -222,8 +225,8 @@ inline std::vector<double> meanSurfaceDistance(const std::vector<Point3d>& posit
 	return sum;
 }
 
-/// Local thickness at each vertex of a stage; a vertex made by a split takes its neighbours' mean.
-/// @throws Cancelled
+/// Local thickness at each vertex of a stage; where no surface vertex has merged into it, as after
+/// a split, the mean of its neighbours'. @throws Cancelled
 inline std::vector<double> stageRadius(const Stage& stage, const Progress& progress = Progress())
 {
 	const SurfaceMesh& mesh = stage.mesh;

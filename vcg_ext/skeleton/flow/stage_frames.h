@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief A stage in coordinates that belong to the shape, so that results do not depend on the others.
+/// @brief A stage in the shape's own frames, so that results do not depend on the mesh coordinates.
 
 #ifndef VCG_MCF_STAGE_FRAMES_H
 #define VCG_MCF_STAGE_FRAMES_H
@@ -19,18 +19,18 @@
 namespace vcg::tri::mcf {
 
 /**
- * The frames of a stage's components, and a stage's way into them and back.
+ * The frames of a stage's components; takes a stage into them and back.
  *
  * The flow decides thousands of times which of two lengths is smaller, and solves its systems
  * approximately: differences in the last bit grow until a branch is there or not. In these
  * coordinates, rounded as in single precision, a copy of a shape that is turned, moved or
- * scaled gives the same bits. Places that were rounded before find their grid point again, see
+ * scaled gives the same bits. Positions that were rounded before return to their grid points, see
  * PrincipalFrame::onGrid().
  */
 class StageFrames
 {
 public:
-	/// Finds the frames if no stage before has found them, and leaves them with the stage.
+	/// Takes the stage's frames; computes and stores them there if it has none.
 	/// @throws Cancelled. Complexity: O(V), V the vertices of the surface, the first time.
 	explicit StageFrames(Stage& stage, const Progress& progress = Progress())
 	{
@@ -40,8 +40,9 @@ public:
 		frames = stage.frames;
 	}
 
-	/// Takes the positions, poles and lengths of a stage into the frames, where faces look outwards as well. Held
-	/// vertices are not rounded.
+	/// Takes the positions, poles and diagonals of a stage into the frames, and turns over faces
+	/// where a frame is mirrored, so that they look outwards there, too. Held vertices are not
+	/// rounded.
 	void enter(Stage& stage)
 	{
 		diagonal = stage.diagonal;
@@ -63,7 +64,7 @@ public:
 		turnOverMirrored(stage.mesh, stage.component, *frames);
 	}
 
-	/// The area and volume outside of a stage that has entered.
+	/// The area and volume, in mesh units, of a stage that has entered.
 	Extent extent(const Stage& stage) const
 	{
 		std::vector<double> unit;
@@ -72,7 +73,7 @@ public:
 		return measuredExtent(stage.mesh, stage.component, unit);
 	}
 
-	/// A point of a component outside of the frames; where a vertex is held, exactly its place.
+	/// A point of a component in mesh coordinates; where a vertex is held, exactly its place.
 	Point3d out(int component, const Point3d& p) const
 	{
 		if (const auto found = heldPlace.find({component, p[0], p[1], p[2]});
@@ -81,7 +82,7 @@ public:
 		return (*frames)[component].out(p);
 	}
 
-	/// Takes the stage that has entered back to the coordinates outside. @pre it is compact.
+	/// Takes a stage that has entered back to mesh coordinates. @pre it is compact.
 	void leave(Stage& stage) const
 	{
 		for (size_t v = 0; v < stage.pole.size(); ++v) {
@@ -96,7 +97,7 @@ public:
 private:
 	std::shared_ptr<const std::vector<PrincipalFrame>> frames;
 	std::vector<double> diagonal;
-	/// Where held vertices are outside, by component and place in its frame.
+	/// Places of held vertices in mesh coordinates, by component and place in its frame.
 	std::map<std::tuple<int, double, double, double>, Point3d> heldPlace;
 };
 

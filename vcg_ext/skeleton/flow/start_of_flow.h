@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Stage 0 of a surface: what the flow is to hold and to keep as sheets, and on which mesh it starts.
+/// @brief Stage 0 of a surface: its mesh, the vertices to hold and the sheets to keep.
 
 #ifndef VCG_MCF_START_OF_FLOW_H
 #define VCG_MCF_START_OF_FLOW_H
@@ -27,15 +27,16 @@ namespace vcg::tri::mcf {
 /**
  * Stage 0 of a surface.
  *
- * Without vertices to hold, without sheets and with parameters.coarsen the flow starts on firstStage(): short
- * edges merged, edges that are too long halved. Otherwise every vertex of the surface is in the stage, and no
- * other: held vertices and the rims of sheets stay where they are.
+ * With parameters.coarsen, and without vertices to hold and sheets, it is firstStage(): short edges
+ * are merged, too long ones halved. Otherwise the stage has exactly the vertices of the surface:
+ * held vertices and the rims of sheets stay where they are.
  *
  * @param surface  compact.
  * @param poles    of all its vertices, see medialPoles().
  * @param held     1 for the vertices to hold; empty if there are none.
  * @param onNote   receives what is held and kept; may be empty.
- * @throws InvalidParameter, InvalidInput, SolverError, Cancelled. Complexity: O(V), with sheets as sheetness().
+ * @throws InvalidParameter, InvalidInput, SolverError, Cancelled.
+ * Complexity: O(V), with sheets as sheetness().
  */
 inline Stage startOfFlow(const SurfaceMesh& surface, const PoleSet& poles,
 	const std::vector<char>& held, const Parameters& parameters,

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief What the flow knows of each vertex besides its place.
+/// @brief The state of each vertex in the flow, besides its position.
 
 #ifndef VCG_MCF_VERTEX_STATES_H
 #define VCG_MCF_VERTEX_STATES_H
@@ -19,15 +19,16 @@ namespace vcg::tri::mcf {
 /**
  * The state of all vertices, an array for each property.
  *
- * What changes the numbering of the vertices goes through forEachProperty(), which does not compile if it
- * leaves one out.
+ * Whatever renumbers the vertices goes through forEachProperty(), which does not compile if it
+ * leaves a property out.
  */
 struct VertexStates
 {
-	/// Medial pole of each vertex, and its distance from the surface; -1: none (made by a split).
+	/// Medial pole of each vertex, and its distance from the surface; < 0: none, as after a split.
 	std::vector<Point3d> pole;
 	std::vector<double> poleRadius;
-	/// 1 where the vertex no longer moves: its neighbourhood has collapsed (Sec. 4.4), or it is held.
+	/// 1 where the vertex does not move: its neighbourhood has collapsed (Sec. 4.4), its sheet has
+	/// arrived, it is held, or its component rests.
 	std::vector<char> fixed;
 	/// 1 where the user holds the vertex, see holdVertices(); such a vertex is fixed, too.
 	std::vector<char> held;
@@ -35,8 +36,8 @@ struct VertexStates
 	std::vector<char> sheet;
 	/// Connected component of each vertex.
 	std::vector<int> component;
-	/// Upper bound of epsilon at each vertex, fraction of its component's diagonal, where the shape is thin:
-	/// see epsilonLimits(). Empty: none anywhere.
+	/// Upper bound of epsilon at each vertex, fraction of its component's diagonal; small where the
+	/// shape is thin: see epsilonLimits(). Empty: no bound anywhere.
 	std::vector<double> epsilonLimit;
 
 	/// Calls visit(array) for each property; for `epsilonLimit` only where it is not empty.
@@ -51,7 +52,7 @@ struct VertexStates
 		forEachPropertyOf(*this, visit);
 	}
 
-	/// Whether all properties are known of `count` vertices.
+	/// Whether each property has `count` values.
 	bool areOf(size_t count) const
 	{
 		bool all = true;
@@ -59,7 +60,7 @@ struct VertexStates
 		return all;
 	}
 
-	/// The vertices in a new order of `count`. @param newVertex the place of each; < 0: it is gone.
+	/// Reorders the vertices. @param newVertex the new index of each, below `count`; < 0: removed.
 	void renumber(const std::vector<int>& newVertex, int count)
 	{
 		forEachProperty([&](auto& values) {
@@ -71,7 +72,7 @@ struct VertexStates
 		});
 	}
 
-	/// The states of some vertices, in that order.
+	/// The states of the given vertices, in that order.
 	VertexStates picked(const std::vector<int>& vertices) const
 	{
 		VertexStates some = *this;
@@ -88,7 +89,8 @@ struct VertexStates
 	/**
 	 * Adds a vertex on the edge from a to b, at a + t (b - a), t in [0, 1].
 	 *
-	 * It has no pole of its own. Within a sheet poles vary smoothly: there it has one between theirs.
+	 * It has no pole, except within a sheet, where poles vary smoothly: there it has one between
+	 * theirs.
 	 * @param place of the new vertex. @param isHeld whether the user holds it.
 	 */
 	void addBetween(int a, int b, double t, const Point3d& place, bool isHeld)
@@ -102,13 +104,13 @@ struct VertexStates
 		component.push_back(component[a]);
 		if (epsilonLimit.empty())
 			return;
-		// Rounding must not lead out of the range.
+		// Rounding must not leave the range.
 		const double ofA = epsilonLimit[a], ofB = epsilonLimit[b];
 		epsilonLimit.push_back(
 			std::clamp(ofA * (1 - t) + ofB * t, std::min(ofA, ofB), std::max(ofA, ofB)));
 	}
 
-	/// Merges what two vertices know. @param place where the survivor will stay.
+	/// Merges the states of two vertices. @param place of the survivor after the merge.
 	void merge(int removed, int survivor, const Point3d& place)
 	{
 		// Of the two poles the one closest to the resulting vertex stays (Sec. 4.5).

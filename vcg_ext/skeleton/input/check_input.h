@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief The input check: is this the boundary of a solid? What is repaired, what refused, and why.
+/// @brief The input check: whether a mesh bounds a solid; what is repaired, what refused, and why.
 
 #ifndef VCG_MCF_CHECK_INPUT_H
 #define VCG_MCF_CHECK_INPUT_H
@@ -34,7 +34,7 @@ struct CheckedSurface
 	SurfaceMesh mesh;
 	/// For each input vertex the vertex of `mesh`, or -1 where no face uses it.
 	std::vector<int> vertexOfInput;
-	/// For each connected component whether it was given inside out; empty if all or none of them were.
+	/// For each connected component, whether it was given inside out; empty if all or none were.
 	std::vector<char> turned = {};
 	/// What was repaired on the way, one sentence each, for the log.
 	std::vector<std::string> notes;
@@ -51,9 +51,9 @@ inline bool isSinglePrecision(const std::vector<Point3d>& points)
 }
 
 /**
- * First-order bound of the volume error of each component due to rounded coordinates: the gradient of the
- * volume at a vertex is a third of the area vector of its one-ring. A flat body in a slanted plane has no
- * volume beyond it; for one in an axis-aligned plane the bound is near 0.
+ * First-order bound of the volume error of each component due to rounded coordinates: the gradient
+ * of the volume at a vertex is a third of the area vector of its one-ring. A flat body in a slanted
+ * plane has no volume beyond it; in a coordinate plane, such as z = 0, the bound itself is near 0.
  * Complexity: O(F).
  */
 inline std::vector<double> volumeErrorBound(
@@ -81,10 +81,10 @@ inline std::vector<double> volumeErrorBound(
 /**
  * Checks that `points` and `triangles` bound a solid, and hands them over as a SurfaceMesh.
  *
- * Repaired, with a note: unreferenced vertices, coincident vertices (merged only if the mesh is not
- * closed without), faces that use a vertex twice, copies of a face, faces turned against their
- * neighbours, components that are inside out. Refused: everything else that is not a closed
- * two-manifold of a volume beyond rounding, flat bodies and such on a line among them.
+ * Repaired, with a note: unreferenced vertices, coincident vertices (merged only if that leaves
+ * fewer border and non-manifold edges), faces that use a vertex twice, copies of a face, faces
+ * turned against their neighbours, components that are inside out. Refused: everything else that is
+ * not a closed two-manifold, and components without a volume beyond rounding: flat, or on a line.
  *
  * @param points    one for each input vertex, mesh units.
  * @param triangles corners as indices into `points`.
@@ -196,7 +196,7 @@ inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
 		area[c] += n.Norm() / 2;
 		volume[c] += (mesh.position[first] - middle[c]) * n / 6;
 	});
-	// Of what is much thinner than long both are lost in rounding, unless they are measured along its length.
+	// Of a body much thinner than long both are lost in rounding, unless measured along its length.
 	const auto isSlender = [&](int c) {
 		constexpr double slender = 1e-3;
 		return !(std::abs(volume[c]) > slender * std::pow(area[c], 1.5))
@@ -223,9 +223,9 @@ inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
 		double largest = 0; // coordinate
 		for (int k = 0; k < 3; ++k)
 			largest = std::max({largest, std::abs(box[c].min[k]), std::abs(box[c].max[k])});
-		// A sphere, the fullest body, has V = 0.094 A^1.5; rounding alone stays below 1e-12 of it. A body
-		// on a line has no area to compare with: its volume over its area, about its thickness, is that of
-		// the rounding of its coordinates.
+		// A sphere, the fullest body, has V = 0.094 A^1.5; rounding alone stays below 1e-12 of it.
+		// For a body on a line the area is rounding, too: its volume over its area, about its
+		// thickness, is of the size of the rounding of its coordinates.
 		constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
 		if (!(std::abs(volume[c]) > 1e-10 * std::pow(area[c], 1.5)) || !std::isnormal(area[c])
 			|| !(std::abs(volume[c]) > rounding * largest * area[c])

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Points at the very same place.
+/// @brief Points at exactly the same position.
 
 #ifndef VCG_MCF_COINCIDENT_POINTS_H
 #define VCG_MCF_COINCIDENT_POINTS_H
@@ -19,7 +19,7 @@
 
 namespace vcg::tri::mcf::detail {
 
-/// A number that scatters points over all 64 bits; the same for points that compare equal.
+/// A 64-bit hash of a point; the same for points that compare equal.
 inline std::uint64_t scattered(const Point3d& p)
 {
 	std::uint64_t hash = 0;
@@ -34,14 +34,14 @@ inline std::uint64_t scattered(const Point3d& p)
 }
 
 /**
- * For each point the first one at the very same place.
- * @pre all coordinates are numbers.
+ * For each point the first one at exactly the same position.
+ * @pre no coordinate is NaN.
  * @throws Cancelled. Complexity: about O(V).
  */
 inline std::vector<int> firstCoincident(
 	const std::vector<Point3d>& points, const Progress& progress, const char* what)
 {
-	// A table of the places met so far, at least a third of it empty.
+	// Hash table with linear probing of the points met so far, at least a third of it empty.
 	int bits = 4;
 	while (size_t(1) << bits < points.size() + points.size() / 2)
 		++bits;

@@ -27,7 +27,7 @@ constexpr const char* measuringNoise = "Measuring the noise";
 class RingMeans
 {
 public:
-	/// @pre mesh is compact. @param what it is done for. @throws Cancelled
+	/// @pre mesh is compact. @param what text for progress reports. @throws Cancelled
 	RingMeans(const SurfaceMesh& mesh, const Progress& progress, const char* what) :
 			mesh(mesh), what(what), valences(filledArray(size_t(mesh.vertexSlots()), 0, progress))
 	{
@@ -41,7 +41,7 @@ public:
 	/// @throws Cancelled
 	std::vector<Point3d> of(const std::vector<Point3d>& values, const Progress& progress) const
 	{
-		// In the order of the faces, which lie side by side, unlike those of a ring.
+		// Face by face: these are adjacent in memory, the faces of a ring are not.
 		std::vector<Point3d> mean = filledArray(values.size(), Point3d(0, 0, 0), progress);
 		reportedLoop(mesh.faceSlots(), progress.part(0, 0.8), what, [&](int f) {
 			const auto [a, b, c] = mesh.triangle(f);
@@ -84,7 +84,7 @@ public:
 		double squared = 0;
 		for (int column : columns) {
 			squared += entry[column] * entry[column];
-			entry[column] = 0; // the column may come again
+			entry[column] = 0; // the column may occur again
 		}
 		columns.clear();
 		return std::sqrt(squared);
@@ -93,8 +93,8 @@ public:
 private:
 	const SurfaceMesh& mesh;
 	const RingMeans& rings;
-	std::vector<double> entry; ///< of the row at hand, by columns
-	std::vector<int> columns;  ///< that it has, some of them more than once
+	std::vector<double> entry; ///< the current row, by columns
+	std::vector<int> columns;  ///< of its entries, some of them more than once
 
 	void add(int column, double value)
 	{
@@ -105,20 +105,20 @@ private:
 
 } // namespace detail
 
-/// What the vertices of a component deviate from their neighbourhoods.
+/// How much the vertices of a component deviate from their neighbourhoods.
 struct NoiseLevel
 {
 	/// Standard deviation along the normal if it is noise, mesh units.
 	double deviation = 0;
-	/// How much like noise it is: about 1 if it is nothing else, less if it is facets.
+	/// About 1 if the deviation is noise, less if it is facets: see NoiseMeasure.
 	double whiteness = 0;
-	/// The deviation as a part of the local thickness, where that is given.
+	/// The deviation as a fraction of the local thickness, where that is given.
 	double relative = 0;
 };
 
 namespace detail {
 
-/// The quantile of the values, which are reordered. @pre there are some.
+/// The quantile of the values, which are reordered. @pre values is not empty; part is in [0, 1).
 inline double quantile(std::vector<double>& values, double part)
 {
 	const auto at = values.begin() + std::ptrdiff_t(part * double(values.size()));
@@ -126,11 +126,11 @@ inline double quantile(std::vector<double>& values, double part)
 	return *at;
 }
 
-/// Correlation of neighbours, both of them no outliers.
+/// Correlation of the values of neighbours, pairs with an outlier left out.
 class NeighbourCorrelation
 {
 public:
-	/// @param maximum what is no outlier.
+	/// @param maximum values above this, by magnitude, are outliers.
 	explicit NeighbourCorrelation(double maximum) : maximum(maximum) {}
 
 	void add(double a, double b)
@@ -140,8 +140,8 @@ public:
 		products += a * b;
 		squares += (a * a + b * b) / 2;
 	}
-	/// As a fraction of what (I - M)^2 makes of noise that has none: -0.306 on a mesh of valences six,
-	/// less without the outliers.
+	/// As a fraction of the correlation that (I - M)^2 gives to uncorrelated noise: -0.306 on a
+	/// mesh of valences six, -0.21 without the outliers.
 	double ofWhite() const
 	{
 		constexpr double white = -0.21;
@@ -157,21 +157,22 @@ private:
 /**
  * The noise of each component.
  *
- * What is smooth is nearly linear over two rings, so that (I - M)^2 v, M the ring mean, is noise:
- * sigma = 1.4826 median_i |((I - M)^2 v)_i . n_i| / |row i of (I - M)^2|, the median being blind to
- * features, n the normal averaged three times.
+ * A smooth surface is nearly linear over two rings, so that (I - M)^2 v, M the ring mean, is noise:
+ * sigma = 1.4826 median_i |((I - M)^2 v)_i . n_i| / |row i of (I - M)^2|, the median being robust
+ * to features, n the vertex normal averaged three times over rings.
  *
- * A clean but coarse surface shows its curvature instead. Noise is told from that by two things: it does
- * not know its neighbours, so that the deviations of neighbours are correlated as (I - M)^2 alone makes
- * them, while those of facets are less so; and it is the same everywhere, while facets are large at creases
- * and small within flat parts, so that the tails of their distribution are heavier than a normal one's.
- * The whiteness is the correlation, as a fraction of the one of noise, divided by the
+ * A clean but coarse surface shows its curvature instead. Two properties tell noise from that: it
+ * is independent at each vertex, so that the deviations of neighbours have the correlation that
+ * (I - M)^2 gives them, while facets have less; and it is the same everywhere, while facets are
+ * large at creases and small within flat parts, so that their distribution has heavier tails than a
+ * normal one. The whiteness is the correlation, as a fraction of that of noise, divided by the
  * square root of the ratio of tails.
  */
 class NoiseMeasure
 {
 public:
-	/// @param surface kept by reference. @pre its mesh is compact. @throws Cancelled. Complexity: O(V).
+	/// @param surface kept by reference. @pre its mesh is compact.
+	/// @throws Cancelled. Complexity: O(V).
 	explicit NoiseMeasure(const MeasuredSurface& surface, const Progress& progress = Progress()) :
 			surface(surface), mesh(surface.mesh()),
 			rings(mesh, progress.part(0, 0.2), detail::measuringNoise),
@@ -180,7 +181,7 @@ public:
 		constexpr int normalRounds = 3;
 		for (int round = 0; round < normalRounds; ++round)
 			normal = rings.of(normal, progress.part(0.3 + 0.1 * round, 0.4 + 0.1 * round));
-		// Of all vertices: neighbours of those that are looked at are asked, too.
+		// For all vertices: the correlation needs the neighbours of the sampled ones, too.
 		for (int power = 0; power < 2; ++power) {
 			const Progress part = progress.part(0.6 + 0.2 * power, 0.8 + 0.2 * power);
 			const std::vector<Point3d> mean = rings.of(offset, part.part(0, 0.8));
@@ -190,9 +191,9 @@ public:
 	}
 
 	/**
-	 * Of each component, or of some of its vertices.
-	 * Of a large component some 12000 vertices are looked at, spread evenly over its numbering.
-	 * @param isAsked   0 for vertices that are not asked; empty: all are.
+	 * The noise of each component, or of some of its vertices. Of a component, at most 12000
+	 * vertices are sampled, spread evenly over its numbering.
+	 * @param isAsked   of each vertex, 0 to leave it out; empty: none is left out.
 	 * @param thickness of each vertex, mesh units; empty: NoiseLevel::relative is not measured.
 	 * @throws Cancelled. Complexity: O(V).
 	 */
@@ -216,7 +217,7 @@ public:
 			deviations[c].push_back(std::abs(alongNormal(v)) / rows.norm(v));
 			asked[c].push_back(v);
 		});
-		// Of a normal distribution, in standard deviations.
+		// Quantiles 25 %, 50 % and 90 % of the magnitude of a normal variable, standard deviations.
 		constexpr double quarter = 0.31864, half = 1 / 1.4826, ninth = 1.64485;
 		constexpr double outlier = 2.5; // medians
 		std::vector<NoiseLevel> level(components);
@@ -289,14 +290,14 @@ inline SurfaceMesh smoothed(const MeasuredSurface& surface, const std::vector<in
 	return mesh;
 }
 
-/// What a surface's noise is and what to do about it.
+/// The noise of a surface, and the smoothing that it needs.
 struct NoiseReport
 {
-	/// Standard deviation of the noisiest component, fraction of its diagonal.
+	/// Largest NoiseLevel::deviation of a component, fraction of its diagonal; facets count, too.
 	double level = 0;
-	/// That of the thin parts of the noisiest one, fraction of the local thickness; 0 if nothing is thin.
+	/// Largest NoiseLevel::relative of the thin parts of a component; 0 if nothing is thin.
 	double ofThickness = 0;
-	/// Rounds of smoothed() for each component, where it is not thin and where it is.
+	/// Rounds of smoothed() for each component, where it is not thin and where it is thin.
 	std::vector<int> rounds, roundsWhereThin;
 
 	int maxRounds() const { return *std::max_element(rounds.begin(), rounds.end()); }
@@ -322,17 +323,19 @@ struct NoiseReport
 
 /**
  * Measures the noise and chooses the smoothing: none below 0.03 % of the diagonal or 5 % of the
- * mean edge (clean surfaces show up to 0.04 % or 4 %), 10 rounds up to 0.15 %, 40 above. So treated,
- * models with 0.1 to 0.5 % of noise give the clean model's branches. Where the mean edge is longer
- * than 3 % of the diagonal, noise cannot be told from shape, and nothing is done, thin or not; nor where the whiteness,
- * see NoiseMeasure, is below 0.6: clean surfaces whose facets deviate that much have up to 0.5, those with
- * noise of 0.5 % of the diagonal 0.72 to 1.
+ * mean edge (clean surfaces show up to 0.04 % or 4 %), 10 rounds up to 0.15 %, 40 above. So
+ * treated, models with 0.1 to 0.5 % of noise give the clean model's branches. Nothing is done where
+ * the mean edge is longer than 3 % of the diagonal, since noise cannot be told from shape there,
+ * thin or not; nor where the whiteness, see NoiseMeasure, is below 0.6: clean surfaces whose facets
+ * deviate that much have up to 0.5, those with noise of 0.5 % of the diagonal 0.72 to 1.
  *
- * Thin parts are left out of that and judged by themselves, since neither their facets nor what noise does to them
- * depends on the diagonal: none below 5 % of the local thickness (clean trees show up to 2.5 %, with a whiteness of at
- * most 0.1), then 10 rounds, 40 above 15 %, and none above 100 %: noise as large as a
- * tube is thick would leave no surface, so that deviations that large are the bends of a coarse tube.
- * @param thickness local thickness of each vertex, mesh units, infinite where the shape is not thin; empty: nowhere.
+ * Thin parts are left out of that and judged by themselves, since neither their facets nor the
+ * effect of noise on them depends on the diagonal: no rounds below 5 % of the local thickness
+ * (clean trees show up to 2.5 %, with a whiteness of at most 0.1), then 10, 40 above 15 %, and none
+ * above 100 %: noise as large as a tube is thick would leave no surface, so that deviations that
+ * large are the bends of a coarse tube.
+ * @param thickness local thickness of each vertex, mesh units, infinite where the shape is not
+ *                  thin; empty: nothing is thin.
  * @pre mesh is compact. @throws Cancelled. Complexity: O(V).
  */
 inline NoiseReport measureNoise(const MeasuredSurface& surface,
@@ -379,7 +382,7 @@ inline NoiseReport measureNoise(const MeasuredSurface& surface,
 			continue;
 		}
 		const double level = whereThick[c].deviation / surface.diagonal(c);
-		// Both: what is left where most is thin are the few vertices of its thickest part.
+		// Both must be noisy: where most is thin, the rest is a few vertices of its thickest part.
 		const bool clean = isClean(all[c]) || isClean(whereThick[c]);
 		const bool isShape = whereThin[c].relative > maxOfThickness;
 		const double relative = isShape ? 0 : whereThin[c].relative;

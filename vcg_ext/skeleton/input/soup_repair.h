@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief From a triangle soup to closed two-manifold connectivity: repaired, or refused with reasons.
+/// @brief Repairs a triangle soup to a closed two-manifold, or refuses it with reasons.
 
 #ifndef VCG_MCF_SOUP_REPAIR_H
 #define VCG_MCF_SOUP_REPAIR_H
@@ -26,7 +26,7 @@
 
 namespace vcg::tri::mcf {
 
-/// Triangles that make a closed, coherently oriented two-manifold, and how they came about.
+/// Triangles of a closed, coherently oriented two-manifold, and how they differ from the input.
 struct RepairedSoup
 {
 	std::vector<Triangle> faces;
@@ -105,7 +105,7 @@ void forEachSoupEdge(const SoupEdges& edges, const Progress& progress, Visit&& v
 	});
 }
 
-/// How many faces meet at each edge, as the two counts that must be zero.
+/// Edges with one face, and with more than two: both counts must be zero. The first three places.
 struct EdgeDefects
 {
 	size_t border = 0, nonManifold = 0;
@@ -130,7 +130,8 @@ inline EdgeDefects edgeDefects(
 	return defects;
 }
 
-/// Removes faces that use a vertex twice and copies of a face (same corners, same turn).
+/// Removes faces that use a vertex twice and copies of a face (same corners, same orientation).
+/// @return how many were removed.
 inline size_t removeDegenerateFaces(
 	size_t vertices, std::vector<Triangle>& triangles, const Progress& progress)
 {
@@ -223,7 +224,7 @@ inline int orientCoherently(
 		});
 	if (!twoSided)
 		return -1;
-	// The majority of a component keeps its side.
+	// The majority of a component keeps its orientation.
 	std::vector<int> majority = filledArray(count, 0, progress);
 	reportedLoop(int(count), progress.part(0.7, 0.85), repairing, [&](int f) {
 		const auto [first, turned] = find(f);
@@ -272,9 +273,9 @@ inline std::vector<int> nonManifoldVertices(size_t vertices, const std::vector<T
 } // namespace detail
 
 /**
- * Repairs the connectivity of a soup: coincident vertices are merged (only if there are fewer
- * defects so), degenerate and duplicate faces left out, faces turned to agree with their neighbours.
- * @throws InvalidInput if it still is no closed two-manifold; Cancelled.
+ * Repairs the connectivity of a soup: coincident vertices are merged (only if that leaves fewer
+ * defects), degenerate and duplicate faces left out, faces turned to agree with their neighbours.
+ * @throws InvalidInput if the result is not a closed two-manifold; Cancelled.
  * Complexity: about O(V + F); O(V + F log n) where n faces meet at a vertex.
  */
 inline RepairedSoup repairedSoup(const std::vector<Point3d>& points,

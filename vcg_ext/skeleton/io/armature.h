@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Bones along a skeleton, and how much of each every node takes part in.
+/// @brief Bones along a skeleton, and the weights by which its nodes follow them.
 
 #ifndef VCG_MCF_ARMATURE_H
 #define VCG_MCF_ARMATURE_H
@@ -33,7 +33,7 @@ struct Bone
 	double length() const { return arc.back(); }
 };
 
-/// Bones by which a surface is moved, each after its parent, and how much of each every node takes part in.
+/// Bones by which a surface is moved, each after its parent, and the weights of the nodes.
 struct Armature
 {
 	std::vector<Bone> bones;
@@ -88,17 +88,19 @@ inline void keepFour(std::vector<std::pair<int, double>>& weights)
 } // namespace detail
 
 /**
- * The armature of a skeleton. Each component is a tree, see spanningForest(), with a joint at its root; cycles
- * are cut. From a joint a bone runs along each of the tree's branches to the next joint: at junctions,
- * at tips and at bends, so that no node is farther than `tolerance` from its straight bone. Where
- * several bones begin each has a joint of its own there, so that each limb can be turned by itself.
+ * The armature of a skeleton. Each component becomes a tree, see spanningForest(), with a joint at
+ * its root; cycles are cut. From a joint a bone runs along each of the tree's branches to the next
+ * joint. Joints are at junctions, at tips and at bends, so that no node is farther than `tolerance`
+ * from its straight bone. Where several bones begin, each has its own joint, so that each limb can
+ * be turned by itself.
  *
- * Weights are linear in arc length near joints and 1 elsewhere: at a joint half belongs to the bone that ends there,
- * half to those that begin there, in equal parts, and over the length of the local radius (at most half of the
- * bone) this passes into the bone alone. They are continuous along the skeleton, but for joints at which more
- * than four bones meet, where the smallest are dropped.
+ * Weights are linear in arc length near joints and 1 elsewhere: at a joint half belongs to the bone
+ * that ends there, half to those that begin there, in equal parts. Over the length of the local
+ * radius (at most half of the bone; a quarter of it where no radius is known) this passes into the
+ * bone alone. They are continuous along the skeleton, except at joints where more than four bones
+ * meet: there the smallest are dropped.
  * @param tolerance mesh units, above 0.
- * @pre  requireWritable()
+ * @pre the skeleton passes requireWritable().
  * Complexity: O(N log N) on usual curves.
  */
 inline Armature makeArmature(const CurveSkeleton& skeleton, double tolerance)
@@ -155,7 +157,7 @@ inline Armature makeArmature(const CurveSkeleton& skeleton, double tolerance)
 			}
 		weights.push_back({bone, weight});
 	};
-	// What a node at a joint takes part in.
+	// Adds `part` of the weights of a joint.
 	const auto mixture = [&](int joint, double part, std::vector<std::pair<int, double>>& weights) {
 		const int before = boneTo[size_t(joint)];
 		const std::vector<int>& after = bonesFrom[size_t(joint)];

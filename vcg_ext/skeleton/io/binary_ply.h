@@ -5,8 +5,8 @@
  * @file
  * @brief Tables of numbers in binary PLY, exact to the last bit.
  *
- * VCG's own PLY exporter serves a mesh; here are several tables (elements) of any columns, written in
- * double and read back with every count checked.
+ * VCG's own PLY exporter serves a mesh; here are several tables (elements) of any columns, written
+ * in double and read back with every count checked.
  */
 
 #ifndef VCG_MCF_BINARY_PLY_H
@@ -144,7 +144,8 @@ inline double numberAt(const char* bytes, PlyType type)
 
 } // namespace detail
 
-/// Writes tables as binary little endian PLY. @pre every column has its element's rows. @throws Cancelled
+/// Writes tables as binary little endian PLY.
+/// @pre every column has its element's number of rows. @throws Cancelled
 inline void writeBinaryPly(
 	std::ostream& out, const PlyFile& file, const Progress& progress = Progress())
 {
@@ -189,13 +190,13 @@ inline void writeBinaryPly(
 
 namespace detail {
 
-/// A column of the header while it is read: what precedes a list is its count.
+/// The header while it is read.
 struct PlyHeader
 {
 	PlyFile file;
-	/// For each element the type of each column's count.
+	/// For each element the type of the count that precedes each list of a column.
 	std::vector<std::vector<PlyType>> countTypes;
-	/// The names that there are: those of elements, and those of columns with the element's number.
+	/// The names so far: those of elements, and those of columns with the number of their element.
 	std::set<std::string> elementNames;
 	std::set<std::pair<size_t, std::string>> columnNames;
 };
@@ -279,8 +280,8 @@ inline PlyHeader readPlyHeader(std::istream& stream)
 
 /**
  * Reads binary little endian PLY whose lists have one length throughout a column.
- * @throws FormatError with the line (header) or the byte (data): anything malformed, a file that ends
- *         too early, bytes after the end; Cancelled.
+ * @throws FormatError with the line (header) or the byte (data): anything malformed, a file that
+ *         ends too early, bytes after the end; Cancelled.
  * Memory is taken as data arrive, so that a wrong count cannot exhaust it.
  */
 inline PlyFile readBinaryPly(std::istream& stream, const Progress& progress = Progress())

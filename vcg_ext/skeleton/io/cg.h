@@ -3,8 +3,8 @@
 
 /**
  * @file
- * @brief The curve graph of the paper's authors: a header `# D:3 NV:n NE:m`, then a line `v x y z` for
- * each node and a line `e i j` for each edge, nodes counted from 1. It keeps no radius and no
+ * @brief The curve graph of the paper's authors: a header `# D:3 NV:n NE:m`, then a line `v x y z`
+ * for each node and a line `e i j` for each edge, nodes counted from 1. It keeps no radius and no
  * correspondence.
  */
 
@@ -53,12 +53,12 @@ inline int cgHeaderNumber(FieldReader& in, size_t i, std::string_view key)
 } // namespace detail
 
 /**
- * Reads a .cg file. Blank lines and further comments are skipped; an edge that is given again counts
- * but is kept once, with a warning.
+ * Reads a .cg file. Blank lines and further comments are skipped; an edge that is given again
+ * counts towards NE but is kept once, with a warning.
  * @return a skeleton without radius and correspondence.
  * @throws FormatError with the line: a bad header, a line of neither kind, a coordinate that is not
- *         finite or beyond maxCoordinate, a node that does not exist, an edge from a node to itself, or
- *         other counts than the header's.
+ *         finite or beyond maxCoordinate, a node that does not exist, an edge from a node to
+ *         itself, or other counts than the header's.
  */
 inline SkeletonFile readCg(std::istream& stream)
 {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief The error of a file that does not say what its format asks for.
+/// @brief The error of a file that does not follow its format.
 
 #ifndef VCG_MCF_FORMAT_ERROR_H
 #define VCG_MCF_FORMAT_ERROR_H
@@ -31,7 +31,7 @@ public:
 			"Byte " + std::to_string(byte) + " (" + where + "): " + what, 0, (long long)(byte));
 	}
 
-	/// The values of an element's row contradict the rest of the file; both from 0.
+	/// A row of an element, from 0, is missing, or its values are wrong or contradict the file.
 	static FormatError atRow(const std::string& element, std::size_t row, const std::string& what)
 	{
 		return FormatError(

@@ -3,8 +3,8 @@
 
 /**
  * @file
- * @brief glTF 2.0, binary: the surface with an armature made from its skeleton, ready to be posed in Blender and
- * other programs.
+ * @brief glTF 2.0, binary: the surface with an armature made from its skeleton, ready to be posed
+ * in Blender and other programs.
  */
 
 #ifndef VCG_MCF_GLB_H
@@ -31,13 +31,16 @@
 namespace vcg::tri::mcf {
 
 /**
- * Writes a surface and its armature, see makeArmature() and skinWeights(), as binary glTF. Positions, in single precision, keep the
- * mesh's units and axes. The bones' nodes are called bone_0, bone_1, ...; tips end in nodes without weights, so
- * that programs that draw bones know how long the last ones are.
- * @param surface   as many vertices as skeleton.node; a vertex of no node takes the nearest node's weights.
+ * Writes a surface and its armature, see makeArmature() and skinWeights(), as binary glTF.
+ * Positions, in single precision, keep the mesh's units and axes. The bones' nodes are called
+ * bone_0, bone_1, ...; tips end in nodes without weights, so that programs that draw bones know how
+ * long the last ones are.
+ * @param surface   with as many vertices as skeleton.node has entries; a vertex without a node
+ *                  takes the nearest node's weights.
  * @param tolerance see makeArmature(); 0: one percent of the surface's bounding box diagonal.
- * @throws InvalidInput: see requireWritable(); the correspondence is not known or of another surface, the
- *         surface has no faces, or there are more than 65535 joints. Cancelled, before anything is written.
+ * @throws InvalidInput: see requireWritable(); the correspondence is not known or of another
+ *         surface, the surface has no faces, or there are more than 65535 joints. SolverError;
+ *         Cancelled, before anything is written.
  */
 inline void writeGlb(std::ostream& out, const CurveSkeleton& skeleton,
 	const SkinnedSurface& surface, double tolerance = 0, const std::string& name = "surface",

@@ -35,10 +35,10 @@ inline std::string xmlText(const std::string& text)
 
 /**
  * Writes a skeleton as GraphML: nodes 0, 1, ... with the numbers x, y, z and radius (mesh units),
- * significance, bridge (1 in the middle of one, else 0) and the text surface_vertices (ids from 0, blanks between); edges with their length;
- * the graph with the name of the surface and, as surface_vertices, how many vertices it has. What is not
- * known is left out.
- * @param surfaceName what the mesh is called whose vertices surface_vertices counts, in UTF-8.
+ * significance, bridge (1 in the middle of one, else 0) and the text surface_vertices (ids from 0,
+ * blanks between); edges with their length; the graph with the name of the surface and, as
+ * surface_vertices, its number of vertices. What is not known is left out.
+ * @param surfaceName of the mesh to whose vertices surface_vertices refers, in UTF-8.
  * @throws InvalidInput: see requireWritable().
  */
 inline void writeGraphml(

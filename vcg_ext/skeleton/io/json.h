@@ -32,11 +32,11 @@ inline std::string jsonText(const std::string& text)
 } // namespace detail
 
 /**
- * Writes a skeleton as JSON: `nodes` with id, position (three numbers), radius, significance, bridge (1 in the middle
- * of one, else 0) and surface_vertices (ids from 0); `edges` with source, target and length; `graph` with the counts of statistics(), the name of
- * the surface and how many vertices it has.
- * Lengths are mesh units; what is not known is left out.
- * @param surfaceName what the mesh is called whose vertices surface_vertices counts, in UTF-8.
+ * Writes a skeleton as JSON: `nodes` with id, position (three numbers), radius, significance,
+ * bridge (1 in the middle of one, else 0) and surface_vertices (ids from 0); `edges` with source,
+ * target and length; `graph` with the counts of statistics(), the name of the surface and its
+ * number of vertices. Lengths are mesh units; what is not known is left out.
+ * @param surfaceName of the mesh to whose vertices surface_vertices refers, in UTF-8.
  * @throws InvalidInput: see requireWritable().
  */
 inline void writeJson(

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Between vectors and the columns of a PLY file; reading checks every value.
+/// @brief Vectors to the columns of a PLY file and back; reading checks the values.
 
 #ifndef VCG_MCF_PLY_TABLES_H
 #define VCG_MCF_PLY_TABLES_H
@@ -52,7 +52,7 @@ inline void addFingerprint(PlyElement& element, std::uint64_t fingerprint)
 		"fingerprint_high", PlyType::UInt32, std::array<double, 1> {double(fingerprint >> 32)});
 }
 
-/// The values of an element of a PLY file, each checked. Every error names element, row and column.
+/// The values of an element of a PLY file, checked except by any...(). Errors name the place.
 class PlyTable
 {
 public:
@@ -82,7 +82,7 @@ public:
 		return column.values;
 	}
 
-	/// Numbers as they are, not finite ones included.
+	/// Numbers unchecked; they may be infinite or NaN.
 	const std::vector<double>& anyReals(const std::string& name) const
 	{
 		return scalars(name).values;
@@ -94,7 +94,7 @@ public:
 		return checkedIntegers(scalars(name), 1, minimum, maximum);
 	}
 
-	/// Points from the columns PREFIXx, PREFIXy, PREFIXz as they are, not finite ones included.
+	/// Points from the columns PREFIXx, PREFIXy, PREFIXz, unchecked like anyReals().
 	std::vector<Point3d> anyPoints(const std::string& prefix) const
 	{
 		std::vector<Point3d> result(rows());

@@ -28,18 +28,19 @@ struct SkeletonFile
 	CurveSkeleton skeleton;
 	/// What was put right, a sentence each.
 	std::vector<std::string> warnings;
-	/// Of the surface layer's geometry, as the host counts it; 0: not known.
+	/// Of the surface layer's geometry, as the host computes it; 0: not known.
 	std::uint64_t surfaceFingerprint = 0;
-	/// Of the surface, mesh units; 0: not known.
+	/// That of the surface, mesh units; 0: not known.
 	double diagonal = 0;
 };
 
-/// What is wrong with a number that isUsablePlace(), isUsableRadius() refuses.
+/// What is wrong with a coordinate that isUsablePlace() refuses.
 inline std::string outsideOfCoordinates()
 {
 	return "not finite, or beyond " + numberText(maxCoordinate);
 }
 
+/// What is wrong with a radius that isUsableRadius() refuses.
 inline std::string outsideOfRadii()
 {
 	return "not between 0 and " + numberText(maxCoordinate);
@@ -58,10 +59,11 @@ inline bool isUsableSignificance(double significance)
 }
 
 /**
- * Checks that a skeleton can be written, read again and worked with: coordinates that are finite and not
- * too large, edges between two of its nodes, a radius >= 0 for each node or none at all, a significance
- * likewise, from 0 to 1, source nodes that exist (or -1). Every reader's skeleton passes.
- * @throws InvalidInput that names the first culprit.
+ * Checks that a skeleton can be written, read again and worked with: coordinates within
+ * maxCoordinate, edges between two of its nodes; radii from 0 to maxCoordinate, significances from
+ * 0 to 1 and bridge marks, each for all nodes or for none; source nodes that exist (or -1). What
+ * the readers return passes.
+ * @throws InvalidInput that names the first value that is wrong.
  */
 inline void requireWritable(const CurveSkeleton& skeleton)
 {

@@ -15,8 +15,9 @@
 namespace vcg::tri::mcf {
 
 /**
- * A skeleton as tables: elements vertex (position, radius, significance, bridge, and quality for MeshLab), edge (vertex1,
- * vertex2), mcfskel_surface (for each surface vertex its node) and mcfskel_skeleton (the rest).
+ * A skeleton as tables: elements vertex (position, radius, significance, bridge, and the radius as
+ * quality for MeshLab), edge (vertex1, vertex2), mcfskel_surface (for each surface vertex its node)
+ * and mcfskel_skeleton (the rest).
  * @param surfaceFingerprint, diagonal as in SkeletonFile.
  * @throws InvalidInput: see requireWritable().
  */
@@ -58,10 +59,12 @@ inline void writeSkeletonPly(std::ostream& out, const CurveSkeleton& skeleton,
 
 /**
  * Reads a skeleton that writeSkeletonPly() wrote, or any binary PLY of vertices and edges. What the
- * file does not have (radius, significance, correspondence) stays empty.
- * @throws FormatError: see readBinaryPly(); also for a coordinate that is not finite or beyond
- *         maxCoordinate, a radius that is or is below 0, a significance that is not from 0 to 1, an edge or a
- *         surface vertex whose node does not exist, an edge from a vertex to itself, a diagonal below 0.
+ * file does not have (radius, significance, bridge, correspondence) stays empty.
+ * @throws FormatError for a coordinate that is not finite or beyond maxCoordinate, a radius that is
+ *         not from 0 to maxCoordinate, a significance that is not from 0 to 1, a bridge that is not
+ *         0 or 1, an edge or a surface vertex whose node does not exist, an edge from a vertex to
+ *         itself, a diagonal that is not finite or below 0, a fingerprint that is not of 64 bits,
+ *         an element or property that is missing.
  */
 inline SkeletonFile readSkeletonPly(const PlyFile& ply)
 {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief How much of each bone every vertex of a surface follows: the nodes' weights, diffused over the surface.
+/// @brief Skin weights of a surface's vertices: the nodes' weights, diffused over the surface.
 
 #ifndef VCG_MCF_SKIN_WEIGHTS_H
 #define VCG_MCF_SKIN_WEIGHTS_H
@@ -33,7 +33,7 @@ struct SkinnedSurface
 	std::vector<std::array<int, 3>> faces;
 };
 
-/// Up to four bones that a vertex follows, and their weights; places that are not needed are 0.
+/// Up to four bones that a vertex follows, and their weights; unused entries are 0.
 struct VertexShares
 {
 	std::array<int, 4> bone {};
@@ -51,7 +51,7 @@ struct SkinSystem
 };
 
 /**
- * @param at    for each vertex the first one at its place; the system is one of these.
+ * @param at    for each vertex the first one at the same place; only these are coupled.
  * @param reach mesh units, above 0.
  * Complexity: O(F log F).
  */
@@ -107,11 +107,12 @@ inline SkinSystem skinSystem(
 	return system;
 }
 
-/// Keeps the four largest of five weights less the fifth, so that they stay continuous, and makes them add up to 1.
+/// Subtracts the fifth of five weights, largest first, from the other four, so that these stay
+/// continuous where one gives way to another, and makes them add up to 1.
 inline VertexShares fourOfFive(std::array<double, 5> weight, const std::array<int, 5>& bone)
 {
-	constexpr double negligible = 0.01; // so that what is far from a bone does not follow it at all
-	constexpr double minSum = 1e-3;     // five alike: one of them is as good as another
+	constexpr double negligible = 0.01; // subtracted at least: far vertices do not follow
+	constexpr double minSum = 1e-3;     // five nearly alike: the first four stay
 	const double fifth = std::max(weight[4], negligible);
 	if (weight[0] + weight[1] + weight[2] + weight[3] > 4 * fifth + minSum)
 		for (double& w : weight)
@@ -129,20 +130,21 @@ inline VertexShares fourOfFive(std::array<double, 5> weight, const std::array<in
 } // namespace detail
 
 /**
- * The weights of a surface's vertices, smooth over the surface wherever the correspondence is not: across
- * junctions, where neighbours belong to different limbs, and where a cycle was cut.
+ * The weights of a surface's vertices, smooth over the surface wherever the correspondence is not:
+ * across junctions, where neighbours belong to different limbs, and where a cycle was cut.
  *
- * A vertex is drawn to the weights p of its node, and its neighbours' weights: for each bone
- * (L + D) w = D p, with the cotangent Laplacian L (L x = sum w_ij (x_i - x_j), at least 1e-3 for an edge) and D the
- * vertices' areas over the square of their distance from their nodes. What jumps passes over about that distance. It is
- * the bone heat of Baran and Popovic ("Automatic Rigging and Animation of 3D Characters", ACM Trans. Graph. 26(3),
- * 2007), which has the nearest visible bone where the correspondence is here. Vertices at the same place get
- * the same weights. Weights are at least 0 and add up to 1; the four largest stay.
+ * The weights w of a vertex are drawn to the weights p of its node and to those of its neighbours:
+ * for each bone (L + D) w = D p, with the cotangent Laplacian L (L x = sum w_ij (x_i - x_j), w_ij
+ * at least 1e-3) and D the vertices' areas over the squares of their distances from their nodes. A
+ * jump of p is spread over about that distance. It is the bone heat of Baran and Popovic
+ * ("Automatic Rigging and Animation of 3D Characters", ACM Trans. Graph. 26(3), 2007), with the
+ * correspondence in place of the nearest visible bone. Vertices at the same place get the same
+ * weights. Weights are at least 0 and add up to 1; the four largest stay.
  * @param skeleton its `node` is for each vertex of the surface its node; -1: the nearest one.
- * @pre the skeleton has nodes, and `armature` is its own.
+ * @pre the skeleton has nodes, and `armature` was made from it.
  * @throws SolverError; Cancelled
- * Complexity: O(F log F) and, for each bone, about the square root of its region's vertices times their number. The
- * factorisation, the longer part, cannot be cancelled.
+ * Complexity: one sparse factorisation, which takes longest and cannot be cancelled; a solution
+ * with its factors for each bone; and all nodes looked at for each vertex without one.
  */
 inline std::vector<VertexShares> skinWeights(const SkinnedSurface& surface,
 	const CurveSkeleton& skeleton, const Armature& armature, const Progress& progress = Progress())

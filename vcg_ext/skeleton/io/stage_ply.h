@@ -4,11 +4,11 @@
 /**
  * @file
  * @brief A stage of the contraction as PLY, with all that the next step needs and to the last bit:
- * written, read in another process and stepped on, it gives what it would have given at once.
+ * a flow that is continued from the file, in another process, gives the same results.
  *
- * Other readers find a mesh (elements vertex and face) with attributes; what belongs to no vertex of
- * it is in further elements: mcfskel_component, mcfskel_surface, mcfskel_surface_face, mcfskel_slot and
- * mcfskel_stage.
+ * Other readers find a mesh (elements vertex and face) with attributes; what belongs to no vertex
+ * of it is in further elements: mcfskel_component, mcfskel_surface, mcfskel_surface_face,
+ * mcfskel_slot and mcfskel_stage.
  */
 
 #ifndef VCG_MCF_STAGE_PLY_H
@@ -32,7 +32,7 @@ namespace vcg::tri::mcf {
 struct StageFile
 {
 	Stage stage;
-	/// Of the surface layer's geometry, as the host counts it; 0: not known.
+	/// Of the surface layer's geometry, as the host computes it; 0: not known.
 	std::uint64_t surfaceFingerprint = 0;
 	/// For each vertex of that layer the vertex of the surface, or -1.
 	std::vector<int> vertexOfSlot;
@@ -42,7 +42,7 @@ namespace detail {
 
 inline constexpr char stageComment[] = "mcfskel stage 1";
 
-/// The table of what there is once.
+/// The table of one row: what a stage has once.
 inline PlyElement stageRow(const StageFile& file)
 {
 	const Stage& stage = file.stage;
@@ -62,8 +62,9 @@ inline PlyElement stageRow(const StageFile& file)
 } // namespace detail
 
 /**
- * A stage as tables, none that readStagePly() would refuse.
- * @pre its mesh is compact, as between steps.
+ * A stage as tables that readStagePly() accepts.
+ * @pre the stage's mesh is compact, as between steps; vertexOfSlot names vertices of the surface,
+ *      or -1.
  * @throws InvalidStage, see checkStage(); Cancelled.
  * Complexity: O(V + surface).
  */
@@ -120,7 +121,8 @@ inline PlyFile stagePly(const StageFile& file, const Progress& progress = Progre
 	return ply;
 }
 
-/// Writes stagePly(). @throws InvalidStage, see checkStage(); Cancelled. Complexity: O(V + surface).
+/// Writes stagePly(). @throws InvalidStage, see checkStage(); Cancelled.
+/// Complexity: O(V + surface).
 inline void writeStagePly(
 	std::ostream& out, const StageFile& file, const Progress& progress = Progress())
 {
@@ -129,7 +131,7 @@ inline void writeStagePly(
 
 namespace detail {
 
-/// The mesh of a stage; checkStage() sees whether it is a manifold.
+/// The mesh of a stage; checkStage() checks that it is a manifold.
 /// @throws FormatError unless each edge has a twin; Cancelled.
 inline SurfaceMesh stageMesh(
 	std::vector<Point3d> points, const std::vector<Triangle>& triangles, const Progress& progress)
@@ -147,7 +149,7 @@ inline SurfaceMesh stageMesh(
 	}
 }
 
-/// checkStage(), in terms of the file.
+/// checkStage(), with errors in terms of the file. @throws FormatError, Cancelled
 inline void checkReadStage(const Stage& stage, const Progress& progress)
 {
 	try {
@@ -199,8 +201,8 @@ inline bool isStagePly(const PlyFile& ply)
 
 /**
  * Reads a stage that writeStagePly() wrote. Further properties and elements are ignored.
- * @throws FormatError: see readBinaryPly(); also for an element or property that is missing, a value
- *         that its type cannot have, and for whatever checkStage() refuses. Cancelled.
+ * @throws FormatError for an element or property that is missing, a value that is out of its range,
+ *         and whatever checkStage() refuses; Cancelled.
  */
 inline StageFile readStagePly(const PlyFile& ply, const Progress& progress = Progress())
 {

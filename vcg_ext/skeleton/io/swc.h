@@ -3,8 +3,8 @@
 
 /**
  * @file
- * @brief SWC, the format of neuron morphologies: a line `id type x y z radius parent` for each node,
- * parent -1 at a root. It is made of trees, so a cycle has to be cut.
+ * @brief SWC, the format of neuron morphologies: a line `id type x y z radius parent` for each
+ * node, parent -1 at a root. It is made of trees, so a cycle has to be cut.
  */
 
 #ifndef VCG_MCF_SWC_H
@@ -25,7 +25,7 @@
 
 namespace vcg::tri::mcf {
 
-/// What a skeleton lost on its way into trees.
+/// What a skeleton lost when it was made into trees, and its ids in the file.
 struct SwcReport
 {
 	/// The edges that were left out, as nodes of the skeleton: one for each independent cycle.
@@ -45,10 +45,10 @@ enum class SwcSoma {
 	Thickest
 };
 
-/// How a skeleton becomes a neuron.
+/// How a skeleton is written as a neuron.
 struct SwcOptions
 {
-	/// What every length is multiplied with.
+	/// What every length is multiplied by; > 0.
 	double scale = 1;
 	/// The unit after that, such as "um", for the file's first line; empty: not known.
 	std::string units;
@@ -57,7 +57,7 @@ struct SwcOptions
 
 namespace detail {
 
-/// The root that is the soma; -1 for none. Readers know one soma in a file.
+/// The root that is the soma; -1 for none. Readers expect at most one soma in a file.
 inline int swcSoma(const CurveSkeleton& skeleton, const SpanningForest& forest, SwcSoma rule)
 {
 	if (rule == SwcSoma::None || skeleton.radius.empty())
@@ -85,13 +85,15 @@ inline int swcSoma(const CurveSkeleton& skeleton, const SpanningForest& forest, 
 } // namespace detail
 
 /**
- * Writes a skeleton as SWC. Ids run from 1, each node after its parent; each component has one root, with the
- * parent -1. The type is 0, undefined; where there is a soma it is 1 there and 3, dendrite, elsewhere.
+ * Writes a skeleton as SWC. Ids run from 1, each node after its parent; each component has one
+ * root, with the parent -1. The type is 0, undefined; where there is a soma it is 1 there and 3,
+ * dendrite, elsewhere.
  *
- * Each cycle is cut at its thinnest edge, see spanningForest(); the cuts are also listed in the file's
- * comments. A radius that is not known is written as 0.
+ * Each cycle is cut at its thinnest edge, see spanningForest(); the cuts are also listed in the
+ * file's comments. A radius that is not known is written as 0.
  * @return the cuts, the ids and the warnings.
- * @throws InvalidInput: see requireWritable(); a scale that is not above 0, or that makes a length too large.
+ * @throws InvalidInput: see requireWritable(); a scale that is not above 0, or that makes a length
+ *         too large.
  */
 inline SwcReport writeSwc(
 	std::ostream& out, const CurveSkeleton& skeleton, const SwcOptions& options = {})
@@ -163,9 +165,9 @@ inline void requireTrees(const std::vector<int>& parent, const std::vector<size_
  * Reads an SWC file: nodes in the order of their lines, an edge to each parent. Types are not kept.
  * A parent may come after its children.
  * @return a skeleton with radius and without correspondence.
- * @throws FormatError with the line: not seven fields, an id below 0 or given twice, a coordinate that is
- *         not finite or beyond maxCoordinate, a radius that is or is below 0, a parent that does not
- *         exist, a node that is its own ancestor.
+ * @throws FormatError with the line: not seven fields, an id below 0 or given twice, a coordinate
+ *         that is not finite or beyond maxCoordinate, a radius that is not from 0 to maxCoordinate,
+ *         a parent that does not exist, a node that is its own ancestor.
  */
 inline SkeletonFile readSwc(std::istream& stream)
 {

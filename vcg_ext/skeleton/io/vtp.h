@@ -3,8 +3,8 @@
 
 /**
  * @file
- * @brief VTK's XML PolyData, for ParaView, 3D Slicer, PyVista and VMTK: a polyline for each branch, its arrays
- * under the names of VMTK's centerlines.
+ * @brief VTK's XML PolyData, for ParaView, 3D Slicer, PyVista and VMTK: a polyline for each branch,
+ * its arrays under the names of VMTK's centerlines.
  */
 
 #ifndef VCG_MCF_VTP_H
@@ -22,13 +22,14 @@
 namespace vcg::tri::mcf {
 
 /**
- * Writes a skeleton as .vtp, in text. Points are the nodes, in their order, shared by the branches that meet
- * there. Lines are the branches of skeletonBranches(), isolated nodes are vertex cells.
+ * Writes a skeleton as .vtp, in text. Points are the nodes, in their order, shared by the branches
+ * that meet there. Lines are the branches of skeletonBranches(), isolated nodes are vertex cells.
  *
- * Point data: `MaximumInscribedSphereRadius`, mesh units, `mcfskel_significance` and `mcfskel_bridge`, as far as they are known. Cell data, as VMTK has
- * them after its branch extraction: `GroupIds` and `CenterlineIds` (the branch, from 0; -1 at an isolated
- * node), `TractIds` 0, `Blanking` 0 (1: not a branch). Field data: `mcfskel_node`, for each
- * surface vertex its node or -1, if the correspondence is known.
+ * Point data: `MaximumInscribedSphereRadius`, mesh units, `mcfskel_significance` and
+ * `mcfskel_bridge`, as far as they are known. Cell data, as VMTK has them after its branch
+ * extraction: `GroupIds` and `CenterlineIds` (the branch, from 0; -1 at an isolated node),
+ * `TractIds` 0, `Blanking` 0 (1: not a branch). Field data: `mcfskel_node`, for each surface vertex
+ * its node or -1, if the correspondence is known.
  * Complexity: O(V + E).
  * @throws InvalidInput: see requireWritable().
  */

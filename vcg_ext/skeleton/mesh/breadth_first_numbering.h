@@ -26,8 +26,8 @@ struct Numbering
 	/// For each new vertex id its connected component, in the order in which they were found.
 	std::vector<int> component;
 	int components = 0;
-	/// For each face slot the corner from which it was found: the same one, whatever the corners'
-	/// order was before.
+	/// For each face slot the corner from which it was found, which does not depend on the order of
+	/// its corners.
 	std::vector<char> firstCorner;
 };
 
@@ -36,12 +36,11 @@ struct Numbering
  * of their vertices. Passes over such a mesh are up to twice as fast as over one whose numbering
  * is random or has grown by splits.
  *
- * The order depends on the seeds and on how the triangles hang together, not on the numbering that
- * there was: rings begin with the edge along which their vertex was reached.
+ * The order depends on the seeds and the connectivity, not on the old numbering: rings begin with
+ * the edge along which their vertex was reached.
  *
- * @param seeds a half-edge of each component, whose origin comes first, in the order that the
- *              components shall have; or empty for the order of connectedComponents(), by lowest
- *              vertex.
+ * @param seeds a half-edge of each component, whose origin comes first, in the new order of the
+ *              components; or empty for the order of connectedComponents(), by lowest vertex.
  * @throws Cancelled
  * Complexity: O(V + F).
  */
@@ -99,7 +98,7 @@ inline Numbering breadthFirstOrder(const SurfaceMesh& mesh, const std::vector<in
 }
 
 /**
- * Numbers a mesh breadth first and closes the holes in its numbering, in place of SurfaceMesh::compact().
+ * Numbers a mesh breadth first without holes, in place of SurfaceMesh::compact().
  * @return for each old vertex id the new one, -1 where it was removed.
  * @throws Cancelled
  * Complexity: O(V + F).
@@ -113,9 +112,9 @@ inline std::vector<int> renumberBreadthFirst(
 }
 
 /**
- * Seeds for breadthFirstOrder() that depend on the places of the vertices only: of each component
- * the half-edge out of the vertex with the smallest coordinates (x before y before z) to its neighbour
- * with the smallest.
+ * Seeds for breadthFirstOrder() that depend on the positions of the vertices only: of each
+ * component the half-edge from the vertex with the smallest coordinates (x before y before z) to
+ * its neighbour with the smallest.
  * @param component of each vertex slot, see connectedComponents().
  * @param placeOf   Point3d(vertex): the coordinates that count.
  * @throws Cancelled. Complexity: O(V).
@@ -150,7 +149,7 @@ std::vector<int> minHalfEdges(const SurfaceMesh& mesh, const std::vector<int>& c
 	return minimum;
 }
 
-/// What `ofVertex` says about each vertex slot, in a new order of `count` vertices.
+/// The entries of `ofVertex`, one for each vertex slot, in the new order of `count` vertices.
 template <class T>
 std::vector<T> renumbered(
 	const std::vector<T>& ofVertex, const std::vector<int>& newVertex, int count)

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Closest points on a surface for queries that move little: by walking, without a search tree.
+/// @brief Closest points on a surface by walking, without a tree, for queries that move little.
 
 #ifndef VCG_MCF_CLOSEST_POINT_WALK_H
 #define VCG_MCF_CLOSEST_POINT_WALK_H
@@ -13,7 +13,7 @@ namespace vcg::tri::mcf {
 
 namespace detail {
 
-/// The point of a triangle that is closest to a query, and the part of the triangle that it lies on.
+/// The point of a triangle closest to a query, and the part of the triangle that it lies on.
 struct TrianglePoint
 {
 	static constexpr int interior = 6;
@@ -71,11 +71,11 @@ inline TrianglePoint closestOnTriangle(
  * on the edge, round a vertex where it lies on the vertex.
  *
  * For a vertex that has left the surface a little this is the true closest point, at the cost of
- * about two triangles; and a thin part cannot catch it with its opposite wall, which is near in
- * space but far along the surface.
+ * about two triangles; and the walk does not end on the opposite wall of a thin part, which is near
+ * in space but far along the surface.
  *
  * @param face where to start; becomes the face of the result.
- * @return the point, exactly on that face but for rounding.
+ * @return the point, on that face up to rounding.
  * Complexity: O(faces walked over).
  */
 inline Point3d trackSurface(const SurfaceMesh& surface, const Point3d& query, int& face)

@@ -21,7 +21,7 @@
 
 namespace vcg::tri::mcf {
 
-/// The vertices of each component in the order of their ids, and for each vertex its place among those.
+/// The vertices of each component in the order of their ids, and the place of each vertex there.
 struct ComponentVertices
 {
 	std::vector<std::vector<int>> ids;
@@ -41,12 +41,12 @@ struct ComponentVertices
 };
 
 /**
- * Calls visit(c, own, ids, progress) for each connected component c of a mesh: `own` is that component alone,
- * vertices and triangles in the order that they have in the mesh, `ids` what its vertices are called there.
- * Large components are visited one after the other, so that each has all cores, then the others, several at
- * once.
+ * Calls visit(c, own, ids, progress) for each connected component c of a mesh: `own` is a mesh of
+ * that component alone, its vertices and triangles in the order of `mesh`; `ids` are the ids of its
+ * vertices in `mesh`. Large components are visited one after the other, so that each has all cores,
+ * then the others, several at once.
  * @param component  of each vertex of the mesh, from 0 to components - 1.
- * @pre mesh is compact; visits change nothing in common.
+ * @pre mesh is compact; visits share no mutable state.
  * @throws Cancelled, and what visit() throws. Complexity: O(V + F), and the visits.
  */
 template <class Visitor>

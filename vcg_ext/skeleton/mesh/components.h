@@ -18,13 +18,13 @@
 
 namespace vcg::tri::mcf {
 
-/// For each vertex the number of its connected component, counted by lowest vertex; -1 for holes in
-/// the numbering. @throws Cancelled. Complexity: about O(V + F).
+/// For each vertex the number of its connected component, in the order of their lowest vertices; -1
+/// for holes in the numbering. @throws Cancelled. Complexity: about O(V + F).
 inline std::vector<int> connectedComponents(
 	const SurfaceMesh& mesh, int* componentCount = nullptr, const Progress& progress = Progress())
 {
-	// Sets of vertices that grow face by face, each known by its lowest vertex: unlike a walk over
-	// the surface that reads the mesh in the order in which it lies in memory.
+	// Sets of vertices that grow face by face, each known by its lowest vertex: this reads the mesh
+	// in the order of memory, which a walk over the surface does not.
 	const char* const what = "Measuring the surface";
 	MergeForest lowest(mesh.vertexSlots(), progress);
 	detail::reportedLoop(mesh.faceSlots(), progress.part(0, 0.8), what, [&](int f) {

@@ -19,21 +19,21 @@
 
 namespace vcg::tri::mcf {
 
-/// Where there are more components than this, those whose diagonal is below this part of the largest one's
-/// are specks. With fewer each has its share of the vertices of defaultTargetLength().
+/// With more components than maxWithoutSpecks, those whose diagonal is below speckSize of the
+/// largest one's are specks. With fewer, each has its share of vertices: defaultTargetLength().
 constexpr int maxWithoutSpecks = 15;
 constexpr double speckSize = 0.01;
 
 /**
  * A component is thin where its volume over its area is below this part of its unit of length (see
- * PrincipalFrame): half of a plate's thickness, half of a wire's radius. That is eight steps of the grid
- * that the resampling and the flow round places to; less has no shape on it.
+ * PrincipalFrame): half of a plate's thickness, half of a wire's radius. That is eight steps of the
+ * grid on which the resampling and the flow place vertices; anything thinner has no shape on it.
  */
 constexpr double thinnest = 8.0 / (1 << 22);
 
 /**
- * The components that rest: specks, and what is thin. They are neither resampled nor contracted, but
- * collapsed to curves as they are, which costs no more than their own size and keeps their topology.
+ * The components that rest: specks and thin ones. They are neither resampled nor contracted, but
+ * collapsed to curves directly, which costs no more than their own size and keeps their topology.
  * @return 1 for each component that rests. @throws Cancelled. Complexity: O(V + F).
  */
 inline std::vector<char> componentsAtRest(
@@ -53,9 +53,10 @@ inline std::vector<char> componentsAtRest(
 }
 
 /**
- * Many components share the work: beyond 50 of them, specks not counted, the default epsilon grows with the square root
- * of their number, so that the total work grows no faster than that. An epsilon that the user chose stays, and so
- * does the paper's. Each stage of the pipeline applies it; it is idempotent.
+ * Many components share the work: beyond 50 of them, specks not counted, the default epsilon grows
+ * with the square root of their number, so that the total work grows no faster than that. An
+ * epsilon that the user chose stays, and so does the paper's. Each stage of the pipeline applies
+ * it; it is idempotent.
  * @param diagonal of each component. Complexity: O(components).
  */
 inline Parameters sharedAmong(Parameters parameters, const std::vector<double>& diagonal)

@@ -33,7 +33,7 @@ inline std::vector<double> vertexAreas(
 }
 
 /**
- * The vertices whose mark is `value`, by connected part, in the order of their lowest vertices.
+ * The connected parts of the vertices whose mark is `value`, in the order of their lowest vertices.
  * @param marked  0 or 1 for each vertex. @throws Cancelled. Complexity: O(V).
  */
 inline std::vector<std::vector<int>> markedParts(const SurfaceMesh& mesh,
@@ -72,9 +72,10 @@ inline double areaOf(const std::vector<int>& part, const std::vector<double>& ve
 }
 
 /**
- * Gives each connected part whose mark is `value` the other mark if it is smaller than allowed.
+ * Gives each connected part whose mark is `value` the other mark if its area is below `minimum`.
  * @param area       of each vertex, see vertexAreas().
- * @param component  of each vertex; minimum: the smallest area of a part, for each component.
+ * @param component  of each vertex.
+ * @param minimum    smallest area of a part, for each component.
  * @throws Cancelled
  */
 inline void flipSmallParts(const SurfaceMesh& mesh, const std::vector<double>& area,

@@ -21,14 +21,14 @@ namespace vcg::tri::mcf {
 /**
  * A surface with its connected components and their principal axes, areas and sizes.
  *
- * On a dense surface to find these takes as long as the stages that ask for them: whoever calls
- * several stages finds them once and hands them down.
+ * On a dense surface these take as long to compute as the stages that need them: a caller of
+ * several stages computes them once and passes them on.
  */
 class MeasuredSurface
 {
 public:
 	/**
-	 * Implicit: a stage that is called alone takes the mesh itself.
+	 * Implicit, so that a stage that is called alone takes a mesh.
 	 * @param mesh kept by reference.
 	 * @pre the positions are finite. @throws Cancelled. Complexity: about O(V + F).
 	 */
@@ -60,10 +60,10 @@ public:
 	const PrincipalFrame& frame(int c) const { return frames[c]; }
 	/// The area of a component, mesh units squared.
 	double area(int c) const { return frames[c].area(); }
-	/// The size of a component: the diagonal of its bounding box along its principal axes, mesh units.
+	/// The size of a component: diagonal of its bounding box along its principal axes, mesh units.
 	double diagonal(int c) const { return frames[c].size(); }
 
-	/// Both for all components.
+	/// area() and, below, diagonal() of all components.
 	std::vector<double> areas() const
 	{
 		std::vector<double> all;

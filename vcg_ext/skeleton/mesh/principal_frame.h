@@ -29,23 +29,23 @@ namespace vcg::tri::mcf {
  *
  * The axes are the eigenvectors of the second moments S = int (x - m)(x - m)^T dA, m the centroid,
  * by falling eigenvalue. An axis points to where the third moment int (u . (x - m))^3 dA is
- * positive, or where that is 0, the sum of the cubes over the middles of the triangles. So a mirrored shape has
- * the mirrored axes, and they may be a left hand's: see isMirrored(). A shape that does not tell its
- * axes apart (a sphere, a cube, a torus) takes those of the coordinates, and a direction in which it
- * is symmetric points where the right hand says, or if there are more of them, the way of the nearest
- * coordinate axis: harmless, since all choices are alike.
+ * positive, or where that is 0, the sum of the cubes over the centroids of the triangles. So a
+ * mirrored shape has the mirrored axes, which may be left-handed: see isMirrored(). Where two
+ * eigenvalues are equal (a sphere, a cube, a torus), the coordinate axes are used. Axes along which
+ * the shape is symmetric point the way of the nearest coordinate axis, but for the last of them,
+ * which makes the axes right-handed: harmless, since all choices are alike.
  *
- * The size is the diagonal of the bounding box along these axes. Unlike that along the coordinate
- * axes, which changes by up to a factor of sqrt 3, it stays when the shape is turned; of a box that
- * stands straight it is the same. The unit is sqrt(12 tr S / A), which is the size of a rod and of a
- * sphere; unlike the size it does not hang on single points.
+ * The size is the diagonal of the bounding box along these axes. Unlike that of the axis-aligned
+ * box, which changes by up to a factor of sqrt 3, it stays the same when the shape is turned; for
+ * an axis-aligned box both are equal. The unit is sqrt(12 tr S / A), which is the size of a rod and
+ * of a sphere; unlike the size it does not depend on single points.
  *
- * The integrals over a surface do not depend on how it is cut into triangles; signs do, where it is symmetric.
+ * The integrals do not depend on the triangulation; the signs do, where the surface is symmetric.
  */
 class PrincipalFrame
 {
 public:
-	/// The coordinates as they are.
+	/// The frame of the coordinates themselves.
 	PrincipalFrame() = default;
 
 	/**
@@ -76,7 +76,7 @@ public:
 		return made(components, forEachPoint, forEachCell, progress);
 	}
 
-	/// The frames of sets of points, all points alike; `component` says which set.
+	/// The frames of sets of points of equal weight; `component` is the set of each point.
 	/// @throws Cancelled. Complexity: O(V).
 	static std::vector<PrincipalFrame> ofPoints(const std::vector<Point3d>& points,
 		const std::vector<int>& component, size_t components, const Progress& progress = Progress())
@@ -96,13 +96,14 @@ public:
 	double area() const { return weight; }
 	/// Diagonal of the bounding box along the axes, mesh units.
 	double size() const { return diagonal; }
-	/// The same in the coordinates inside, rounded for the same bits.
+	/// size() in the coordinates of the frame, rounded: the same bits for all copies of a shape.
 	double sizeInside() const { return rounded(diagonal / unit, 40); }
-	/// Whether the axes are a left hand's: inside, the shape is its mirror image, and faces that are to look
-	/// outwards have to be turned over, see turnOverMirrored().
+	/// Whether the axes are left-handed: in the frame, the shape is its mirror image, and faces
+	/// have to be turned over to face outwards, see turnOverMirrored().
 	bool isMirrored() const { return (axes[0] ^ axes[1]) * axes[2] < 0; }
-	/// The unit of the coordinates inside, mesh units.
+	/// The unit of the coordinates of the frame, mesh units.
 	double unitLength() const { return unit; }
+	/// The coordinates of a point in the frame; out() is the inverse.
 	Point3d in(const Point3d& p) const { return turned(p - origin) / unit; }
 	Point3d out(const Point3d& p) const
 	{
@@ -112,16 +113,16 @@ public:
 	/**
 	 * As in(), rounded: the same bits for all copies of a shape that differ by rounding.
 	 *
-	 * The steps of 2^-22, about what single precision resolves, change at the golden section: far from
-	 * all simple fractions, where means of points that were rounded before would be thrown to either
-	 * side.
+	 * The grid has steps of 2^-22, about what single precision resolves. Values within a step are
+	 * divided at its golden section: far from all simple fractions, where means of points that were
+	 * rounded before would be thrown to either side.
 	 */
 	Point3d onGrid(const Point3d& p) const { return rounded(in(p)); }
 
-	/// The place of a point after rounding, in the coordinates outside.
+	/// A point, mesh units, moved to its place on the grid: out(onGrid(p)).
 	Point3d snapped(const Point3d& p) const { return out(onGrid(p)); }
 
-	/// A point in this frame, rounded likewise.
+	/// Rounds a point that is given in the coordinates of the frame, as onGrid() does.
 	static Point3d rounded(Point3d p)
 	{
 		for (int k = 0; k < 3; ++k)
@@ -129,7 +130,7 @@ public:
 		return p;
 	}
 
-	/// A length in this frame, rounded likewise, to 2^-40.
+	/// A length, mesh units, in the unit of the frame, rounded likewise to 2^-40.
 	double lengthOnGrid(double length) const { return rounded(length / unit, 40); }
 
 private:
@@ -142,7 +143,7 @@ private:
 		constexpr double goldenPart = 0.6180339887498949; // (sqrt 5 - 1) / 2
 		const double steps = double(std::int64_t(1) << binaryDigits);
 		const double y = x * steps + goldenPart;
-		// std::floor() is a call where the processor need not know it as an instruction.
+		// std::floor() is a function call where the target may lack an instruction for it.
 		constexpr double noFraction = double(std::int64_t(1) << 52);
 		if (!(std::abs(y) < noFraction))
 			return y / steps;
@@ -150,14 +151,14 @@ private:
 		return (towardsZero - double(towardsZero > y)) / steps;
 	}
 
-	/// Integrals about the origin of a frame, in its unit, weights in units of their own.
+	/// Integrals about the origin of a frame, in its unit; weights are mesh units^2, or points.
 	struct Moments
 	{
 		double weight = 0;
 		Point3d first = Point3d(0, 0, 0);
 		Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
 		std::array<double, 3> third = {0, 0, 0}; ///< along the axes
-		/// The same of the cells' middles, each of weight 1: they tell how the surface is cut into triangles.
+		/// The same for the cells' centroids, each of weight 1: depends on the triangulation.
 		std::array<double, 3> thirdOfMiddles = {0, 0, 0};
 		double cells = 0;
 
@@ -190,8 +191,8 @@ private:
 			}
 		}
 
-		/// Mean of u^3 over a point, or over a triangle at whose corners u has these values: the mean
-		/// of all ten products of three of them.
+		/// Mean of u^3 over a point, or over a triangle at whose corners u has these values: the
+		/// mean of all ten products of three of them.
 		static double meanCube(const std::array<double, 1>& u) { return u[0] * u[0] * u[0]; }
 		static double meanCube(const std::array<double, 3>& u)
 		{
@@ -206,7 +207,7 @@ private:
 			const Eigen::Vector3d m(first[0] / weight, first[1] / weight, first[2] / weight);
 			return second / weight - m * m.transpose();
 		}
-		/// The unit, in the one that the moments are in.
+		/// The new unit of the frame, in the unit of the moments.
 		double extent() const
 		{
 			const double squared = weight > 0 ? 12 * spread().trace() : 0;
@@ -226,8 +227,8 @@ private:
 	}
 
 	/**
-	 * @param forEachPoint (progress, visit) calls visit(component, point) for all points that the box
-	 *                     must hold.
+	 * @param forEachPoint (progress, visit) calls visit(component, point) for all points that the
+	 *                     box must hold.
 	 * @param forEachCell  (progress, visit) calls visit(component, corners, area) for all cells of
 	 *                     the integrals.
 	 */
@@ -328,9 +329,10 @@ private:
 };
 
 /**
- * Turns over the faces of the components whose frames are mirrored: in these frames they look outwards then.
- * Done twice, the mesh is as it was.
- * @param component of each vertex. @throws Cancelled. Complexity: O(V + F), without such frames O(components).
+ * Turns over the faces of the components whose frames are mirrored, so that they face outwards in
+ * these frames. Applied twice, it restores the mesh.
+ * @param component of each vertex.
+ * @throws Cancelled. Complexity: O(V + F), without such frames O(components).
  */
 inline void turnOverMirrored(SurfaceMesh& mesh, const std::vector<int>& component,
 	const std::vector<PrincipalFrame>& frames, const Cancellation& cancel = Cancellation())

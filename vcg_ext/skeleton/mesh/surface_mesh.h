@@ -31,10 +31,10 @@ using Triangle = std::array<int, 3>;
  * A closed, oriented, two-manifold triangle mesh of any number of components.
  *
  * Half-edge h = 3 f + k runs along triangle f from its corner k to its corner k + 1; its twin runs
- * back along the neighbour. Twelve integers a vertex, no pointers: a collapse touches one vertex
+ * back along the neighbour. Fourteen integers a vertex, no pointers: a collapse touches one vertex
  * ring. Removed vertices and faces stay as holes in the numbering until compact().
  *
- * Orders (rings, faces, vertices) depend on indices only, so that the same calls give the same bits.
+ * Orders (rings, faces, vertices) depend on indices only: the same calls give the same bits.
  */
 class SurfaceMesh
 {
@@ -62,9 +62,9 @@ public:
 	}
 
 	/**
-	 * The mesh of `triangles` if they are a closed two-manifold, oriented alike (of whose vertices not
-	 * all need be used): each directed edge occurs once, and so does its reverse, and the triangles
-	 * at each vertex form one fan; nothing if they are not.
+	 * The mesh of `triangles` if they are a closed, coherently oriented two-manifold, else nothing:
+	 * each directed edge occurs once, and so does its reverse, and the triangles at each vertex
+	 * form one fan. Vertices may be unused.
 	 * @throws Cancelled. Complexity: O(V + F).
 	 */
 	static std::optional<SurfaceMesh> ifClosedManifold(std::vector<Point3d> points,
@@ -106,7 +106,7 @@ public:
 		return mesh;
 	}
 
-	/// Whether there is such a mesh of `triangles` on so many vertices.
+	/// Whether ifClosedManifold() has a mesh for `triangles` on so many vertices.
 	static bool isClosedManifold(size_t vertices, const std::vector<Triangle>& triangles)
 	{
 		return ifClosedManifold(std::vector<Point3d>(vertices), triangles).has_value();
@@ -187,8 +187,8 @@ public:
 		return (position[origins[3 * f + 1]] - a) ^ (position[origins[3 * f + 2]] - a);
 	}
 
-	/// Whether triangle f is too thin for a reliable normal: its height is at most a millionth of the surface's
-	/// diagonal, a few steps of PrincipalFrame::onGrid().
+	/// Whether triangle f is too thin for a reliable normal: its height is at most a millionth of
+	/// the surface's diagonal, a few steps of PrincipalFrame::onGrid().
 	bool isSliver(int f, double diagonal) const
 	{
 		constexpr double thinnest = 1e-6;
@@ -273,12 +273,14 @@ public:
 		return live;
 	}
 
-	// Changes of connectivity. Each keeps the mesh a closed two-manifold of the same genus.
+	// Changes of connectivity. Each keeps the mesh a closed two-manifold of the same genus, except
+	// addPillow(), cutAlong(), removeFace() and removeVertex().
 
 	/**
-	 * A vertex c that is a neighbour of both ends of h though neither triangle at h has it, so that
-	 * collapsing h would pinch the surface; -1 if there is none (link condition: lk(a) n lk(b) = lk(ab)).
-	 * Of several, the first in the ring of target(h).
+	 * A vertex that is a neighbour of both ends of h but in neither triangle at h, so that
+	 * collapsing h would pinch the surface; -1 if there is none, which is the link condition
+	 * lk(a) n lk(b) = lk(ab). Of several, the first in the ring of target(h). Uses scratch arrays:
+	 * not for several threads at once.
 	 */
 	int pinchVertex(int h) const
 	{
@@ -296,16 +298,17 @@ public:
 	}
 
 	/**
-	 * Whether collapse(h) keeps the topology: there is no pinchVertex(), and h is of none of the smallest closed
-	 * meshes, a tetrahedron or two triangles back to back.
+	 * Whether collapse(h) keeps the topology: there is no pinchVertex(), and the component of h is
+	 * not one of the smallest closed meshes, a tetrahedron or two triangles back to back. Uses
+	 * scratch arrays: not for several threads at once.
 	 */
 	bool isCollapsible(int h) const
 	{
 		const int t = twins[h];
 		if (apex(h) == apex(t))
 			return false;
-		// Of either ring, clockwise, the first two half-edges go with the triangles; the last one leads to an
-		// apex. Both at a time: each step of a walk waits for the one before.
+		// The first two half-edges of either ring, clockwise, disappear with the triangles; the
+		// last one leads to an apex. Both rings at once: a step waits for the one before.
 		int ofOrigin = rotated(rotated(h)), ofTarget = rotated(rotated(t));
 		ringOfOrigin.clear();
 		ringOfTarget.clear();
@@ -341,9 +344,9 @@ public:
 	}
 
 	/**
-	 * collapse(h) if isCollapsible(h), which saves walks round both ends.
-	 * @param visit (half-edge): called for each half-edge out of the merged vertex, in no particular order;
-	 *              must not change the mesh.
+	 * collapse(h) if isCollapsible(h), without walking round both ends again.
+	 * @param visit (half-edge): called for each half-edge out of the merged vertex, in no
+	 *              particular order; must not change the mesh.
 	 * @return whether h was collapsed.
 	 */
 	template <class Visitor>
@@ -365,8 +368,9 @@ public:
 	/**
 	 * Puts a new vertex at `point` on the edge of h and joins it to both apexes.
 	 * @pre the apexes differ.
-	 * @return the new vertex. The half-edges of h's triangle and its neighbour keep their ids, but
-	 *         h now ends, and its twin now starts, at the new vertex.
+	 * @return the new vertex, m. Edge (a b) of triangles (a b c) and (b a d): h ends at m, its twin
+	 *         starts there, next(h) runs from m to c, previous(twin(h)) from d to m. The last two
+	 *         faces are (m b c) and (b m d), with the edges (b c) and (d b) under new ids.
 	 */
 	int split(int h, const Point3d& point)
 	{
@@ -396,8 +400,8 @@ public:
 	}
 
 	/**
-	 * Adds two triangles back to back, (a b c) and (b a c), with vertices of their own: the smallest
-	 * component there is. The Euler characteristic grows by two.
+	 * Adds two triangles back to back, (a b c) and (b a c), with vertices of their own: the
+	 * smallest component there is. The Euler characteristic grows by two.
 	 * @return a, b, c.
 	 */
 	std::array<int, 3> addPillow(const std::array<Point3d, 3>& corners)
@@ -504,7 +508,7 @@ public:
 		return copies;
 	}
 
-	/// Removes a whole face by hand; the caller sees to it that its component disappears with it.
+	/// Removes face f without updating its neighbours. @pre all of its component is removed, too.
 	void removeFace(int f)
 	{
 		for (int k = 0; k < 3; ++k)
@@ -512,14 +516,14 @@ public:
 		--liveFaces;
 	}
 
-	/// Removes a vertex by hand, when the last of its faces is gone.
+	/// Removes vertex v. @pre all of its faces are removed.
 	void removeVertex(int v)
 	{
 		outgoings[v] = -1;
 		--liveVertices;
 	}
 
-	/// Gives back the memory that splits and removed elements have left spare: for meshes that are kept.
+	/// Gives back memory that splits and removals have left unused: for meshes that are kept.
 	void trim()
 	{
 		position.shrink_to_fit();
@@ -570,7 +574,7 @@ public:
 		return newVertex;
 	}
 
-	/// A copy that the user can cancel.
+	/// A copy; copying can be cancelled.
 	/// @throws Cancelled
 	SurfaceMesh copied(const Cancellation& cancel) const
 	{
@@ -592,8 +596,7 @@ public:
 	/**
 	 * The same mesh with other ids for its vertices and faces, without holes in the numbering.
 	 * @param newVertex for each vertex slot its new id, -1 where it was removed; likewise newFace.
-	 * @param firstCorner for each face slot which of its corners shall be the first; empty: the one
-	 *                  that is.
+	 * @param firstCorner for each face slot which corner becomes its first one; empty: corner 0.
 	 * @pre the new ids are those from 0 to the number of live elements, each once.
 	 * @throws Cancelled
 	 */
@@ -628,8 +631,9 @@ public:
 	}
 
 	/**
-	 * Turns faces over: (a, b, c) becomes (a, c, b). Done twice, the mesh is as it was.
-	 * @param isTurned bool(vertex): whether the faces at it are; the same for all vertices of a component.
+	 * Turns faces over: (a, b, c) becomes (a, c, b). Applied twice, it restores the mesh.
+	 * @param isTurned bool(vertex): whether to turn the faces at it; the same for all vertices of a
+	 *                 component.
 	 * @throws Cancelled. Complexity: O(V + F).
 	 */
 	template <class IsTurned>
@@ -665,7 +669,7 @@ private:
 	mutable std::vector<int> stamps;
 	mutable int stampClock = 0;
 	std::vector<int> ringScratch;
-	/// Of the last edge that was tested: the half-edges out of both ends that a collapse would leave.
+	/// Of the last edge in isCollapsible(): the half-edges out of its ends that a collapse leaves.
 	mutable std::vector<int> ringOfOrigin, ringOfTarget;
 
 	void join(int h, int t)
@@ -674,7 +678,7 @@ private:
 		twins[t] = h;
 	}
 
-	/// Ends a collapse of h, which merged a into b: takes its triangles out and joins their neighbours.
+	/// Ends a collapse of h that merged a into b: removes its triangles, joins their neighbours.
 	void closeGap(int h, int a, int b)
 	{
 		const int t = twins[h];
@@ -722,7 +726,8 @@ private:
 		liveFaces = int(triangles.size());
 	}
 
-	/// Pairs the half-edges; each lower end has a bucket of those that wait for their twin. O(F).
+	/// Pairs the half-edges; each lower end has a bucket of those that wait for their twin. O(F),
+	/// if few wait at a vertex at a time.
 	/// @return whether each has found one.
 	/// @throws Cancelled
 	bool pairTwins(const Progress& progress)
@@ -743,7 +748,7 @@ private:
 				const int g = bucket[i];
 				if (origin(g) == target(h) && target(g) == origin(h)) {
 					join(h, g);
-					bucket[i] = bucket[--end[low]]; // a fan of many faces stays cheap
+					bucket[i] = bucket[--end[low]]; // a fan in order stays cheap
 					break;
 				}
 			}

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Coordinates of the input in single precision, so that all callers start from the same bits.
+/// @brief Input coordinates in single precision, so that all callers start from the same bits.
 
 #ifndef VCG_MCF_SURFACE_ROUNDING_H
 #define VCG_MCF_SURFACE_ROUNDING_H
@@ -35,8 +35,8 @@ inline double toSingle(double x)
  * Rounds the coordinates of a surface to single precision, where that resolves a millionth of its
  * diagonal: where it is not far from the origin. Elsewhere they stay as they are.
  *
- * The steps of the contraction amplify the smallest difference. Rounded, a mesh gives the same graph
- * whether it was held in float or in double.
+ * The steps of the contraction amplify the smallest difference. Rounded, a mesh gives the same
+ * graph whether it was stored in float or in double.
  */
 class SurfaceRounding
 {

@@ -21,8 +21,8 @@ namespace vcg::tri::mcf {
 namespace detail {
 
 /**
- * The i-th point of a sequence in the unit cube of which every stretch covers it evenly: multiples of
- * the powers of 1 / g, where g^(N + 1) = g + 1, modulo 1.
+ * The i-th point of a low-discrepancy sequence in the unit cube, every stretch of which covers the
+ * cube evenly: multiples of the powers of 1 / g modulo 1, where g^(N + 1) = g + 1.
  */
 template <size_t N>
 std::array<double, N> evenPoint(size_t i)
@@ -50,7 +50,7 @@ struct SurfaceSample
 };
 
 /**
- * `count` points of a surface, as many on any piece as its area asks for, within one.
+ * `count` points of a surface: each run of consecutive faces gets its share by area, within one.
  * @pre surface is compact and has an area. @throws Cancelled. Complexity: O(F + count).
  */
 inline std::vector<SurfaceSample> surfaceSamples(

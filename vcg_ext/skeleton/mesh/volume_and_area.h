@@ -26,9 +26,9 @@ struct VolumeAndArea
 };
 
 /**
- * Volume and area of each component, in coordinates along its length: from the vertex that is farthest
- * from its first one to the one farthest from that. So the little that a needle is wide is not lost in
- * the rounding of its length. @throws Cancelled. Complexity: O(V + F).
+ * Volume and area of each component, in coordinates along its length: from the vertex that is
+ * farthest from its first one to the one farthest from that. So the width of a needle is not lost
+ * in the rounding of its length. @throws Cancelled. Complexity: O(V + F).
  */
 inline std::vector<VolumeAndArea> measuredAlongLength(const SurfaceMesh& mesh,
 	const std::vector<int>& component, int components, const Progress& progress)

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief What is found of each vertex from its pole, component by component.
+/// @brief Values of vertices that are computed from their poles, component by component.
 
 #ifndef VCG_MCF_BY_COMPONENT_H
 #define VCG_MCF_BY_COMPONENT_H
@@ -23,8 +23,10 @@ namespace vcg::tri::mcf {
 namespace detail {
 
 /**
- * What find(mesh, poles, progress) tells of each vertex, asked of each component by itself.
- * @return one value for each vertex. @pre mesh is compact. @throws Cancelled, and what find() throws.
+ * The values of find(mesh, poles, progress), called for each component alone; small components are
+ * visited in parallel, so it must not change shared state.
+ * @return one value for each vertex.
+ * @pre mesh is compact. @throws Cancelled, and what find() throws.
  */
 template <class Find>
 std::vector<double> foundByComponent(

@@ -26,22 +26,22 @@
 namespace vcg::tri::mcf {
 
 /**
- * How deep a vertex may lie inside the ball of another one, of the diagonal of its component: a tenth of
- * the default epsilon.
+ * How deep a vertex may lie inside another vertex's ball, fraction of its component's diagonal: a
+ * tenth of the default epsilon.
  *
- * The facets of a tube that was modelled coarsely and resampled finely are flat, and so would bound the
- * balls of the vertices on them near the surface: those poles draw their vertices nowhere, and the curve
- * drifts off the axis. What the facets of a tube of radius R with n sides lie within the tube is
- * (1 - cos(pi / n)) R.
+ * A tube that was modelled coarsely and resampled finely has flat facets. Without a tolerance, the
+ * vertices of a facet bound each other's balls: their poles lie just below the surface and exert no
+ * inward pull, so the curve drifts off the axis. The facets of a tube of radius R with n sides lie
+ * up to (1 - cos(pi / n)) R inside it.
  */
 constexpr double poleTolerance = 2e-4;
 
 namespace detail {
 
 /**
- * The poles of some vertices of one component, found in its own coordinates: where several balls are as good,
- * which one is found depends on the order of the searches, and that on the coordinates. They are rounded, as
- * contract() does it.
+ * The poles of some vertices of one component, searched in its canonical frame: of several equally
+ * good balls, the one that is found depends on the order of the searches, and that on the
+ * coordinates. Coordinates are rounded to the frame's grid, as in a step of the flow.
  */
 inline PoleSet polesOfComponent(const SurfaceMesh& mesh, const PrincipalFrame& frame,
 	const std::vector<int>& vertices, PoleMethod method, const Progress& progress)
@@ -75,10 +75,12 @@ inline PoleSet polesOfComponent(const SurfaceMesh& mesh, const PrincipalFrame& f
 } // namespace detail
 
 /**
- * medialPoles() of some vertices: against all vertices of their component, in the order of `vertices`.
- * Shrinking balls are searched for these vertices only; the Voronoi diagram is always that of all.
+ * medialPoles() of some vertices, against all vertices of their component; in the order of
+ * `vertices`. Shrinking balls are searched for these vertices only; the Voronoi diagram is always
+ * that of all.
  * @param component of each vertex of the mesh, see connectedComponents().
  * @param frames    of the vertices of each component, see PrincipalFrame::ofPoints().
+ * @pre mesh is compact. @throws SolverError, Cancelled.
  */
 inline PoleSet polesAt(const SurfaceMesh& mesh, const std::vector<int>& component,
 	const std::vector<PrincipalFrame>& frames, const std::vector<int>& vertices, PoleMethod method,
@@ -113,7 +115,7 @@ inline PoleSet polesAt(const SurfaceMesh& mesh, const std::vector<int>& componen
 	return poles;
 }
 
-/// The same where components and frames are not known yet.
+/// The same; finds the components and frames itself.
 inline PoleSet polesAt(const SurfaceMesh& mesh, const std::vector<int>& vertices, PoleMethod method,
 	const Progress& progress = Progress())
 {
@@ -128,8 +130,8 @@ inline PoleSet polesAt(const SurfaceMesh& mesh, const std::vector<int>& vertices
 /**
  * The inner medial pole of each vertex: the centre of a large ball inside the shape that touches
  * the surface at the vertex. Every pole lies inside the shape; a vertex without one has radius -1.
- * Each component is a solid of its own, as if the others were not there: they may lie within each other, or
- * cross.
+ * Each component is a solid of its own, as if the others were not there: they may lie within each
+ * other, or cross.
  * @pre mesh is compact.
  * @throws SolverError, Cancelled.
  */

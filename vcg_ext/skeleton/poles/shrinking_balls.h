@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Medial poles by maximal balls that touch the surface from inside (Ma, Bae and Choi, "3D medial
-/// axis point approximation using nearest neighbors and the normal field", The Visual Computer 28, 2012).
+/// @brief Medial poles by maximal balls that touch the surface from inside (Ma, Bae and Choi, "3D
+/// medial axis point approximation using nearest neighbors and the normal field", The Visual
+/// Computer 28, 2012).
 
 #ifndef VCG_MCF_SHRINKING_BALLS_H
 #define VCG_MCF_SHRINKING_BALLS_H
@@ -33,11 +34,13 @@ namespace vcg::tri::mcf {
 namespace detail {
 
 /**
- * Cache of empty balls that a search has certified. A ball that nearly equals one of them needs no search.
+ * Cache of empty balls that a search has certified. A ball that nearly equals one of them needs no
+ * search.
  *
- * The distance to the nearest sample is 1-Lipschitz: at a distance d from the centre of a certified ball no
- * sample is nearer than the ball's reach less d. Without the cache all samples of a sphere would be visited
- * for each of them, and those of a tube's ring again and again, since all of them touch the same ball.
+ * The distance to the nearest sample is 1-Lipschitz: at a distance d from the centre of a certified
+ * ball no sample is nearer than the ball's reach less d. Without the cache all samples of a sphere
+ * would be visited for each of them, and those of a tube's ring again and again, since all of them
+ * touch the same ball.
  */
 class KnownBalls
 {
@@ -79,11 +82,11 @@ struct Touch
 	Point3d normal; ///< outward, unit length; zero: no ball
 	double delta;   ///< how deep a sample may lie inside the ball
 	int place;      ///< in the results
-	int slot;       ///< of the point itself in the tree, -1 if it is none of the samples
+	int slot;       ///< of the point itself in the tree, -1 if it is not a sample
 };
 
-/// The tolerance of a ball that has none, in a unit frame: coincident samples, and the steps of rounding
-/// in flat regions, are no contacts.
+/// The tolerance where none is asked for, in the unit frame: coincident samples, and the steps of
+/// rounding in flat regions, do not count as contacts.
 inline double minTolerance(const UnitFrame& frame)
 {
 	constexpr double minimum = 1e-9; // of the diagonal
@@ -96,13 +99,14 @@ inline double ballTolerance(const UnitFrame& frame, double delta)
 }
 
 /**
- * Maximal balls at `touches`, the best in an order in which neighbours are near each other.
- * @param count      of the results.
- * @param isPole     (place, centre, radius and how deep a sample may lie inside, in mesh units): whether
- *                   the ball counts. One that does not is searched again without tolerance.
- * @param isThinner  (place, normal, tolerance in mesh units): whether it is certain that no ball with this
- *                   tolerance counts. It is asked next to those that did not count only: their searches
- *                   take long, since walls that are thinner than the tolerance do not hold a ball.
+ * Maximal balls at `touches`; fastest where consecutive ones are near each other.
+ * @param count      number of results.
+ * @param isPole     (place, centre, radius, depth; mesh units): whether the ball, in which samples
+ *                   may lie as deep as `depth`, counts. One that does not is searched again without
+ *                   tolerance.
+ * @param isThinner  (place, normal, tolerance in mesh units): whether it is certain that no ball
+ *                   with this tolerance counts. Asked only after a ball that did not count: such
+ *                   searches take long, since walls thinner than the tolerance do not bound a ball.
  * @return poles in mesh units, each at the place of its touch.
  */
 template <class IsPole, class IsThinner>
@@ -117,7 +121,7 @@ PoleSet maximalBalls(const std::vector<Touch>& touches, size_t count, const Unit
 	fillArray(poles.radius, count, -1.0, progress);
 	const int size = int(touches.size());
 	forEachBlock(size, progress, what, [&](int begin, int end) {
-		// What held the balls of the last points will nearly hold the next one.
+		// The contacts of the last balls nearly bound the next one.
 		std::array<int, 4> recent = {-1, -1, -1, -1};
 		int oldest = 0;
 		KnownBalls known;
@@ -131,7 +135,7 @@ PoleSet maximalBalls(const std::vector<Touch>& touches, size_t count, const Unit
 				for (int slot : recent)
 					if (slot >= 0)
 						ball.visit(slot, tree.point(slot));
-				if (touch.slot >= 0) // neighbours on the surface nearly hold the ball, too
+				if (touch.slot >= 0) // neighbours on the surface nearly bound it, too
 					for (int j = std::max(i - neighbours, 0);
 						 j <= std::min(i + neighbours, size - 1); ++j)
 						ball.visit(touches[j].slot, touches[j].point);
@@ -168,17 +172,17 @@ PoleSet maximalBalls(const std::vector<Touch>& touches, size_t count, const Unit
 struct OsculatingNormals
 {
 	std::vector<Point3d> normal; ///< unit length, or zero
-	/// 1 where the opposite of the normal leaves the vertex behind all of its triangles, by far.
+	/// 1 where the reversed normal clearly points behind all triangles of the vertex.
 	std::vector<char> leadsInside;
 };
 
 /**
- * The unit normals of the vertices that are exact where their neighbours lie on a sphere with them: cross
+ * Unit normals of the vertices, exact where a vertex and its neighbours lie on a sphere: cross
  * products over the squared lengths of both edges (Max, "Weights for computing vertex normals from
- * facet normals", Journal of Graphics Tools 4(2), 1999); zero where it is not defined.
+ * facet normals", Journal of Graphics Tools 4(2), 1999); zero where they are not defined.
  * A tilt by t makes the ball against a neighbour at distance h on a surface of curvature k smaller
  * by a factor of 1 + 2 t / (h k): on a fine mesh the tilt of area-weighted normals costs a fifth.
- * Triangle by triangle, since a walk round each vertex waits for every step.
+ * Computed triangle by triangle: in a walk around a vertex each step waits for the one before.
  * @pre mesh is compact. @throws Cancelled
  */
 inline OsculatingNormals osculatingNormals(const SurfaceMesh& mesh, const Progress& progress)
@@ -218,8 +222,8 @@ inline OsculatingNormals osculatingNormals(const SurfaceMesh& mesh, const Progre
 }
 
 /**
- * 1 for the vertices of slivers, see SurfaceMesh::isSliver(): such a triangle does not tell on which side of it the
- * inside is. Empty if there are none.
+ * 1 for the vertices of slivers, see SurfaceMesh::isSliver(), whose normals do not tell on which
+ * side the inside is. Empty if there are none.
  * @throws Cancelled
  */
 inline std::vector<char> cornersOfSlivers(
@@ -247,7 +251,7 @@ inline std::vector<char> cornersOfSlivers(
  * @param points   where the balls touch, mesh units.
  * @param normals  outward unit normals, one for each point.
  * @param against  the samples that bound the balls; `points` need not be among them.
- * @param delta    how deep a sample may lie inside a ball, mesh units, >= 0: the tolerance to noise.
+ * @param delta    how deep a sample may lie inside a ball, mesh units, >= 0: tolerance to noise.
  * @return a pole for each point; radius -1 for a zero normal and for a ball that nothing bounds.
  * @throws Cancelled
  * Complexity: O((P + Q) log Q) for samples of a surface. Same bits on any number of threads.
@@ -272,10 +276,10 @@ inline PoleSet shrinkingBalls(const std::vector<Point3d>& points,
 /**
  * The inner medial poles of some vertices of a mesh by shrinking balls against all its vertices.
  *
- * A ball whose centre cannot be seen from its vertex through the inside reached out through a coarse
- * triangle, or through a wall thinner than its tolerance: then it is searched again without tolerance,
- * and if that reaches out as well, there is no pole. At triangles that are too thin to tell the inside, the
- * winding number of the centre must.
+ * A ball whose centre is not visible from its vertex through the inside has passed through a coarse
+ * triangle, or through a wall thinner than its tolerance. It is searched again without tolerance;
+ * if its centre is not visible then either, there is no pole. At slivers, see
+ * detail::cornersOfSlivers(), the centre must also have a winding number other than 0.
  * @param vertices  ids, each at most once.
  * @param delta     as in shrinkingBalls().
  * @pre mesh is compact.

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief How long the edges of a surface may be, place by place: a fraction of the local thickness.
+/// @brief The sizing field: how long edges may be, from the local thickness at each vertex.
 
 #ifndef VCG_MCF_SIZING_FIELD_H
 #define VCG_MCF_SIZING_FIELD_H
@@ -28,32 +28,32 @@
 namespace vcg::tri::mcf {
 
 /**
- * A bound of the edge length at each vertex of a surface, mesh units; infinite where the local thickness
- * does not bind. Empty: it binds nowhere, and all lengths are fractions of the diagonal.
+ * An upper bound of the edge length at each vertex of a surface, mesh units; infinite where the
+ * local thickness sets no bound. Empty: none is set, and all lengths are fractions of the diagonal.
  *
- * Every length of the pipeline is the smaller of its fraction of the diagonal and its fraction of this.
+ * Every length of the pipeline is the smaller of its fractions of the diagonal and of this field.
  */
 using SizingField = std::vector<double>;
 
-/// Where the sizing field is this part of the diagonal, thickness and diagonal give the same lengths: edges
-/// of the default resampling, epsilon, the spacing of the refined curve. Below, all of them shrink with it.
+/// Where the sizing field is this fraction of the diagonal, both give the same lengths: edges of
+/// the default resampling, epsilon, spacing of the refined curve. Below, all shrink with the field.
 constexpr double neutralLength = 0.0045;
 
-/// No part of the sizing field is shorter, of the component's diagonal: what is thinner is not resolved, since a
-/// needle a million times as long as thick would need more vertices than any machine holds.
+/// Lower bound of the sizing field, fraction of the component's diagonal: a needle a million times
+/// as long as thick would need more vertices than any machine holds.
 constexpr double shortestLength = 3e-5;
 
-/// Epsilon is at most this part of the sizing field.
+/// Epsilon is at most this fraction of the sizing field.
 constexpr double epsilonOfField = 4.0 / 9;
 
 namespace detail {
 
 constexpr const char* sizing = "Measuring the local thickness";
 
-/// How fast the sizing field may grow with the distance along edges.
+/// How fast the sizing field may grow with the distance along edges: length per length.
 constexpr double sizingSlope = 0.3;
 
-/// The neighbours of each vertex side by side: many rings are walked over the same edges.
+/// The neighbours of each vertex in one array: rings that overlap walk the same edges many times.
 class NeighbourLists
 {
 public:
@@ -92,7 +92,8 @@ inline void twoRings(const NeighbourLists& neighbours, int v, std::vector<int>& 
 	around.erase(std::unique(around.begin(), around.end()), around.end());
 }
 
-/// Calls visit(vertex, scratch) for each vertex, several at once, each thread with a Scratch(vertices) of its own.
+/// Calls visit(vertex, scratch) for each vertex, several at once, each thread with a
+/// Scratch(vertices) of its own.
 /// @throws Cancelled
 template <class Scratch, class Visit>
 void forEachVertex(int vertices, const Progress& progress, const Visit& visit)
@@ -108,11 +109,11 @@ void forEachVertex(int vertices, const Progress& progress, const Visit& visit)
 }
 
 /**
- * The local thickness at each vertex where it may be small, else infinite: the median of the radii of the
- * balls up to two edges away, since single balls are too small next to slivers and bumps of the surface
- * and too large where a normal is tilted.
+ * The local thickness at each vertex where it may be small, else infinite: the median radius of the
+ * balls up to two edges away, since single balls are too small next to slivers and bumps of the
+ * surface, and too large where a normal is tilted.
  * @param isNear  of each vertex, whether its thickness may be small.
- * @throws Cancelled. Complexity: O(V).
+ * @throws Cancelled. Complexity: O(V) for bounded valence.
  */
 inline std::vector<double> medianRadii(const NeighbourLists& neighbours, const PoleSet& poles,
 	const std::vector<char>& isNear, const Progress& progress)
@@ -142,7 +143,7 @@ inline std::vector<double> medianRadii(const NeighbourLists& neighbours, const P
 	return median;
 }
 
-/// What isThin() needs of its own.
+/// Scratch memory of isThin().
 struct RingScratch
 {
 	std::vector<int> around;
@@ -151,10 +152,10 @@ struct RingScratch
 };
 
 /**
- * Whether the shape is as thin at a vertex as its balls are small. The balls next to sharp edges and in
- * corners shrink as fast as the edge is near, those of a tube or a plate do not: among the vertices
- * around, up to three edges or two radii away, few may have balls larger by a tenth and a quarter of their
- * distance.
+ * Whether small balls at a vertex mean that the shape is thin there. Balls shrink towards sharp
+ * edges and corners in proportion to the distance, but not along a tube or a plate: of the vertices
+ * up to three edges away, and up to six within two radii r, at most a quarter may have balls larger
+ * than 1.1 r + d / 4, d their distance.
  * @param radius  see medianRadii().
  */
 inline bool isThin(const SurfaceMesh& mesh, const NeighbourLists& neighbours,
@@ -188,8 +189,9 @@ inline bool isThin(const SurfaceMesh& mesh, const NeighbourLists& neighbours,
 }
 
 /**
- * Whether the surface is a diameter away from a vertex, across its ball: as in a tube or a plate, not as at a
- * sharp edge or in a corner, where the ball touches both sides at nearly a right angle, and not at a tip.
+ * Whether there is surface diametrically opposite a vertex on its ball: so in a tube or a plate,
+ * but not at a sharp edge or in a corner, where the ball touches both sides at nearly a right
+ * angle, nor at a tip.
  */
 class OppositeSides
 {
@@ -201,7 +203,8 @@ public:
 	{
 	}
 
-	/// The vertex that is across the ball of v; -1 if none is near. @pre poles.has(v). Complexity: O(log V).
+	/// The vertex nearest to the point opposite v on its ball; -1 if it is not near.
+	/// @pre poles.has(v). Complexity: O(log V).
 	int of(int v) const
 	{
 		constexpr double farthest = 0.7; // radii; 1 where the sides are at a right angle
@@ -211,7 +214,7 @@ public:
 																					  : -1;
 	}
 
-	/// Whether the normals of two vertices point away from each other, by more than a right angle.
+	/// Whether the normals of two vertices are more than a right angle apart.
 	bool areBackToBack(int v, int w) const { return normal[v] * normal[w] < 0; }
 
 private:
@@ -222,7 +225,8 @@ private:
 	PointTree tree;
 };
 
-/// For each component, the part of its seeds whose normal and that of the vertex across are opposite.
+/// For each component the fraction of its seeds that are back to back with the vertex across; 1
+/// without seeds.
 /// @param across  of each seed, see OppositeSides::of().
 template <class Seeds>
 std::vector<double> partBackToBack(const Seeds& seeds, const std::vector<int>& across,
@@ -241,23 +245,23 @@ std::vector<double> partBackToBack(const Seeds& seeds, const std::vector<int>& a
 } // namespace detail
 
 /**
- * The sizing field of a surface: relativeLength times the local thickness, but growing by at most 0.3 of
- * the distance along edges.
+ * The sizing field of a surface: relativeLength times the local thickness, but growing by at most
+ * 0.3 of the distance along edges, and at least shortestLength times the diagonal.
  *
- * The local thickness at a vertex is the radius of the maximal inner balls around; balls that only sharp
- * edges, corners and bumps of the surface hold do not count, see detail::isThin() and
- * detail::OppositeSides, unless the shape is as thin next to them. A component is left alone that is nowhere
- * thinner than its lengths would be anyway, the smaller of `bound` and neutralLength of its diagonal, and so is one
- * whose balls are small from noise: across a tube or a plate the normals are opposite, across noise they are
- * random. The field is at least shortestLength of the diagonal.
+ * The local thickness at a vertex is the median radius of the maximal inner balls around it. Balls
+ * that are small only because of sharp edges, corners and bumps do not count, see detail::isThin()
+ * and detail::OppositeSides, unless the shape is as thin next to them. The field stays infinite on
+ * components that are nowhere thinner than their edges would be anyway (the smaller of `bound` and
+ * neutralLength times the diagonal), and on those whose balls are small from noise: across a tube
+ * or a plate the normals are opposite, across noise they are random.
  *
  * @param poles          of all vertices.
- * @param relativeLength longest edge in local thicknesses, > 0. An even mesh has 2 pi / relativeLength
- *                       vertices around a tube.
- * @param bound          of each component, mesh units: where the field is not below, it is infinite.
+ * @param relativeLength longest edge in local thicknesses, > 0. Around a tube an even mesh has
+ *                       2 pi / relativeLength vertices.
+ * @param bound          of each component, mesh units: the field is infinite where it is not below.
  * @return for each vertex slot; empty if the field is infinite everywhere.
  * @pre the surface is compact.
- * @throws Cancelled. Complexity: O(V), and O(V log V) where it is finite anywhere.
+ * @throws Cancelled. Complexity: O(V), or O(V log V) where it is finite; both for bounded valence.
  */
 inline SizingField sizingField(const MeasuredSurface& surface, const PoleSet& poles,
 	double relativeLength, const std::vector<double>& bound, const Progress& progress = Progress())
@@ -328,7 +332,8 @@ inline SizingField sizingField(const MeasuredSurface& surface, const PoleSet& po
 	field.assign(size_t(mesh.vertexSlots()), infinity);
 	for (const auto& [length, v] : seeds)
 		field[v] = length;
-	// From all seeds at once, as Dijkstra's. What is next to a thin part is no thicker than its own balls.
+	// Dijkstra's algorithm from all seeds at once. A vertex gets the graded length, or that of its
+	// own thickness if smaller, but no less than its predecessor's.
 	std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue(
 		std::greater<Entry>(), std::move(seeds));
 	size_t count = 0;
@@ -355,11 +360,12 @@ inline SizingField sizingField(const MeasuredSurface& surface, const PoleSet& po
 }
 
 /**
- * A field that is no smaller than it has to be for a mesh, or its edges, to cost no more than what is given:
- * max(field, b) for the smallest b with cost(max(field, b)) <= maximum, to 40 halvings of its logarithm.
- * @param field   finite somewhere. @param high an upper bound of b, mesh units.
+ * Raises a field as little as a limit on a mesh's cost, such as its number of vertices, allows: to
+ * max(field, b) for the smallest b with cost(max(field, b)) <= maximum, by 40 bisections of log b.
+ * @param field   finite somewhere.
+ * @param high    an upper bound of b, mesh units.
  * @param cost    double(SizingField): falls where the field grows; cost(field) > maximum.
- * @return b. Complexity: 40 costs.
+ * @return b. Complexity: up to 40 calls of cost().
  */
 template <class Cost>
 double raiseToCost(SizingField& field, double high, double maximum, Cost&& cost)
@@ -383,10 +389,11 @@ double raiseToCost(SizingField& field, double high, double maximum, Cost&& cost)
 }
 
 /**
- * A field as much longer everywhere as it has to be for a mesh, or its edges, to cost no more than what is given,
- * but at most `factor` times; what then still is too much, raiseToCost() takes from the shortest lengths.
+ * Multiplies a field by the smallest factor, up to `factor`, for which its cost is at most
+ * `maximum`. Where `factor` is not enough, raiseToCost() then raises the shortest lengths.
  * @param factor >= 1. @param field, high, maximum, cost as above.
- * @return no length is shorter: 0 where that was not needed. Complexity: 60 costs.
+ * @return the lower bound that raiseToCost() set; 0 if it was not needed.
+ * Complexity: up to 41 calls of cost().
  */
 template <class Cost>
 double coarsenToCost(SizingField& field, double factor, double high, double maximum, Cost&& cost)

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Medial poles from the Voronoi diagram of the vertices (Sec. 4.5; Amenta and Bern, "Surface
-/// reconstruction by Voronoi filtering", 1999). The only file that sees Qhull.
+/// @brief Medial poles from the Voronoi diagram of the vertices (Sec. 4.5; Amenta and Bern,
+/// "Surface reconstruction by Voronoi filtering", 1999). The only file that includes Qhull.
 
 #ifndef VCG_MCF_VORONOI_POLES_H
 #define VCG_MCF_VORONOI_POLES_H
@@ -56,10 +56,10 @@ inline std::string firstParagraph(FILE* log)
 /**
  * Builds a Delaunay triangulation by Qhull, in pieces between which the user can cancel.
  *
- * qh_new_qhull() returns when all is done: what it does for joggled input is done here by the same
- * calls in the same order, and so gives the same bits. Qhull leaves them by longjmp() where it fails or
- * wants to joggle the input again: no more than one piece is between that and its setjmp(), and no
- * object with a destructor.
+ * qh_new_qhull() returns only when all is done. What it does for joggled input is done here by the
+ * same calls in the same order, so the result has the same bits. Qhull leaves a piece by longjmp()
+ * where it fails or wants to joggle the input again: each piece has its own setjmp(), and no object
+ * with a destructor lives in between.
  */
 class QhullRun
 {
@@ -80,8 +80,8 @@ public:
 	~QhullRun()
 	{
 		state.NOerrexit = True; // nothing to jump back to
-		// What facets own goes at once with the blocks that it lies in, but for large sets of points
-		// outside: the facets that Qhull is done with have none, and a walk to each would take long.
+		// What facets own is freed with the memory blocks that hold it, except for large outside
+		// sets: the facets before facet_next have none, and to visit each would take long.
 		if (started)
 			state.facet_list = state.facet_next;
 		qh_freeqhull(&state, !qh_ALL);
@@ -89,7 +89,7 @@ public:
 		qh_memfreeshort(&state, &memory, &blocks);
 	}
 
-	/// @throws SolverError with Qhull's own words; Cancelled.
+	/// @throws SolverError with Qhull's message; Cancelled.
 	void build(const Progress& progress, const char* what)
 	{
 		qhT* qh = &state;
@@ -121,7 +121,7 @@ private:
 	bool started = false; ///< there is a simplex that points are added to
 	double maxDone = 0;   ///< of the work, in any try
 
-	/// @return whether the job was done; not if the input is to be joggled again.
+	/// @return false if Qhull wants the input to be joggled again.
 	template <class Job>
 	bool attempt(const Job& job)
 	{
@@ -136,7 +136,7 @@ private:
 		return true;
 	}
 
-	/// Moves the points a little, by more after many tries, and builds the first simplex.
+	/// Joggles the points, by more after many attempts, and builds the first simplex.
 	bool joggleAndStart()
 	{
 		started = false;
@@ -166,7 +166,7 @@ private:
 		qhT* qh = &state;
 		bool goesOn = true;
 		while (goesOn) {
-			// The first points are above all others: each takes a time linear in their number.
+			// Each of the first points repartitions nearly all others, which takes linear time.
 			const int some = std::min(maxBetweenReports, 1 + qh->num_vertices / 64);
 			const bool added = attempt([qh, some, &goesOn] {
 				for (int i = 0; goesOn && i < some; ++i) {
@@ -186,7 +186,7 @@ private:
 		});
 	}
 
-	/// Whether each facet is clearly convex to its neighbours, as qh_checkconvex() wants joggled ones.
+	/// Whether all facets are clearly convex, as qh_checkconvex() requires of joggled input.
 	template <class Report>
 	bool isConvex(const Report& report)
 	{
@@ -214,15 +214,15 @@ private:
 };
 
 /**
- * The Delaunay tetrahedra of the points, without those that reach out to a cube put around them.
+ * The Delaunay tetrahedra of the points, without those at a corner of a cube put around them.
  *
- * The corners of the cube bound the cells of the outermost points, and lend cospherical points,
- * which a sphere's are, the fourth dimension that the lifted points need. Qhull moves the points a
- * little (QJ): merging the facets of many cospherical points would take a time quadratic in them.
- * @pre the points lie in the cube of half side 1 around the origin, which leaves out NaN: Qhull does
+ * The corners of the cube bound the cells of the outermost points, and make the lifted points span
+ * four dimensions where the points are cospherical, as a sphere's are. Qhull joggles the points
+ * (QJ): merging the facets of many cospherical points would take quadratic time.
+ * @pre the points lie in the cube of half side 1 around the origin, which excludes NaN: Qhull does
  *      not survive it.
  * @param command for Qhull, with QJ.
- * @throws SolverError with Qhull's own words; Cancelled.
+ * @throws SolverError with Qhull's message; Cancelled.
  */
 inline std::vector<Tetrahedron> delaunayTetrahedra(const std::vector<Point3d>& points,
 	const Progress& progress = Progress(), const char* command = "qhull d QJ")
@@ -275,7 +275,7 @@ inline Point3d circumcentre(const Tetrahedron& t, const std::vector<Point3d>& po
 	return o + sum / (2 * (a * (b ^ c)));
 }
 
-/// A ball that is gone as soon as a sample is found in it.
+/// A ball to be tested for samples; its search ends with the first one found in it.
 class EmptyBall
 {
 public:
@@ -319,9 +319,9 @@ inline bool isVoronoiVertex(const Point3d& c, const Tetrahedron& t,
 /**
  * The inner Voronoi pole of each vertex: the farthest Voronoi vertex of its cell on the inner side.
  *
- * A Voronoi vertex counts if its ball is empty and touches its samples, and for those samples from
- * which it can be seen through the inside of the shape; one that does not count makes way for the
- * next farthest of the cell.
+ * A Voronoi vertex counts if its ball is empty and touches its four samples, and only for those of
+ * them from which it is visible through the inside of the shape. Where the farthest of a cell does
+ * not count, the next farthest does.
  * @pre mesh is compact.
  * @return a pole for each vertex; radius -1 where no Voronoi vertex of the cell counts.
  * @throws SolverError, also in a program without Qhull; Cancelled.
@@ -330,7 +330,7 @@ inline bool isVoronoiVertex(const Point3d& c, const Tetrahedron& t,
 inline PoleSet voronoiPoles(const SurfaceMesh& mesh, const Progress& progress = Progress())
 {
 	constexpr size_t reportEvery = 1 << 12;
-	constexpr double tolerance = 1e-5; // of about the diagonal: what moving the points may cost
+	constexpr double tolerance = 1e-5; // of about the diagonal; covers the joggling
 	const char* what = "Poles: Voronoi diagram";
 	progress.report(0, what);
 	const Progress begin = progress.cancelOnly();

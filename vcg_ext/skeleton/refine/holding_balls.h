@@ -18,8 +18,9 @@
 namespace vcg::tri::mcf::refining {
 
 /**
- * The balls around the nodes of a skeleton that may grow. Nodes that follow each other are mostly near each
- * other: a point outside of the box of a block of them is in none of their balls.
+ * The balls around the nodes of a skeleton to which nodes may be added. Nodes with consecutive ids
+ * are mostly near each other: a point outside the bounding box of a block of them is in none of
+ * their balls.
  */
 class HoldingBalls
 {
@@ -27,7 +28,7 @@ public:
 	/// @param skeleton kept by reference. Complexity: O(N).
 	explicit HoldingBalls(const CurveSkeleton& skeleton) : skeleton(skeleton) { addNew(); }
 
-	/// Takes in the nodes that the skeleton has got since. @pre the others are as they were.
+	/// Takes in the nodes that the skeleton has got since. @pre the others have not changed.
 	void addNew()
 	{
 		const size_t count = skeleton.position.size();
@@ -41,8 +42,8 @@ public:
 		}
 	}
 
-	/// The node whose ball a point is deepest in, in radii, the first of several; -1 outside of all.
-	/// Complexity: O(N), with a small factor.
+	/// The node whose ball holds a point nearest to its centre, in radii, the lowest of several; -1
+	/// outside all balls. Complexity: O(N), with a small factor.
 	int deepest(const Point3d& point) const
 	{
 		int holding = -1;
@@ -64,7 +65,7 @@ public:
 
 private:
 	static constexpr size_t blockSize = 32;
-	static constexpr double rounding = 1e-12; // of places about a shape of size 1
+	static constexpr double rounding = 1e-12; // of coordinates in a shape of size 1
 
 	const CurveSkeleton& skeleton;
 	std::vector<Box3d> boxes;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Refinement, the scale: how much smaller than elsewhere lengths are where the shape is thin.
+/// @brief Refinement, the scale: the factor by which lengths shrink where the shape is thin.
 
 #ifndef VCG_MCF_LOCAL_SCALE_H
 #define VCG_MCF_LOCAL_SCALE_H
@@ -17,15 +17,15 @@
 namespace vcg::tri::mcf::refining {
 
 /**
- * The factor of every length of the refinement at a place, in (0, 1]: a thin part is refined as it would be
- * if it were enlarged until its sizing field is neutralLength. Where nodes have to be fewer than that, it
- * does not fall below a minimum; what depends on how thick the shape is, whatever the distance of its
- * nodes, follows the thickness all the same.
+ * The factor of all lengths of the refinement at a place, in (0, 1]: a thin part is refined as if
+ * it were enlarged until its sizing field is neutralLength. Where that would take too many nodes,
+ * the factor has a lower bound, see setMin(); ofThicknessAtFace() leaves the bound out, for lengths
+ * that depend on the thickness whatever the spacing of the nodes.
  */
 class LocalScale
 {
 public:
-	/// The same everywhere.
+	/// The factor is 1 everywhere.
 	LocalScale() = default;
 	/// @param surface  kept by reference.
 	/// @param ofVertex for each vertex slot, in (0, 1]; empty: 1 everywhere.
@@ -36,7 +36,7 @@ public:
 
 	bool isUniform() const { return ofVertex.empty(); }
 
-	/// As the thickness says, however small, at a triangle of the surface: the mean of its corners.
+	/// The mean factor of a triangle's corners, without the lower bound.
 	double ofThicknessAtFace(int face) const
 	{
 		if (isUniform())
@@ -45,16 +45,16 @@ public:
 		return (ofVertex[t[0]] + ofVertex[t[1]] + ofVertex[t[2]]) / 3;
 	}
 
-	/// At a triangle of the surface.
+	/// The mean factor of a triangle's corners, with the lower bound.
 	double atFace(int face) const { return std::max(ofThicknessAtFace(face), minScale); }
 
-	/// Where the surface is closest to a point.
+	/// The factor at the triangle that is closest to a point.
 	double at(const Point3d& point, const ClosestSurface& closest) const
 	{
 		return isUniform() ? 1 : atFace(closest.closest(point).face);
 	}
 
-	/// The minimum over some vertices. @param vertices as a connected component's.
+	/// The smallest factor at some vertices, such as those of a component, with the lower bound.
 	double minimum(const std::vector<int>& vertices) const
 	{
 		double minimum = 1;
@@ -64,7 +64,7 @@ public:
 		return minimum;
 	}
 
-	/// The factor below which it does not fall from now on; 0: it follows the thickness wherever.
+	/// Sets the lower bound of the factor; 0: none.
 	void setMin(double minimum) { minScale = minimum; }
 	double minimum() const { return minScale; }
 
@@ -74,7 +74,7 @@ private:
 	double minScale = 0;
 };
 
-/// The scale of shapes of one scale.
+/// The factor of shapes that are not thin anywhere: 1.
 inline const LocalScale sameEverywhere;
 
 } // namespace vcg::tri::mcf::refining

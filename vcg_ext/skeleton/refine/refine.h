@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Refine: what is done to the curve after the paper's pipeline, to make it a better skeleton.
+/// @brief Refine: the improvement of the curve after the paper's pipeline.
 
 #ifndef VCG_MCF_REFINE_H
 #define VCG_MCF_REFINE_H
@@ -46,7 +46,7 @@
 namespace vcg::tri::mcf {
 
 /**
- * The knobs of refine(). Lengths are fractions of the diagonal of a connected component of the
+ * The parameters of refine(). Lengths are fractions of the diagonal of a connected component of the
  * surface: that of its bounding box along its principal axes, see PrincipalFrame.
  */
 struct RefineParameters
@@ -54,8 +54,8 @@ struct RefineParameters
 	/// Distance of neighbouring nodes; fraction of the diagonal, in (0, 0.1].
 	double spacing = 0.005;
 	/// A terminal branch whose end ball sticks out of the ball at its junction by less than this
-	/// part of the latter's radius is a spur and is removed, and so are one that ends where a shorter
-	/// one does and stubs, see withoutStubs() and withoutStubsInPlates(); in [0, 1], 0: all stay.
+	/// part of the latter's radius is a spur and is removed; in [0, 1]. If it is above 0, so are
+	/// twin tips and stubs, see withoutTwinTips(), withoutStubs() and withoutStubsInPlates().
 	double spurProminence = 0.1;
 	/// Two junctions are one where the smaller ball sticks out of the larger one by less than this
 	/// part of its own radius; in [0, 1].
@@ -64,21 +64,21 @@ struct RefineParameters
 	/// of 0.5 % where the shape's radius is 3.3 %; >= 0. Larger: smoother, less centred.
 	double smoothing = 20;
 	/// Rounds of centring with ten times that smoothness, which free curves that are caught on a
-	/// wrong sheet of the medial axis, then rounds with it before and after the tips are
-	/// extended; >= 0.
+	/// wrong sheet of the medial axis, then rounds with it before and after the last extension of
+	/// the tips; >= 0.
 	int stiffRounds = 6, rounds = 3, lastRounds = 4;
-	/// A terminal branch must be this distinct somewhere, see distinctness(); in [0, 1]. The corners
-	/// of a box have 0.42, pointed ends with an opening angle of 60 degrees 0.5.
+	/// Minimum distinctness() of a terminal branch, and of what may be its end; in [0, 1], 0: any.
+	/// The corners of a box have 0.42, pointed ends with an opening angle of 60 degrees 0.5.
 	double tipDistinctness = 0.45;
-	/// A tip is extended while the balls reach further by at least this part of the way, and taken back
-	/// where they do not; in (0, 1].
+	/// A tip is extended while the balls reach farther by at least this part of the way, and taken
+	/// back where they do not; in (0, 1].
 	double tipGain = 0.2;
-	/// A tip's ball is no smaller than this when it has been extended; fraction of the diagonal, > 0.
+	/// Minimum radius of an extended tip, see TipRule; fraction of the diagonal, > 0.
 	double tipRadius = 0.003;
-	/// Where the balls leave a part of the surface out that is higher than this part of the radius of
-	/// the ball next to it, and limb-like, it gets a branch: see growFeatures(); >= 0.
+	/// A part of the surface that is higher above the balls than this part of the radius of the
+	/// nearest one, and like a limb, gets a branch: see growFeatures(); >= 0.
 	double featureHeight = 0.27;
-	/// On the way into such a feature the balls reach further by at least this part of the way; in
+	/// On the way into such a feature the balls reach farther by at least this part of the way; in
 	/// (0, 1]. The corners of boxes have 0.42 to 0.56, limbs of even thickness 1.
 	double featureGain = 0.56;
 	/// Lengths follow the local thickness where that is small, see LocalScale.
@@ -118,8 +118,8 @@ private:
 namespace refining {
 
 /**
- * The smallest scale with which a curve has no more than maxNodes(): where it is thin all along, as in a
- * needle, it needs no node every half radius.
+ * The smallest lower bound of the scale with which a curve has no more than maxNodes(): a shape
+ * that is thin all along, such as a needle, needs no node every half radius. 0: none is needed.
  * Complexity: O(E log V).
  */
 inline double minScale(const CurveSkeleton& curve, const ClosestSurface& closest,
@@ -151,9 +151,10 @@ inline double minScale(const CurveSkeleton& curve, const ClosestSurface& closest
 }
 
 /**
- * Refines the skeleton of one component, in coordinates where the component's diagonal is 1. Stops early
- * where the curve grows out of CurveBounds, or where nodes are outside and cannot be moved in by exact closest
- * points: that it cannot be the result is for the caller to find.
+ * Refines the skeleton of one component, in coordinates where the component's diagonal is 1. Stops
+ * early where the curve exceeds CurveBounds, or where nodes are outside and cannot be moved in by
+ * exact closest points: the caller checks whether the curve can be the result, see defectOf().
+ * @throws SolverError, Cancelled
  */
 inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurface& surface,
 	const SurfaceComponent& component, LocalScale scale, const RefineParameters& parameters,
@@ -161,7 +162,7 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 {
 	const char* what = "Refining the skeleton";
 	constexpr double stiffer = 10, referenceSpacing = 0.005;
-	// Between two searches of the whole surface the contacts are followed from round to round.
+	// Every third round searches the whole surface; the others track the contacts.
 	constexpr int roundsOfSearch = 3;
 	const double kappa = parameters.smoothing * std::pow(referenceSpacing / parameters.spacing, 4);
 	const FeatureRule features = {
@@ -194,7 +195,7 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 		}
 		skeleton = withWholeJunctions(std::move(skeleton), parameters.junctionProminence);
 		skeleton = evenlySampled(skeleton, surface, parameters.spacing, scale);
-		// A tip may have been extended to where the shape is far thinner than along the curve that was given.
+		// Tips may have been extended to where the shape is far thinner than along the given curve.
 		if (!scale.isUniform()
 			&& double(skeleton.position.size()) > maxNodes(statistics(skeleton).length)) {
 			scale.setMin(
@@ -223,7 +224,8 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 	for (size_t v = 0; v < skeleton.position.size(); ++v)
 		skeleton.radius[v] = std::max(surface.clearance(skeleton.position[v]), 0.0);
 	moveInside(skeleton, surface);
-	// A stub may be the start of a feature: all but the hopeless are extended before they are judged.
+	// A stub may be the start of a feature: only branches that do not stick out go before the
+	// extension.
 	constexpr double hopeless = 0;
 	const std::function<void()> steps[] = {
 		[&] { tidy(hopeless, 0); },
@@ -237,7 +239,7 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 		[&] { centreRounds(parameters.lastRounds, kappa, true); },
 		[&] { tidy(parameters.spurProminence, parameters.tipDistinctness); },
 	};
-	// A few may be in branches that are removed yet.
+	// A few may be in branches that will still be removed.
 	constexpr size_t fewOutside = 2, partOutside = 500;
 	const auto isHopeless = [&] {
 		const size_t outside = size_t(std::count_if(skeleton.radius.begin(), skeleton.radius.end(),
@@ -252,7 +254,7 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 	return withoutBluntEnds(skeleton, clearances, parameters.tipGain);
 }
 
-/// From a node downhill along the graph, to one that is nearer to the point than its neighbours.
+/// Descends along the graph from a node to one whose neighbours are no nearer to the point.
 inline int nearestAlong(const CurveSkeleton& skeleton,
 	const std::vector<std::vector<int>>& neighbours, int node, const Point3d& point)
 {
@@ -282,12 +284,12 @@ struct RefineReport
 {
 	/// Components of the surface that have a curve, and those of them that have a refined one.
 	int components = 0, refined = 0;
-	/// Those that keep the curve that they had, by what was wrong with the refined one: it left the
-	/// surface, grew too long, lost or won cycles or parts, or could not be computed.
+	/// Those that keep the given curve, by what was wrong with the refined one: it left the
+	/// surface, grew too long, had other numbers of cycles or parts, or could not be computed.
 	int outside = 0, tooLong = 0, otherTopology = 0, notFinite = 0;
-	/// Nodes of curves that were kept which are outside the surface, and how many curves have such nodes.
+	/// Nodes outside the surface in the curves that were kept, and how many curves have such nodes.
 	int nodesOutside = 0, curvesOutside = 0;
-	/// A component that keeps the curve that it had.
+	/// A component that keeps the given curve.
 	struct Kept
 	{
 		int component; ///< of the surface, see connectedComponents()
@@ -313,7 +315,7 @@ struct RefineReport
 		kept.push_back({component, defect, outside});
 	}
 
-	/// The report where a component is refined all the same.
+	/// The report with one more component counted as refined.
 	RefineReport withRefined(int component) const
 	{
 		RefineReport result;
@@ -406,10 +408,10 @@ inline NestedBranches nestedIn(
 }
 
 /**
- * What of a refined curve has left the surface is brought back, see detail::CurveIntoSolid: a few edges that
- * cut a bend of a twig are no reason to give up all that is refined elsewhere. Not where they are more than a tenth,
- * or a thousand.
- * @return a curve that is outside nowhere by more than the rounding; nothing if that is not possible.
+ * Brings the parts of a refined curve that have left the surface back, see detail::CurveIntoSolid:
+ * a few edges that cut a bend of a twig are no reason to give up all that is refined elsewhere. Not
+ * if more than a tenth of the edges or more than a thousand are outside.
+ * @return a curve that is outside by no more than the rounding; nothing if that is not possible.
  * @throws Cancelled
  */
 inline std::optional<CurveSkeleton> broughtBack(
@@ -442,7 +444,7 @@ inline std::optional<CurveSkeleton> broughtBack(
 		> std::min(maxOutside * double(edges.size()), maxEdges))
 		return std::nullopt;
 	CurveSkeleton inside = curve;
-	// Exactly if possible: ways along the surface itself are within the rounding only.
+	// Exactly if possible: ways along the surface itself are inside only up to rounding.
 	for (const double tolerance : {0.0, detail::outsideTolerance}) {
 		detail::CurveIntoSolid into(solid, place, edges, progress, tolerance);
 		try {
@@ -474,12 +476,15 @@ inline std::optional<CurveSkeleton> broughtBack(
 }
 
 /**
- * Refines the skeleton of one component and checks the result. Where lengths follow the local thickness, what has
- * left the surface is brought back, see broughtBack(). What still fails is tried again with lengths that are the
- * same everywhere; what then leaves the surface or grows too long, with closest points of which none is missed:
- * where the shape is thinner than the samples of its surface are apart, the fast ones take the wrong wall. Not if
- * the curve has more than 10000 nodes: that would take minutes.
- * @param refined  the unrefined curve; the refined one if there is no defect, else unchanged.
+ * Refines the skeleton of one component and checks the result. Where lengths follow the local
+ * thickness, what has left the surface is brought back, see broughtBack(). What still fails is
+ * tried again with lengths that are the same everywhere. If the curve then leaves the surface or
+ * grows too long, the last attempt uses exact closest points: where the shape is thinner than the
+ * samples of its surface are apart, the fast ones take the wrong wall. Not if the curve has more
+ * than 10000 nodes: that would take minutes.
+ * @param refined  the unrefined curve; receives the refined one if that has no defect.
+ * @param surface  of the component; uses exact closest points from the last attempt on.
+ * @throws Cancelled
  */
 inline Defect refineChecked(CurveSkeleton& refined, ClosestSurface& surface,
 	const SurfaceComponent& component, const LocalScale& scale, const RefineParameters& parameters,
@@ -527,28 +532,30 @@ inline Defect refineChecked(CurveSkeleton& refined, ClosestSurface& surface,
 
 /**
  * Refines a curve skeleton within the surface that it was extracted from: removes spurs, merges
- * shattered junctions, samples the branches evenly, centres the nodes in the maximal balls of the
+ * split junctions, samples the branches evenly, centres the nodes in the maximal balls of the
  * surface while it smooths the branches, extends the tips to the ends of their features, and grows
  * branches into limbs that the curve lacks.
  *
- * Nodes that were outside are moved in where possible. What is promised is checked on each component's
- * result: all nodes and edges are inside, components and cycles are as they were, and it is no longer than
- * CurveBounds allow. A component for which that cannot be had keeps its curve as it is, positions, radii and
- * correspondence, whether or not that is inside, and all its branches; the report counts them. At last the
- * branches go that are below the detail: nothing else depends on it, so that a skeleton of less detail is a
- * part of one of more. The result depends on the shape of each component only, not
- * on its size and place. Each surface vertex goes to the nearest node along the part of the graph
- * where the node it had went; the radius is measured anew, as the mean distance to these vertices.
+ * Nodes that were outside are moved in where possible. Each component's result is checked: all
+ * nodes and edges are inside, the numbers of components and cycles are unchanged, and it is within
+ * CurveBounds. A component that fails keeps its curve unchanged: positions, radii, correspondence
+ * and all branches, whether or not that is inside; the report counts such components.
+ *
+ * At last the branches below the detail are removed: nothing else depends on it, so that a skeleton
+ * of less detail is a part of one of more. The result depends on the shape of each component only,
+ * not on its size and place. Each surface vertex goes to a nearest node, by descent along the graph
+ * from what its node has become; the radius is measured anew, as the mean distance to these
+ * vertices.
  *
  * @param curve       its `node` has an entry for each vertex of `surface`.
  * @param surface     closed triangle mesh of any number of components, compact.
  * @param parameters  see RefineParameters.
  * @param progress    window for reports; cancelling leaves nothing behind.
- * @param poles       of all vertices of the surface, by shrinking balls, where they are known already.
+ * @param poles       of all vertices of the surface, by shrinking balls; null: they are computed.
  * @return the refined skeleton, mesh units, nodes of the first component first, and the report.
  * @throws InvalidParameter, InvalidInput if the correspondence does not fit the surface or the
  *         curve or the curve has nodes that are not finite, Cancelled.
- * Complexity: O(V log V + N log V) for V vertices and N nodes.
+ * Complexity: O(V log V + N log V) for V vertices and N nodes, and growFeatures().
  * Source: ours; see Tagliasacchi et al., "Mean Curvature Skeletons", SGP 2012, for the curve.
  */
 inline Refinement refineChecked(const CurveSkeleton& curve, const SurfaceMesh& surface,
@@ -581,7 +588,7 @@ inline Refinement refineChecked(const CurveSkeleton& curve, const SurfaceMesh& s
 	for (size_t e = 0; e < curve.edges.size(); ++e)
 		if (const int c = componentOfNode[curve.edges[e][0]]; c >= 0)
 			edges[c].push_back(int(e));
-	// Each component in coordinates of its own, where its diagonal is 1: however it is turned.
+	// Each component in its own principal frame, with a diagonal of 1.
 	const std::vector<PrincipalFrame> frame = PrincipalFrame::ofPoints(
 		surface.position, component, size_t(components), progress.part(0.01, 0.02));
 	const auto toUnit = [&](const Point3d& p, int c) {

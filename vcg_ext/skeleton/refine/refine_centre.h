@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Refinement, the geometry: nodes into the centres of their maximal balls, smooth along the branch.
+/// @brief Refinement, the geometry: centres nodes in their maximal balls, smooths branches.
 
 #ifndef VCG_MCF_REFINE_CENTRE_H
 #define VCG_MCF_REFINE_CENTRE_H
@@ -28,7 +28,7 @@
 
 namespace vcg::tri::mcf::refining {
 
-/// Where a node touches the surface, the maximal ball through there, and where the node should be.
+/// A node's closest point, the maximal ball that touches there, and where the node should be.
 struct Contact
 {
 	ClosestSurface::Hit hit;
@@ -36,27 +36,30 @@ struct Contact
 	Point3d target;
 };
 
-/// Points of the surface that lie this deep in a ball, in distances of its node, do not hold it.
+/// The tolerance of a maximal ball, in distances of its node from the surface: points of the
+/// surface that are less deep in the ball do not hold it.
 constexpr double contactTolerance = 0.02;
 
-/// A maximal ball whose contacts are near each other is held by the surface's curvature or its noise,
-/// not by the other side: it says nothing about the middle of the shape. Balls count from the first
-/// angle between their contacts on, and fully from the second.
+/// A maximal ball whose contacts are near each other is held by the surface's curvature or its
+/// noise, not by the other side: it says nothing about the middle of the shape. The weight of a
+/// ball rises from the first of these angles between its contacts to the second.
 constexpr double minSpokeAngle = 20 * M_PI / 180, fullSpokeAngle = 50 * M_PI / 180;
 
+/// Whether a ball's contacts are far enough apart, see minSpokeAngle.
 inline bool isMedial(const ClosestSurface::Ball& ball)
 {
 	return ball.spokeAngle >= minSpokeAngle;
 }
 
-/// Searches the whole surface. @pre node is inside, and hit its closest point.
+/// Searches the whole surface for the ball at a node. @pre node is inside, and hit its closest
+/// point.
 inline ClosestSurface::Ball medialBall(const ClosestSurface& surface, const Point3d& node,
 	const ClosestSurface::Hit& hit, int near = -1)
 {
 	return surface.maximalBall(node, hit, contactTolerance * hit.distance, near);
 }
 
-/// Direction of the branch at a node, in steps to its neighbours; a junction has none.
+/// The unit tangent of the branch at a node; zero at a junction. @pre the node has neighbours.
 inline Point3d tangentAt(const CurveSkeleton& skeleton, const std::vector<int>& neighbours, int v)
 {
 	if (neighbours.size() > 2)
@@ -69,14 +72,14 @@ inline Point3d tangentAt(const CurveSkeleton& skeleton, const std::vector<int>& 
 	return length > 0 ? t / length : Point3d(0, 0, 0);
 }
 
-/// The slope of the distance from the surface within the medial axis: half the sum of the directions
-/// from both contacts of a ball to its centre.
+/// The gradient of the distance from the surface within the medial axis: half the sum of the unit
+/// vectors from the two contacts of a ball to its centre.
 inline Point3d medialSlope(const Point3d& contact, const ClosestSurface::Ball& ball)
 {
 	return (ball.centre * 2 - contact - ball.contact) / (2 * ball.radius);
 }
 
-/// The point moved across a direction towards the centre of a ball, by `maximum` at most.
+/// The point moved at right angles to a direction towards a ball's centre, by at most `maximum`.
 inline Point3d movedAside(const Point3d& point, const ClosestSurface::Ball& ball,
 	const Point3d& direction, double maximum)
 {
@@ -125,7 +128,7 @@ inline std::vector<Contact> findContacts(CurveSkeleton& skeleton, const ClosestS
 	std::vector<Contact> contacts(skeleton.position.size());
 	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
 	forEachBlock(int(contacts.size()), progress, "Refining the skeleton", [&](int begin, int end) {
-		// Neighbours in number are mostly neighbours on a branch, and touch nearly the same places.
+		// Consecutive nodes are mostly neighbours on a branch, with nearly the same contacts.
 		int near = -1, nearOpposite = -1;
 		for (int v = begin; v < end; ++v) {
 			const Point3d& x = skeleton.position[v];
@@ -148,7 +151,7 @@ inline std::vector<Contact> findContacts(CurveSkeleton& skeleton, const ClosestS
 	return contacts;
 }
 
-/// Follows the contacts of nodes that have moved a little; radius stays as it is.
+/// Tracks the contacts of nodes that have moved a little; radius is unchanged.
 inline void followContacts(
 	std::vector<Contact>& contacts, const CurveSkeleton& skeleton, const ClosestSurface& surface)
 {
@@ -167,9 +170,9 @@ inline void followContacts(
 }
 
 /**
- * Weight of the centring term per node. Inside the junction's maximal ball the medial axis of the body
- * dominates, so weights ramp from `minimum` to 1 as a node's ball leaves it, relative to its radius; from
- * `whole` on they are 1.
+ * Weight of the centring term per node. Inside the maximal ball of a junction the medial axis of
+ * the body dominates, so weights rise with the protrusion of a node's ball from it, in its radii:
+ * from `minimum` to 1, which they reach at `whole`.
  * @param distance  of each node from the surface.
  */
 inline std::vector<double> sharesOfCentring(const CurveSkeleton& skeleton,
@@ -194,9 +197,10 @@ inline std::vector<double> sharesOfCentring(const CurveSkeleton& skeleton,
 }
 
 /**
- * Takes nodes back to where they were, until no edge has left the surface that was inside: both nodes of
- * one that has. Edges are tested in their order, round after round, but only those that may have changed.
- * Complexity: O(E log E), and a test for each edge and for each of those of a node that goes back.
+ * Moves nodes back to where they were, until no edge that was inside has left the surface: both
+ * nodes of one that has. Edges are tested in ascending order, round after round, but only those
+ * that may have changed.
+ * Complexity: O(E log E), a test of each edge, and one of each edge of a node that goes back.
  */
 inline void keepEdgesInside(
 	CurveSkeleton& skeleton, const CurveSkeleton& before, const ClosestSurface& surface)
@@ -230,16 +234,18 @@ inline void keepEdgesInside(
 /**
  * One round: solves
  *     min  sum_i w_i |x_i - c_i|^2 + kappa sum_k (r_k / R)^2 |x_{k-1} - 2 x_k + x_{k+1}|^2
- * over the inner nodes k of the branches, so that curves may meet at any angle in a junction. c_i is
- * the centre of the maximal ball at node i, moved back along the branch to where the node is: the
- * nodes keep their distances. w_i falls where the ball has near contacts and where the node is in the
- * ball of a junction, see sharesOfCentring(). Tips weigh more: the curve is not to shrink.
+ * over the inner nodes k of the branches, so that curves may meet at any angle in a junction. c_i
+ * is the centre of the maximal ball at node i, projected on the normal plane of the branch at the
+ * node, so that nodes keep their spacing. w_i is smaller where the contacts of the ball are near
+ * each other and in the ball of a junction, see sharesOfCentring(), and large at tips: the curve
+ * must not shrink.
  *
  * No node moves by more than half its distance from the surface, and no edge leaves the surface:
- * the nodes of one that would stay where they are.
+ * the nodes of one that would are moved back.
  * @param kappa for nodes at the skeleton's own spacing whose distance r_k from the surface is R.
  * @param scale where it is smaller than 1, so are that spacing and R.
  * @pre radius holds distances from the surface, or lower bounds. @post lower bounds.
+ * @throws SolverError
  */
 inline void centre(CurveSkeleton& skeleton, const std::vector<Contact>& contacts,
 	const ClosestSurface& surface, double kappa, const LocalScale& scale = sameEverywhere)
@@ -275,8 +281,8 @@ inline void centre(CurveSkeleton& skeleton, const std::vector<Contact>& contacts
 			right(v, k) = weight * target[k];
 		if (degree != 2)
 			continue;
-		// A bend is judged by the thickness where it is: within a large ball, small ones mean nothing.
-		// Unless the branch only crosses that ball, the bend may be the end's in a corner.
+		// Stiffness grows with the local thickness: within a large ball, small bends mean nothing.
+		// Outside the balls of junctions it is bounded: the bend may be that of an end in a corner.
 		const double reference = referenceRadius * scale.atFace(contacts[v].hit.face);
 		const double relative = std::clamp(distance[v] / reference, thinnest,
 			share[v] < 1 ? std::numeric_limits<double>::infinity() : thickest);
@@ -318,15 +324,15 @@ struct InnerPlace
 };
 
 /**
- * The centre of the maximal ball that touches the surface from inside where it is closest to a point
- * outside. It is taken only if it is inside, its ball is empty and the way there from the contact does not
- * leave the surface: the ball may have been found behind a wall thinner than its tolerance. Then the
- * tolerance falls until it follows the local thickness.
+ * The centre of the maximal ball that touches the surface from inside where it is closest to a
+ * point outside. It is taken only if it is inside, its ball is empty and the way there from the
+ * contact does not leave the surface: the ball may have been found behind a wall thinner than its
+ * tolerance. Else the search is repeated with smaller tolerances.
  */
 inline InnerPlace placeInside(
 	const ClosestSurface& surface, const Point3d& outside, const ClosestSurface::Hit& hit)
 {
-	// The ball is sought from just below the surface, and must be larger than its roughness.
+	// Diagonals: how far below the surface the search starts, and the tolerance of the ball.
 	constexpr double below = 1e-4, roughness = 1e-3;
 	constexpr double finer = 0.25, finest = 1e-4;
 	const Point3d inward = (hit.point - outside) / hit.distance;
@@ -347,7 +353,7 @@ inline InnerPlace placeInside(
 
 /**
  * Moves nodes that are outside into the maximal ball that touches the closest surface point from
- * inside; where there is none they stay, without a ball.
+ * inside; where there is none they stay, with radius 0.
  */
 inline void moveInside(CurveSkeleton& skeleton, const ClosestSurface& surface)
 {
@@ -370,8 +376,9 @@ inline void moveInside(CurveSkeleton& skeleton, const ClosestSurface& surface)
 }
 
 /**
- * The places to the sides of a branch, none to two, where the shape is wide at a point of it: one and a half of the ball's
- * radii aside the surface is still half a radius away. In a limb none, in a plate two, along its rim one.
+ * The places beside a point x of a branch, none to two, where the shape is wide: 1.5 radii of the
+ * ball to either side, where the surface is still more than half a radius away. There are none in a
+ * limb, two in a plate, one along its rim.
  * @param contact    the second contact of the ball, see medialBall().
  * @param direction  of the branch.
  */

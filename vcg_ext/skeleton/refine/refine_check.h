@@ -21,16 +21,16 @@
 
 namespace vcg::tri::mcf::refining {
 
-/// What a refined curve may fail at. The first one that holds is told.
+/// What a refined curve may fail at, in the order of the tests: the first failure is reported.
 enum class Defect {
 	None,
 	NotFinite, ///< or the centring could not be solved
 	TooLong,   ///< or too many nodes, see CurveBounds
-	Topology,  ///< components or cycles came or went
+	Topology,  ///< the number of components or cycles has changed
 	Outside,   ///< a node or an edge is outside the surface
 };
 
-/// The maximum number of nodes that the sampling gives a curve whose length is so many diagonals.
+/// The maximum number of nodes that the sampling gives a curve. @param length in diagonals.
 inline double maxNodes(double length)
 {
 	constexpr double nodesOfDiagonal = 1500;
@@ -38,15 +38,16 @@ inline double maxNodes(double length)
 }
 
 /**
- * How large a refined curve may be, from its unrefined one, in diagonals. New branches lead into features,
- * so that a curve may grow, but not without limit: a node that strays drags two edges along, and each
- * sampling makes nodes of them; ways around the bends of thin walls have nodes of their own.
+ * How large a refined curve may be, given its unrefined one; lengths in diagonals. New branches
+ * lead into features, so that a curve may grow, but not without limit: a node that strays drags two
+ * edges along, on which each sampling puts nodes; ways around bends of thin walls add nodes, too.
  */
 class CurveBounds
 {
 public:
-	/// A curve may become three times as long as itself and the shape's diagonal together, and have twice
-	/// the nodes that it has and that are as far apart as `spacing` on such a length.
+	/// The maximum length is three times the sum of the unrefined length and the diagonal; the
+	/// maximum number of nodes is twice the sum of those before and those at `spacing` along the
+	/// maximum length.
 	CurveBounds(const CurveSkeleton& unrefined, double spacing) :
 			nodesBefore(unrefined.position.size())
 	{
@@ -59,10 +60,11 @@ public:
 	bool hold(const CurveSkeleton& curve) const
 	{
 		return curve.position.size() <= nodes
-			&& lengthOf(curve) <= length; // not if it is no number
+			&& lengthOf(curve) <= length; // false if the length is NaN
 	}
 
-	/// Whether a curve may be the result: with no more nodes than before and a third more than maxNodes() besides.
+	/// Whether a curve may be the result: if hold(), with at most 4/3 maxNodes() nodes more than
+	/// before.
 	bool holdAtEnd(const CurveSkeleton& curve) const
 	{
 		constexpr double more = 4.0 / 3;
@@ -85,9 +87,9 @@ private:
 };
 
 /**
- * Tells inside from outside without mistakes: by the closest point, none missed, which is right wherever
- * the surface does not intersect itself; what that takes for outside is asked of the winding number, for
- * which a place that is enclosed twice is inside.
+ * The test of whether a curve is inside: by exact closest points, which are right wherever the
+ * surface does not intersect itself; what is outside by these is tested by the winding number, for
+ * which a point that is enclosed twice is inside.
  */
 class InsideCheck
 {
@@ -98,8 +100,8 @@ public:
 	}
 
 	/**
-	 * Whether a curve is inside, its nodes and its edges: where no edge meets the surface, one node tells
-	 * for all that hang together. @throws Cancelled
+	 * Whether the nodes and edges of a curve are inside: where no edge leaves the surface, one node
+	 * decides for its connected component. @throws Cancelled
 	 * Complexity: O((N + E) log V); O(V) for each edge within a self-intersection.
 	 */
 	bool holds(const CurveSkeleton& curve, const Progress& progress) const
@@ -138,10 +140,10 @@ private:
 	static constexpr double half = 0.5;
 
 	const ClosestSurface& closest;
-	SurfaceComponent component; ///< refers to what its maker keeps
+	SurfaceComponent component; ///< refers to what the caller keeps
 
-	/// Whether empty balls cover the segment; not if it comes nearer to the surface than its length / 2^16, or
-	/// if that takes more closest points than take as long as isEnclosed().
+	/// Whether empty balls cover the segment; false as well if it comes nearer to the surface than
+	/// its length / 2^16, or if the closest points would take longer than isEnclosed().
 	bool isCovered(const Point3d& a, double radiusA, const Point3d& b, double radiusB) const
 	{
 		constexpr int minimum = 64, verticesOfQuery = 8;
@@ -163,7 +165,7 @@ private:
 			&& isCovered(middle, radius, b, radiusB, depth + 1, queries);
 	}
 
-	/// The first node of each part of the curve.
+	/// The first node of each connected component of the curve.
 	static std::vector<Point3d> firstNodes(const CurveSkeleton& curve)
 	{
 		const std::vector<std::vector<int>> neighbours = curve.neighbours();
@@ -199,8 +201,8 @@ private:
 			});
 	}
 
-	/// How often the surface goes round a point (van Oosterom and Strackee, "The solid angle of a plane
-	/// triangle", IEEE Trans. Biomed. Eng. 30(2), 1983).
+	/// How many times the surface goes around a point (van Oosterom and Strackee, "The solid angle
+	/// of a plane triangle", IEEE Trans. Biomed. Eng. 30(2), 1983).
 	double windingNumber(const Point3d& p) const
 	{
 		double sum = 0;
@@ -213,7 +215,8 @@ private:
 		return sum / (2 * M_PI);
 	}
 
-	/// Whether a segment is inside between each two of its crossings with the surface.
+	/// Whether each part of a segment between two crossings of the surface has a winding number of
+	/// 1/2 or more in its middle.
 	bool isEnclosed(const Point3d& a, const Point3d& b, const Progress& progress) const
 	{
 		constexpr double shortest =
@@ -248,7 +251,7 @@ inline bool isFinite(const CurveSkeleton& curve)
 	});
 }
 
-/// What is wrong with a curve refined from another one, wherever it is; both in diagonals.
+/// The defect of a curve refined from another one, but for Outside; both in units of the diagonal.
 inline Defect defectOfShape(
 	const CurveSkeleton& refined, const CurveSkeleton& unrefined, double spacing)
 {
@@ -262,7 +265,7 @@ inline Defect defectOfShape(
 	return Defect::None;
 }
 
-/// What is wrong with a curve refined from another one, both in diagonals. @throws Cancelled
+/// The defect of a curve refined from another one, both in units of the diagonal. @throws Cancelled
 inline Defect defectOf(const CurveSkeleton& refined, const CurveSkeleton& unrefined, double spacing,
 	const InsideCheck& inside, const Progress& progress = Progress())
 {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Refinement, the features: small limbs on a large body that the flow lost get their branches.
+/// @brief Refinement, the features: branches for small limbs of a large body that the flow lost.
 
 #ifndef VCG_MCF_REFINE_FEATURES_H
 #define VCG_MCF_REFINE_FEATURES_H
@@ -27,7 +27,8 @@
 
 namespace vcg::tri::mcf::refining {
 
-/// The middle of the surface around a peak down to a height: a point within the tip of its feature.
+/// The middle of the surface around a peak down to the height `lowest`: a point in its feature's
+/// tip.
 /// @throws Cancelled
 inline Point3d middleOfTip(const SurfaceComponent& surface, const Heights& heights, int peak,
 	double lowest, const Progress& progress)
@@ -50,7 +51,7 @@ inline Point3d middleOfTip(const SurfaceComponent& surface, const Heights& heigh
 	return box.Center();
 }
 
-/// The node of the ball that the way over the surface from a peak meets first.
+/// The node of the first ball that is met on the surface around a peak, by distance along edges.
 /// @throws Cancelled. Complexity: O(V + n log n) for V vertices and the n that are nearer.
 inline int nodeBelow(const CurveSkeleton& skeleton, const SurfaceComponent& surface,
 	const Heights& heights, int peak, const Progress& progress)
@@ -79,14 +80,14 @@ inline int nodeBelow(const CurveSkeleton& skeleton, const SurfaceComponent& surf
 	return heights.node[peak];
 }
 
-/// Lobes of plates are at least so many radii high.
+/// Minimum height of a lobe of a plate, in radii.
 constexpr double lobeHeight = 5;
 
 /**
- * Removes terminal branches that stay within a plate and are shorter than two of its lobes are high, or
- * than one if there is no other tip; the shortest first. Where the flow left such a stub is chance, and next
- * to it growFeatures() would take the rim for several lobes. A plate that stands on a thicker body, as an
- * ear does, is a limb and keeps its branch.
+ * Removes terminal branches that stay within a plate and are shorter than twice the minimum height
+ * of a lobe, or than that height if there is no other tip; the shortest first. Where the flow
+ * leaves such stubs is chance, and next to one growFeatures() would take the rim for several lobes.
+ * A plate that stands on a thicker body, as an ear does, is a limb and keeps its branch.
  * @pre the radius of junctions and tips is their distance from the surface.
  */
 inline CurveSkeleton withoutStubsInPlates(
@@ -115,15 +116,15 @@ inline CurveSkeleton withoutStubsInPlates(
 		});
 }
 
-/// A branch that is to be: points from the tip of a feature into one of the skeleton's balls.
+/// A branch to be added: points from the tip of a feature into one of the skeleton's balls.
 struct FeatureBranch
 {
 	std::vector<Point3d> points;
 	std::vector<double> radii;
-	/// The node of that ball; -1 where the way leaves the surface or ends in none.
+	/// The node of that ball; -1 if the branch leaves the surface or ends in no ball.
 	int joint = -1;
-	/// The parts of the points about which the shape is wide to both sides, to one, and to any where the skeleton's
-	/// balls leave that room out, see widePlaces().
+	/// The fractions of the points where the shape is wide to both sides, to one side, and to a
+	/// side that the skeleton's balls leave out, see widePlaces().
 	double flat = 0, rim = 0, bare = 0;
 
 	double way() const
@@ -136,8 +137,9 @@ struct FeatureBranch
 };
 
 /**
- * From within a feature's tip to the skeleton: up the slope of the distance from the surface, which in
- * a limb leads to its body, and where that is flat towards a node, kept in the middle.
+ * The branch from within a feature's tip to the skeleton: along the gradient of the distance from
+ * the surface, which in a limb leads to its body, and where that vanishes towards a node; recentred
+ * in each step.
  * @param towards  a node next to the feature.
  */
 inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const HoldingBalls& balls,
@@ -145,7 +147,7 @@ inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const HoldingBal
 	const LocalScale& scale)
 {
 	constexpr int maxSteps = 400;
-	// Of the next direction; the slope is 1 where the way leads straight away from the surface.
+	// Weights of the directions to the node and of the last step; that of the gradient is 1.
 	constexpr double pull = 0.3, keeping = 0.5;
 	FeatureBranch branch;
 	int flat = 0, rim = 0, bare = 0;
@@ -194,12 +196,15 @@ inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const HoldingBal
 
 /**
  * Whether a branch leads into a limb: not into the corner of a box, on the way to which the balls
- * shrink nearly as fast as they advance, not along the rim of a plate, that is into its corner, and not
- * through a plate, in which it could lead anywhere, unless that comes to a point and is longer than the
- * plate is thick, as an ear is, or is itself a lobe, high above the balls and a large part of the shape.
- * The branch into a low spike is short: where it enters the body, its few samples can look like a rim or a plate. For
- * spikes these only count over more than a radius. Where the balls keep their size, as they do in no corner of a
- * solid, they only count beside room that the skeleton's balls leave out: what these cover is the spike's body.
+ * shrink nearly as fast as they advance; not along the rim of a plate, which ends in its corner;
+ * and not through a plate, in which it could lead anywhere, unless the plate comes to a point and
+ * is longer than thick, as an ear is, or is itself a lobe, high above the balls and a large part of
+ * the shape.
+ *
+ * The branch into a low spike is short: where it enters the body, its few samples can look like a
+ * rim or a plate. For spikes, such samples only count if they cover more than a radius; and where
+ * the balls keep their size, as they do in no corner of a solid, only beside room that the
+ * skeleton's balls leave out: what these cover is the spike's body.
  */
 inline bool leadsIntoLimb(const FeatureBranch& branch, const Peak& peak, const FeatureRule& rule)
 {
@@ -224,7 +229,7 @@ inline bool leadsIntoLimb(const FeatureBranch& branch, const Peak& peak, const F
 				<= (gain > evenGain ? maxFlatnessIfEven : maxFlatnessIfSpiky * peak.spikiness));
 }
 
-/// A feature, whether it gets its branch or not.
+/// A candidate feature, and whether it has got its branch.
 struct Feature
 {
 	Peak peak;
@@ -233,10 +238,10 @@ struct Feature
 };
 
 /**
- * Whether a branch that leads into no limb leads into a blunt corner that is a feature of the shape, as a
- * knee is: high, neither in a plate nor on its rim, and alone. The corners in which solids end are no
- * blunter, but around one ball there are several of them.
- * @param features  all there are.
+ * Whether a branch that leads into no limb leads into a blunt corner that is a feature of the
+ * shape, as a knee is: high, neither in a plate nor on its rim, and alone. The corners of box-like
+ * solids are as blunt, but there are several of them around one ball.
+ * @param features  all candidates.
  */
 inline bool leadsIntoLoneCorner(const CurveSkeleton& skeleton, const SurfaceComponent& surface,
 	const Feature& corner, const std::vector<Feature>& features, const FeatureRule& rule)
@@ -248,7 +253,7 @@ inline bool leadsIntoLoneCorner(const CurveSkeleton& skeleton, const SurfaceComp
 		|| corner.peak.spikiness < minSpikiness)
 		return false;
 	const double radius = branch.radii.back(), way = branch.way();
-	// From the surface itself, where the balls have no radius: the same wherever the branch starts.
+	// From the surface itself, where the radius is 0: independent of where the branch starts.
 	const double whole =
 		way + Distance(surface.position(corner.peak.vertex), branch.points.front());
 	if (way < minWay * radius || whole * (1 - minGain) < radius
@@ -278,16 +283,17 @@ inline int nearestInView(const CurveSkeleton& skeleton, const ClosestSurface& su
 }
 
 /**
- * The branch from a peak's feature to the curve: towards the ball that is nearest or, where that lies
- * across a gap, towards the one below the peak; and if the curve is in view nearer than that way is
- * long, straight there. Its joint is -1 if it would run beside the curve even so, or if there is no way.
+ * The branch from a peak's feature to the curve: towards the nearest ball or, where that lies
+ * across a gap, towards the one below the peak; if a node in view is nearer than that branch is
+ * long, towards it. The joint is -1 if it would run beside the curve even so, or if there is no
+ * way.
  * @throws Cancelled
  */
 inline FeatureBranch branchInto(const Peak& peak, const CurveSkeleton& skeleton,
 	const HoldingBalls& balls, const SurfaceComponent& component, const Heights& heights,
 	const ClosestSurface& surface, const FeatureRule& rule, const Progress& progress)
 {
-	// Down from the peak until what is above encloses a point with a way to the curve.
+	// The level falls until the surface above it encloses a point with a way to the curve.
 	const auto branchTowards = [&](int node) {
 		FeatureBranch branch;
 		for (double down = rule.minRise; branch.joint < 0 && down < peak.height; down *= 2)
@@ -317,9 +323,9 @@ inline FeatureBranch branchInto(const Peak& peak, const CurveSkeleton& skeleton,
 }
 
 /**
- * Gives each feature without a branch one: where the surface is left far uncovered and comes to a
- * point, and where the way there leads through a limb or into the lobe of a plate. Rims and the corners
- * of solids, which curve skeletons leave out, are none.
+ * Gives each feature without a branch one: where the surface is far above the skeleton's balls and
+ * comes to a point, and where the way there leads through a limb or into the lobe of a plate. Rims
+ * and the corners of solids, which curve skeletons leave out, are no features.
  * @pre radius holds the distances from the surface, or lower bounds. @post the same.
  * @throws Cancelled. Complexity: O(V * N + V log V), and O(V log V) for each peak.
  */
@@ -357,7 +363,7 @@ inline void growFeatures(CurveSkeleton& skeleton, const SurfaceComponent& compon
 		}
 		features.push_back({peak, std::move(branch), grown});
 	}
-	// A corner whose way ends in a branch that has just grown is one beside a limb.
+	// A corner whose branch would end in one that has just grown lies beside a limb.
 	for (const Feature& feature : features)
 		if (!feature.grown && feature.branch.joint < nodes
 			&& leadsIntoLoneCorner(skeleton, component, feature, features, rule))

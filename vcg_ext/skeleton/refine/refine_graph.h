@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Refinement, the graph: spurs out, shattered junctions mended, branches evenly sampled.
+/// @brief Refinement, the graph: spurs removed, split junctions merged, branches evenly sampled.
 
 #ifndef VCG_MCF_REFINE_GRAPH_H
 #define VCG_MCF_REFINE_GRAPH_H
@@ -28,7 +28,7 @@
 
 namespace vcg::tri::mcf::refining {
 
-/// The distances of nodes from the surface, each measured once, wherever the node is numbered.
+/// The distances of nodes from the surface, cached by position, since nodes are renumbered.
 class KnownClearances
 {
 public:
@@ -77,7 +77,7 @@ inline bool isSegmentInside(const ClosestSurface& surface, const Point3d& a, dou
 		&& isSegmentInside(surface, middle, radius, b, radiusB, depth + 1);
 }
 
-/// The same for an edge of a skeleton whose radii may be lower bounds: measures them if it must.
+/// The same for an edge of a skeleton whose radii may be lower bounds: measures them if needed.
 inline bool isEdgeInside(CurveSkeleton& skeleton, const ClosestSurface& surface, int a, int b)
 {
 	const auto inside = [&] {
@@ -92,9 +92,9 @@ inline bool isEdgeInside(CurveSkeleton& skeleton, const ClosestSurface& surface,
 }
 
 /**
- * Removes the spurs: terminal branches whose prominence() is below `minimum`, the worst first, since a
- * branch that loses its junction becomes part of a longer one. What had merged there goes to the
- * junction. A component that is a single chain keeps it.
+ * Removes the spurs: terminal branches whose prominence() is below `minimum`, the lowest first,
+ * since a branch that loses its junction becomes part of a longer one. What had merged into a spur
+ * goes to its junction. A component that is a single chain keeps it.
  * @pre the radius of junctions and tips is their distance from the surface.
  */
 inline CurveSkeleton withoutSpurs(const CurveSkeleton& skeleton, double minimum)
@@ -102,13 +102,14 @@ inline CurveSkeleton withoutSpurs(const CurveSkeleton& skeleton, double minimum)
 	return withoutTerminalBranches(skeleton, minimum, terminalProminence);
 }
 
-/// A terminal branch goes on for at least so many radii of the ball that it hangs on.
+/// Minimum length of a terminal branch, in radii of the ball at its root.
 constexpr double minWayOfBranch = 0.75;
-/// A blunt end is a feature of the shape if it is so many diagonals high.
+/// Minimum height of a blunt end that is a feature of the shape, in diagonals.
 constexpr double minBluntHeight = 0.04;
 
-/// The axis of a branch where it has left the ball of its junction: the line through its points one and three radii of
-/// that ball away, or its end if that is nearer; none where the end is nearer than one and a half.
+/// The axis of a branch where it has left the ball of its junction: the line through its points one
+/// and three radii of that ball along the branch, or its end if that comes first; none for a branch
+/// shorter than one and a half.
 /// @pre the radius of junctions is their distance from the surface.
 inline std::optional<vcg::Line3d> axisOf(const CurveSkeleton& skeleton, const Branch& fromJunction)
 {
@@ -132,9 +133,9 @@ inline std::optional<vcg::Line3d> axisOf(const CurveSkeleton& skeleton, const Br
 }
 
 /**
- * Whether a terminal branch leads into the corner of a bend: the two limbs that it hangs between turn by 60 degrees or
- * more, and go on straight to a place within the ball of its tip. The curve cuts the corner, and the branch is what it
- * leaves out, no third limb.
+ * Whether a terminal branch leads into the corner of a bend: its junction joins two limbs that turn
+ * by more than 60 degrees, and whose axes meet within the ball of its tip. The curve cuts the
+ * corner, and the branch is what it leaves out, not a third limb.
  * @pre the radius of junctions and tips is their distance from the surface.
  */
 inline bool isCornerOfBend(const CurveSkeleton& skeleton,
@@ -160,10 +161,11 @@ inline bool isCornerOfBend(const CurveSkeleton& skeleton,
 }
 
 /**
- * Removes the stubs, the shortest first: terminal branches whose tip is nearer to their junction than
- * minWayOfBranch radii of the ball there, or leads into a corner that the curve cuts, see isCornerOfBend(), as at
- * a heel. A branch this short sticks out only if its own ball is about as large: it is a blunt end, not a limb. It
- * stays if it sticks out by minBluntHeight, as in one half of a large round body.
+ * Removes the stubs, the shortest first: terminal branches whose tip is nearer to their junction
+ * than minWayOfBranch radii of the ball there, or which lead into a corner that the curve cuts, as
+ * at a heel, see isCornerOfBend(). A branch this short sticks out only if its own ball is about as
+ * large: it is a blunt end, not a limb. It stays if it sticks out by minBluntHeight, as in one half
+ * of a large round body.
  * @pre the radius of junctions and tips is their distance from the surface; the diagonal is 1.
  */
 inline CurveSkeleton withoutStubs(const CurveSkeleton& skeleton)
@@ -182,9 +184,9 @@ inline CurveSkeleton withoutStubs(const CurveSkeleton& skeleton)
 }
 
 /**
- * Leaves one of two terminal branches that end in the same place, with tips closer to each other than twice
- * their smaller ball's radius: the shorter branch. What had merged into the other goes to its junction. The
- * tips of different limbs, or of a limb that forks, are farther apart than that.
+ * Of two terminal branches that end in the same place, with tips closer to each other than twice
+ * the radius of their smaller ball, keeps the shorter one. What had merged into the other goes to
+ * its junction. The tips of different limbs, or of a limb that forks, are farther apart than that.
  * @pre the radius of tips is their distance from the surface.
  */
 inline CurveSkeleton withoutTwinTips(const CurveSkeleton& skeleton)
@@ -201,8 +203,8 @@ inline CurveSkeleton withoutTwinTips(const CurveSkeleton& skeleton)
 		});
 }
 
-/// A terminal branch as the balls on it see it: for each node the way from the first one, and the
-/// distance from the surface.
+/// The profile of a terminal branch: for each node the length along the branch from the first one,
+/// and the distance from the surface.
 struct BranchProfile
 {
 	std::vector<double> along, radius;
@@ -219,7 +221,7 @@ struct BranchProfile
 
 	size_t last() const { return along.size() - 1; }
 
-	/// How much further the balls reach for the way between two nodes: 1 + (r_to - r_from) / length.
+	/// The gain of reach per length from one node to another: 1 + (r_to - r_from) / length.
 	double gain(size_t from, size_t to) const
 	{
 		const double length = along[to] - along[from];
@@ -234,8 +236,8 @@ struct BranchProfile
 			- along.begin());
 	}
 
-	/// Where the last stretch as long as the radius at its start begins that gains at least `minimum`; the
-	/// last node if there is none.
+	/// The start of the last stretch, as long as the radius at its start, that gains at least
+	/// `minimum`; the last node if there is none.
 	size_t lastStretch(double minimum) const
 	{
 		size_t start = last();
@@ -245,7 +247,7 @@ struct BranchProfile
 		return start;
 	}
 
-	/// The last node from `from` on up to which going on gains at least `minimum` all the time.
+	/// Where a walk from `from` ends that goes on as long as its stretches gain at least `minimum`.
 	size_t endOfGain(size_t from, double minimum) const
 	{
 		size_t end = from;
@@ -257,10 +259,11 @@ struct BranchProfile
 };
 
 /**
- * How clearly a terminal branch leaves what it hangs from: the greatest gain of reach over any
- * stretch as long as the radius at its start, as a part of that radius. It is 1 along a limb, however short, and
- * 1 - sin(a) on the way into a corner or a pointed end with a half angle of a, whatever its size. Where the branch
- * ends before that it has gained less; one without any such stretch is taken as a whole.
+ * How clearly a terminal branch leaves what it hangs from: the maximum gain of reach over any
+ * stretch as long as the radius at its start, as a part of that radius. It is 1 along a limb,
+ * however short, and 1 - sin(a) on the way into a corner or a pointed end with a half angle of a,
+ * whatever its size. A stretch that the tip cuts short has gained less; a branch without any
+ * full stretch is measured as a whole.
  * @param branch from its junction to its tip.
  */
 inline double distinctness(
@@ -280,8 +283,8 @@ inline double distinctness(
 }
 
 /**
- * Removes the terminal branches whose distinctness() is below `minimum`, as withoutSpurs(): they lead
- * into corners and edges of the surface, of which a shape has many and a skeleton none.
+ * Removes the terminal branches whose distinctness() is below `minimum`, in the order of
+ * withoutSpurs(): they lead into corners and edges of the surface, which a skeleton leaves out.
  */
 inline CurveSkeleton withoutCornerBranches(
 	const CurveSkeleton& skeleton, KnownClearances& clearances, double minimum)
@@ -293,8 +296,8 @@ inline CurveSkeleton withoutCornerBranches(
 }
 
 /**
- * Cuts terminal branches off behind a node of theirs; what had merged behind it goes to the new tip.
- * @param end  (profile from the far end to the tip): the place of that node.
+ * Cuts terminal branches off behind one of their nodes, to which what had merged behind it goes.
+ * @param end  (profile from the far end to the tip): the index of that node in the profile.
  */
 template <class End>
 CurveSkeleton withEndsCut(
@@ -318,9 +321,9 @@ CurveSkeleton withEndsCut(
 }
 
 /**
- * Cuts the ends off that lead from a limb into a corner: behind the last stretch of the branch that
- * gains `minimum`, see distinctness(), the branch ends where going on gains less, unless what is left is
- * shorter than half a radius.
+ * Cuts off the ends that lead from a limb into a corner: behind the last stretch of the branch that
+ * gains `minimum`, see distinctness(), the branch ends where going on gains less, unless what would
+ * be cut off is shorter than half a radius.
  */
 inline CurveSkeleton withoutCornerEnds(
 	const CurveSkeleton& skeleton, KnownClearances& clearances, double minimum)
@@ -334,8 +337,8 @@ inline CurveSkeleton withoutCornerEnds(
 }
 
 /**
- * Takes tips back to where the balls last reached further by `minimum` of the way: a curve that went past
- * the centre of a round or flat end, where the balls shrink as fast as it advances, ends in that centre.
+ * Takes tips back to where the balls last gained `minimum`: a curve that went past the centre of a
+ * round or flat end, where the balls shrink as fast as it advances, ends there.
  */
 inline CurveSkeleton withoutBluntEnds(
 	const CurveSkeleton& skeleton, KnownClearances& clearances, double minimum)
@@ -346,10 +349,11 @@ inline CurveSkeleton withoutBluntEnds(
 }
 
 /**
- * Merges junctions that are one: those whose smaller ball, by less than `minimum` of its own radius, sticks
- * out of the larger one, the smallest first. So a limb that forks right where it leaves a body keeps its
- * fork. What the connecting branch is longer than straight counts as sticking out. The junction with the
- * larger ball stays in its place. Branches that close a cycle of the shape are kept.
+ * Merges junctions that are one, the least apart first: those whose smaller ball sticks out of the
+ * larger one by less than `minimum` of its own radius, so that a limb that forks right where it
+ * leaves a body keeps its fork. By how much the connecting branch is longer than straight is added.
+ * The junction with the larger ball stays in its place. Branches that close a cycle of the shape
+ * are kept.
  * @pre the radius of junctions and tips is their distance from the surface.
  */
 inline CurveSkeleton withWholeJunctions(CurveSkeleton skeleton, double minimum)
@@ -398,8 +402,8 @@ inline BallChain evenPoints(const BallChain& line, int segments)
 	return even;
 }
 
-/// How far apart nodes are to be at each point of a polyline: `spacing`, less where the scale is smaller and,
-/// growing by at most 0.3 of the way, near there.
+/// The spacing of nodes at each point of a polyline: `spacing` times the scale there, but growing
+/// by at most 0.3 of the length along the polyline.
 inline std::vector<double> spacingsAlong(
 	const BallChain& line, const ClosestSurface& surface, double spacing, const LocalScale& scale)
 {
@@ -421,8 +425,8 @@ inline std::vector<double> spacingsAlong(
 }
 
 /**
- * Points of a polyline, both ends included, whose distances follow spacings that are given at its points:
- * at equal steps of the integral of 1 / spacing.
+ * Points of a polyline, both ends included, at the spacings that are given at its points: at equal
+ * steps of the integral of 1 / spacing.
  * @param minimum fewest segments, >= 1.
  */
 inline BallChain gradedPoints(
@@ -454,7 +458,7 @@ inline BallChain gradedPoints(
 	return graded;
 }
 
-/// A polyline with its nodes kept and its edges cut to pieces of about the spacings at its points.
+/// A polyline with its nodes kept and its edges cut into pieces of about the given spacings.
 inline BallChain withShortEdges(const BallChain& line, const std::vector<double>& spacings)
 {
 	BallChain finer = {{line.points.front()}, {line.radii.front()}};
@@ -514,9 +518,10 @@ inline bool isInside(BallChain& chain, const ClosestSurface& surface)
 }
 
 /**
- * Samples each branch evenly, about `spacing` apart, less where the scale is smaller. Junctions and tips keep their places, what had
- * merged into a node goes to the one nearest along the branch. Where a chord would leave the
- * surface, the branch keeps its nodes, but for crowded ones, and only its long edges are cut.
+ * Samples each branch evenly, about `spacing` apart, less where the scale is smaller. Junctions and
+ * tips keep their places; what had merged into a node goes to the one nearest along the branch.
+ * Where a chord would leave the surface, the branch keeps its nodes, but for crowded ones, and only
+ * its long edges are cut.
  * @pre radius holds the distances from the surface, or lower bounds. @post lower bounds.
  */
 inline CurveSkeleton evenlySampled(const CurveSkeleton& skeleton, const ClosestSurface& surface,

@@ -26,33 +26,34 @@
 
 namespace vcg::tri::mcf::refining {
 
-/// What is a feature. Heights are distances from the union of the skeleton's balls.
+/// What counts as a feature. Heights are distances from the union of the skeleton's balls.
 struct FeatureRule
 {
-	/// On the branch into a feature the balls reach further by at least this part of the way.
+	/// Minimum gain of the branch into a feature: 1 + (r_tip - r_joint) / length.
 	double minGain;
-	/// The peak of a feature is as high as this part of the radius of the ball that is nearest.
+	/// Minimum height of a feature's peak, in radii of the nearest ball.
 	double minHeight;
 	/// Longest step of a branch, in diagonals.
 	double spacing;
-	/// Of the spacing.
+	/// Factor of the spacing.
 	const LocalScale& scale = sameEverywhere;
-	/// The way is at least this many radii of the ball that it ends in.
+	/// Minimum length of the branch, in radii of the ball that it ends in.
 	double minWay = minWayOfBranch;
-	/// The way, in such radii, times the relative height of the peak is at least this, but for spikes: low features are
-	/// long ones.
+	/// That length times the relative height of the peak is at least this, unless the peak is a
+	/// spike: low features are long ones.
 	double minProtrusion = 0.56;
-	/// Spikiness from which on a peak is a spike: a cone with a half angle of 60 degrees has 0.5.
+	/// Minimum spikiness of a spike: that of a cone with a half angle of 60 degrees.
 	double minOfSpike = 0.5;
-	/// The peak rises from its surroundings by this part of the radius of the nearest ball, and by this many diagonals.
+	/// The peak rises from its surroundings by this part of the radius of the nearest ball, and by
+	/// this many diagonals.
 	double minProminence = 0.05, minRise = 0.005;
-	/// The lobe of a plate is at least this many diagonals high.
+	/// Minimum height of the lobe of a plate, in diagonals.
 	double minLobe = 0.05;
-	/// A blunt corner is at least this many diagonals high.
+	/// Minimum height of a blunt corner, in diagonals.
 	double minCorner = minBluntHeight;
 };
 
-/// A component of a surface; its vertices are numbered by their place in it.
+/// A view of one component of a surface; its vertices are numbered by their place in it.
 struct SurfaceComponent
 {
 	const SurfaceMesh& mesh;
@@ -69,17 +70,17 @@ struct SurfaceComponent
 	}
 };
 
-/// The height of each vertex above the union of the skeleton's balls, and the node of the nearest one.
+/// The height of each vertex above the union of the skeleton's balls, and the nearest ball's node.
 struct Heights
 {
 	std::vector<double> height;
 	std::vector<int> node;
 };
 
-/// Nodes whose balls cover, but for a hundredth of their radius, what all balls cover.
+/// Nodes whose balls cover what all balls cover, up to a hundredth of a radius.
 inline std::vector<int> coveringNodes(const CurveSkeleton& skeleton)
 {
-	constexpr double apart = 0.25; // in radii; leaves out apart^2 / 8 of one
+	constexpr double apart = 0.25; // in radii; the gaps are apart^2 / 8 radii deep
 	std::vector<int> covering;
 	for (const Branch& branch : skeletonBranches(skeleton)) {
 		double way = std::numeric_limits<double>::infinity();
@@ -98,8 +99,8 @@ inline std::vector<int> coveringNodes(const CurveSkeleton& skeleton)
 	return covering;
 }
 
-/// The balls that may be the nearest of points in a box: all others are farther than one of them from
-/// any point in it. @pre there are balls to choose from.
+/// The balls that may be nearest to some point of a box: each other ball is farther than one of
+/// them from all points of the box. @param near receives them. @pre there are balls to choose from.
 inline void selectNearBalls(const CurveSkeleton& skeleton, const std::vector<int>& balls,
 	const Box3d& box, std::vector<int>& near)
 {
@@ -118,9 +119,10 @@ inline void selectNearBalls(const CurveSkeleton& skeleton, const std::vector<int
 			near.push_back(balls[i]);
 }
 
+/// The heights above the balls of the covering nodes.
 /// @param order of the vertices, one in which neighbours are near each other.
 /// @pre radius of the covering nodes is their distance from the surface.
-/// Complexity: O(V * covering nodes), with a small factor.
+/// @throws Cancelled. Complexity: O(V * covering nodes), with a small factor.
 inline Heights heightsAbove(const CurveSkeleton& skeleton, const std::vector<int>& covering,
 	const SurfaceComponent& surface, const std::vector<int>& order, const Progress& progress)
 {
@@ -161,20 +163,20 @@ inline Heights heightsAbove(const CurveSkeleton& skeleton, const std::vector<int
 }
 
 /**
- * A vertex where the height is greatest within a part of the surface from which every way to a higher
- * one leads down. The part above a level l, which rises h - l above it, reaches to a distance E(l)
- * from the peak; the spikiness is the greatest (h - l) / E(l), at most 1, since the height changes no
- * faster than the place: near 1 for a limb, cos a for a cone with half angle a, and near 0 for a rim.
+ * A local maximum of the height, with height h. The connected part of the surface around it that is
+ * above a level l reaches to a distance E(l) from it; the spikiness is the maximum of (h - l) /
+ * E(l), at most 1, since the height is 1-Lipschitz: near 1 for a limb, cos a for a cone with half
+ * angle a, and near 0 for a rim.
  */
 struct Peak
 {
 	int vertex;
 	double extent = 0, spikiness = 0;
-	/// Of the vertex; the same in radii of the nearest ball.
+	/// Height of the vertex; the same in radii of the nearest ball.
 	double height = 0, relativeHeight = 0;
 };
 
-/// The vertices of positive height, the highest first; of several the one with the smallest coordinates.
+/// The vertices of positive height, the highest first; ties are broken by the coordinates.
 class VerticesByHeight
 {
 public:
@@ -185,7 +187,7 @@ public:
 	{
 		const char* const what = "Refining the skeleton";
 		const double top = *std::max_element(height.begin(), height.end());
-		// In slices of equal thickness, each of them sorted when its turn comes.
+		// A bucket sort by slices of equal thickness, each of them sorted when it is reached.
 		const int slices = std::max(1, surface.size());
 		const auto slice = [&](int v) {
 			return std::min(slices - 1, int((1 - height[v] / top) * slices));
@@ -233,8 +235,8 @@ private:
 };
 
 /**
- * The peaks that are high enough, rise far enough and are no mere rims; the highest first.
- * Complexity: about O(V).
+ * The peaks that are high enough, rise far enough and are too spiky for rims; the highest first.
+ * @throws Cancelled. Complexity: about O(V).
  */
 inline std::vector<Peak> peaks(const CurveSkeleton& skeleton, const SurfaceComponent& surface,
 	const Heights& heights, const FeatureRule& rule, const Progress& progress)
@@ -253,13 +255,13 @@ inline std::vector<Peak> peaks(const CurveSkeleton& skeleton, const SurfaceCompo
 	int highLeft = 0;
 	detail::reportedLoop(surface.size(), progress.part(0.4, 0.5), what,
 		[&](int v) { highLeft += height[v] > 0 && isHigh(v); });
-	// The parts above a level that falls, as a forest; they are numbered from the highest peak down.
+	// Union-find of the parts above a falling level; parts are numbered from the highest peak down.
 	const Progress begin = progress.cancelOnly();
 	MergeForest forest(surface.size(), progress);
 	std::vector<char> isAbove = detail::filledArray(size_t(surface.size()), char(0), begin);
 	std::vector<int> partOfRoot = detail::filledArray(isAbove.size(), -1, begin);
 	std::vector<Peak> parts;
-	// Peaks that are high enough and may still turn out to be spikier.
+	// The number of peaks that are high enough and may still become spikier.
 	int open = 0;
 	const auto isOpen = [&](const Peak& peak) {
 		return isHigh(peak.vertex)

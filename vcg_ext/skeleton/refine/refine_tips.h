@@ -26,16 +26,16 @@ struct TipRule
 {
 	/// Longest step, in diagonals.
 	double spacing;
-	/// Each step must add at least this part of its length to the reach of the balls, ...
+	/// Minimum gain of a step: (step + r' - r) / step, for the radii r before and r' after it.
 	double minGain;
-	/// ... and end in a ball no smaller than this, in diagonals. Where the balls hardly shrink, half the radius of
-	/// the tip will do: the local thickness of a limb is not known between long triangles.
+	/// Minimum radius after a step, in diagonals. Where the balls hardly shrink, half the radius of
+	/// the given tip is enough: between long triangles a limb's local thickness is not known.
 	double minRadius;
-	/// Of both lengths; of the radius as the thickness says.
+	/// Factor of both lengths; of the radius without its lower bound.
 	const LocalScale& scale = sameEverywhere;
 };
 
-/// The direction in which a branch ends: from the node about one radius before the tip.
+/// The unit direction in which a branch ends: from the node about one radius before the tip.
 inline Point3d tipDirection(
 	const CurveSkeleton& skeleton, const std::vector<std::vector<int>>& neighbours, int tip)
 {
@@ -55,14 +55,15 @@ inline Point3d tipDirection(
 }
 
 /**
- * Extends each tip along its direction, in steps of at most a quarter of its ball, each recentred
- * sideways, as long as the balls reach further by it: (step + r' - r) / step >= minGain.
- * In a round end the ball shrinks as fast as the tip advances, and it stays; in a tapered or
- * pointed one it goes on to the smallest radius. It never enters balls that are already there. In a limb it may go any
- * distance, since the flow stops early between long triangles, but bends no more than 30 degrees in three radii. Where
- * the shape is wide it goes no farther than three radii: a sheet would lead it around its rim.
- * A tip outside stays where it is.
- * @pre radius holds the distances from the surface. @post the same.
+ * Extends each tip along its direction, in steps of at most a quarter of its radius, each recentred
+ * sideways, as long as the steps gain reach, see TipRule. In a round end the ball shrinks as fast
+ * as the tip advances, and the tip stays; in a tapered or pointed one it goes on to the smallest
+ * radius. It never enters balls that are already there. In a limb it may go any distance, since the
+ * flow stops early between long triangles, but turns by at most 30 degrees in three radii. Where
+ * the shape is wide it goes no farther than three radii: a sheet would lead it around its rim. A
+ * tip outside stays.
+ * @pre the radius of tips is their distance from the surface, that of others a lower bound of it.
+ * @post the same.
  */
 inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, const TipRule& rule)
 {
@@ -112,7 +113,7 @@ inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, c
 			skeleton.radius.push_back(reached);
 			skeleton.edges.push_back({tip, next});
 			balls.addNew();
-			// The branch may bend, but turns slowly: a quarter of the way in each step.
+			// The branch may bend, but slowly: each step has a weight of a quarter.
 			direction = direction * 0.75 + (y - x) * (0.25 / s);
 			direction /= direction.Norm();
 			if (direction * before < std::cos(farthestTurn))

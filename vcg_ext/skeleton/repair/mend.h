@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Small defects of a surface mended where they are; the rest keeps its vertices to the last bit.
+/// @brief Mends small defects of a surface locally; the rest keeps its vertices, bit for bit.
 
 #ifndef VCG_MCF_MEND_H
 #define VCG_MCF_MEND_H
@@ -36,7 +36,7 @@ namespace vcg::tri::mcf {
 /// What mend() has done.
 struct MendReport
 {
-	int facesDropped = 0;    ///< degenerate, not finite, copies, or two back to back
+	int facesDropped = 0;    ///< degenerate, not finite, copies, back to back, or cut around holes
 	int verticesMerged = 0;  ///< that coincided, or nearly so along a border
 	int junctionsClosed = 0; ///< vertices on the edge of another face
 	int edgesParted = 0;     ///< with more than two faces
@@ -55,10 +55,10 @@ struct MendReport
 	}
 };
 
-/// A surface mended as far as that goes.
+/// A surface mended as far as possible.
 struct MendedSurface
 {
-	/// Those of the input, in their order and to the last bit; then the new ones.
+	/// Those of the input, in their order, bit for bit, but 0 where not finite; then the new ones.
 	std::vector<Point3d> points;
 	std::vector<Triangle> triangles;
 	/// For each input point the one that stands for it: itself, unless it was merged.
@@ -70,7 +70,7 @@ struct MendedSurface
 
 namespace detail {
 
-/// Removes pairs of faces with the same corners that are turned against each other: they enclose nothing.
+/// Removes pairs of faces with the same corners and opposite orientation: they enclose nothing.
 inline int removeBackToBack(std::vector<Triangle>& triangles)
 {
 	struct Known
@@ -105,7 +105,7 @@ inline int removeBackToBack(std::vector<Triangle>& triangles)
 	return dropped;
 }
 
-/// Loops around the holes of a coherently oriented surface.
+/// The number of holes of a coherently oriented surface, see holeLoops().
 inline int holesOf(const std::vector<Point3d>& points, const std::vector<Triangle>& triangles,
 	const Progress& progress)
 {
@@ -114,8 +114,9 @@ inline int holesOf(const std::vector<Point3d>& points, const std::vector<Triangl
 }
 
 /**
- * Takes away the faces around small holes that cannot be filled, such as flaps that lie back on the surface,
- * so that what is left may be. @return how many.
+ * Removes the faces around small holes that could not be filled, such as flaps that lie back on
+ * the surface, so that the larger holes may be; none if they are too much of the area.
+ * @return how many.
  */
 inline int cutAroundHoles(
 	const std::vector<Point3d>& points, std::vector<Triangle>& triangles, const Progress& progress)
@@ -146,7 +147,8 @@ inline int cutAroundHoles(
 	return count;
 }
 
-/// Drops open pieces that lie inside the closed ones: walls across the solid, of which no filling makes a body.
+/// Drops open pieces that lie mostly inside the closed ones: walls across the solid, of which no
+/// filling makes a body. @return how many.
 inline int dropInnerWalls(
 	const std::vector<Point3d>& points, std::vector<Triangle>& triangles, const Progress& progress)
 {
@@ -197,14 +199,17 @@ inline int dropInnerWalls(
 } // namespace detail
 
 /**
- * Mends small defects, in this order: faces that are degenerate, not finite, or there twice; vertices that
- * coincide; seams (see closeSeams()); edges and vertices where the surface is no two-manifold (see
- * partSurface()); orientation; torn limbs (see bridgeGaps()) and specks; small holes (see fillHoles()); cuts by
- * planes (see capCuts()); open walls inside what is closed by then.
+ * Mends small defects, in this order: faces that are degenerate, not finite, or there twice;
+ * vertices that coincide; seams (see closeSeams()); orientation; edges and vertices where the
+ * surface is not two-manifold (see partSurface()); specks and torn limbs (see bridgeGaps()); small
+ * holes (see fillHoles()); cuts by planes (see capCuts()); faces around small holes that are left;
+ * open walls inside closed pieces; last, tiny holes, even if their filling folds.
  *
- * A surface that has none of these defects stays as it is. What cannot be mended is left, with `closed` false.
+ * A surface without these defects is returned unchanged. What cannot be mended is left, with
+ * `closed` false.
  * @param points    mesh units. @param triangles corners as indices into `points`.
- * @throws Cancelled. Complexity: about O(V + F), and of the holes.
+ * @param limits    which holes are filled.
+ * @throws Cancelled. Complexity: about O(V + F), and that of the functions above.
  */
 inline MendedSurface mend(const std::vector<Point3d>& points,
 	const std::vector<Triangle>& triangles, const HoleLimits& limits = HoleLimits(),
@@ -270,7 +275,7 @@ inline MendedSurface mend(const std::vector<Point3d>& points,
 			sortedSoupEdges(mended.points.size(), faces, progress.cancelOnly()),
 			progress.cancelOnly());
 	};
-	// First over the edges with two faces only: how the others are parted depends on it.
+	// First over the edges with two faces only: the pairing at the others depends on it.
 	const int turnedFirst = turn();
 	const PartedSurface parted =
 		partSurface(mended.points, faces, partedFrom, true, progress.part(0.4, 0.5));
@@ -283,7 +288,7 @@ inline MendedSurface mend(const std::vector<Point3d>& points,
 		return mended;
 	std::vector<int> partner =
 		pairedHalfEdges(mended.points, faces, nullptr, progress.part(0.5, 0.55));
-	// The end of a limb may be no larger than a speck, but it is none where it belongs to a stump.
+	// A torn-off limb may be as small as a speck: it stays until bridgeGaps() has tried to join it.
 	Specks specks = specksOf(mended.points, faces, partner);
 	spareTornLimbs(mended.points, faces, partner, specks);
 	report.piecesDropped = dropSpecks(faces, partner, specks);

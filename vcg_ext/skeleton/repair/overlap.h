@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief How much of the volume in a closed surface is enclosed more than once, or turned inside out.
+/// @brief The volume that a closed surface encloses more than once, or inside out.
 
 #ifndef VCG_MCF_OVERLAP_H
 #define VCG_MCF_OVERLAP_H
@@ -20,14 +20,14 @@
 
 namespace vcg::tri::mcf {
 
-/// Volumes by winding number, mesh units.
+/// Volumes by winding number, mesh units cubed.
 struct WindingVolumes
 {
 	double once = 0;     ///< where it is at least 1
 	double repeated = 0; ///< where it is at least 2
 	double negative = 0; ///< where it is below 0
 
-	/// The part of the volume that is enclosed in a wrong way.
+	/// (repeated + negative) / (once + negative), in [0, 1]; 0 if nothing is enclosed.
 	double wrongPart() const
 	{
 		const double all = once + negative;
@@ -36,10 +36,10 @@ struct WindingVolumes
 };
 
 /**
- * Measures the winding number of a closed, oriented surface along parallel rays in the middles of the
- * cells of a square grid: exact along each.
- * @param across cells along each side of the bounding box.
- * @throws Cancelled. Complexity: O(F + crossings log of those on one ray).
+ * Integrates the winding number of a closed, oriented surface along rays parallel to z, one for
+ * each cell of a grid over the bounding box in x and y: exactly along each ray.
+ * @param across  cells along either side of the grid.
+ * @throws Cancelled. Complexity: O(F + n log n) for n pairs of a face and a ray through its box.
  */
 inline WindingVolumes windingVolumes(const std::vector<Point3d>& points,
 	const std::vector<Triangle>& triangles, int across = 128, const Progress& progress = Progress())
@@ -53,7 +53,7 @@ inline WindingVolumes windingVolumes(const std::vector<Point3d>& points,
 	const double dx = (box.max[0] - box.min[0]) / across, dy = (box.max[1] - box.min[1]) / across;
 	if (triangles.empty() || !(dx > 0) || !(dy > 0))
 		return volumes;
-	// Rays do not pass through the places, such as the middle, where shapes tend to have vertices and edges.
+	// Rays avoid the middle and the sides of cells, where shapes tend to have vertices and edges.
 	constexpr double offset = 0.4637;
 	std::vector<std::vector<std::pair<double, int>>> crossings(size_t(across) * size_t(across));
 	detail::reportedLoop(int(triangles.size()), progress.part(0, 0.8), what, [&](int f) {
@@ -75,7 +75,7 @@ inline WindingVolumes windingVolumes(const std::vector<Point3d>& points,
 		for (int i = first(std::min({a[0], b[0], c[0]}), box.min[0], dx); i <= x1; ++i)
 			for (int j = y0; j <= y1; ++j) {
 				const double x = box.min[0] + (i + offset) * dx, y = box.min[1] + (j + offset) * dy;
-				// Two triangles decide alike on which side of their common edge the ray is.
+				// The same for both triangles at an edge: no ray slips through or counts twice.
 				const auto isLeft = [&](int v, int w) {
 					const Point3d &p = points[size_t(std::min(v, w))],
 								  &q = points[size_t(std::max(v, w))];

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Surfaces parted where more than two faces meet at an edge, or separate fans of faces at a vertex.
+/// @brief Parts a surface where an edge has more than two faces or a vertex several fans of faces.
 
 #ifndef VCG_MCF_PART_SURFACE_H
 #define VCG_MCF_PART_SURFACE_H
@@ -25,7 +25,7 @@ namespace vcg::tri::mcf {
 /// What partSurface() has done.
 struct PartedSurface
 {
-	/// For each half-edge 3 f + k the one on the other side of the edge; -1: a border.
+	/// For each half-edge 3 f + k, from corner k of face f to the next, its twin; -1: a border.
 	std::vector<int> partner;
 	int edges = 0;    ///< with more than two faces
 	int vertices = 0; ///< that became several
@@ -33,7 +33,7 @@ struct PartedSurface
 
 namespace detail {
 
-/// Joins corners into fans, over the edges that have two faces now.
+/// The fans of faces around vertices: sets of corners 3 f + k, joined over the paired half-edges.
 class Fans
 {
 public:
@@ -50,6 +50,7 @@ public:
 		}
 	}
 
+	/// The corner that stands for the fan of a corner; not always the lowest.
 	int find(int corner) const { return fans.find(corner); }
 
 	static int next(int h) { return h % 3 == 2 ? h - 2 : h + 1; }
@@ -61,7 +62,8 @@ private:
 	int vertex(int h) const { return triangles[size_t(h) / 3][size_t(h) % 3]; }
 };
 
-/// Pairs the faces at each edge: two by two, those first that continue each other best.
+/// The partner of each half-edge; -1: none. Of more than two faces at an edge, those that continue
+/// each other best are paired first. @param crowdedEdges  gets the number of such edges, or null.
 inline std::vector<int> pairedHalfEdges(const std::vector<Point3d>& points,
 	const std::vector<Triangle>& triangles, int* crowdedEdges, const Progress& progress)
 {
@@ -87,7 +89,7 @@ inline std::vector<int> pairedHalfEdges(const std::vector<Point3d>& points,
 			++crowded;
 			const Point3d& origin = points[size_t(low)];
 			const Point3d axis = points[size_t(begin->high)] - origin;
-			std::vector<Point3d> away; // from the edge, within each face
+			std::vector<Point3d> away; // unit vectors into each face, square to the edge
 			for (const SoupEdge* e = begin; e != end; ++e) {
 				const Triangle& t = triangles[e->face];
 				const int apex = t[0] + t[1] + t[2] - low - begin->high;
@@ -96,10 +98,9 @@ inline std::vector<int> pairedHalfEdges(const std::vector<Point3d>& points,
 					d -= axis * ((d * axis) / axis.SquaredNorm());
 				away.push_back(d.Norm() > 0 ? d / d.Norm() : d);
 			}
-			// Faces turned alike before those turned against each other; straight on before round a corner;
-			// of equal ones those with the solid in the narrower angle between them, which parts bodies
-			// that touch.
-			constexpr double alike = 1e6;
+			// Pairs of consistent orientation come first, then those with the flatter angle, then
+			// those with the solid in the angle below 180 degrees, which parts bodies that touch.
+			constexpr double alike = 1e6; // cosines are compared to 1 / alike
 			std::vector<std::tuple<int, long, int, int, int>> pairs;
 			for (int i = 0; i < count; ++i)
 				for (int j = i + 1; j < count; ++j) {
@@ -126,12 +127,14 @@ inline std::vector<int> pairedHalfEdges(const std::vector<Point3d>& points,
 } // namespace detail
 
 /**
- * Parts a surface so that each edge has at most two faces and each vertex one fan of faces: new vertices at the
- * places of the old ones. The faces at an edge are paired by which continues which best.
- * @param keepOpenFans  fans with borders at a vertex stay together: a hole between them is still to be filled.
- * @param points    get new ones at their end. @param triangles are changed.
- * @param partedFrom gets, for each new point, the one that it was.
- * @throws Cancelled. Complexity: about O(V + F).
+ * Parts a surface where an edge has more than two faces or a vertex several fans of faces: by
+ * copies of vertices, and by new ones in the middle of edges whose pairs of faces share both ends.
+ * At an edge, the faces that continue each other best are paired.
+ * @param points    mesh units; get new ones at their end. @param triangles are changed.
+ * @param partedFrom gets, for each new point, the one that it copies; -1 in the middle of an edge.
+ * @param keepOpenFans  fans with borders at a vertex stay together, since the hole between them is
+ *                  still to be filled.
+ * @throws Cancelled. Complexity: about O(V + F), and O(n^2 log n) for each edge with n > 2 faces.
  */
 inline PartedSurface partSurface(std::vector<Point3d>& points, std::vector<Triangle>& triangles,
 	std::vector<int>& partedFrom, bool keepOpenFans, const Progress& progress = Progress())
@@ -145,11 +148,11 @@ inline PartedSurface partSurface(std::vector<Point3d>& points, std::vector<Trian
 		if (round == 0)
 			parted.edges = crowded;
 		const detail::Fans fans(triangles, parted.partner);
-		std::vector<char> isOpen(parted.partner.size(), 0); // of fans, by their first corner
+		std::vector<char> isOpen(parted.partner.size(), 0); // of fans, see Fans::find()
 		for (int h = 0; h < int(parted.partner.size()); ++h)
 			if (parted.partner[size_t(h)] < 0)
 				isOpen[size_t(fans.find(h))] = isOpen[size_t(fans.find(detail::Fans::next(h)))] = 1;
-		// The fan that a vertex keeps: its first one, or all open ones together.
+		// A vertex keeps its first fan; with keepOpenFans, if that is open, all open ones.
 		const size_t before = points.size();
 		std::vector<int> owner(before, -1);
 		std::vector<int> vertexOfFan(parted.partner.size(), -1);
@@ -178,7 +181,7 @@ inline PartedSurface partSurface(std::vector<Point3d>& points, std::vector<Trian
 		if (!crowded)
 			return parted;
 
-		// Two pairs of faces may still share both ends of their edge: all but one get a vertex in its middle.
+		// Of pairs that still share both ends of an edge, all but one get a vertex in its middle.
 		const detail::SoupEdges edges =
 			detail::sortedSoupEdges(points.size(), triangles, part.part(0.5, 0.9));
 		std::vector<std::array<int, 2>> toCut;

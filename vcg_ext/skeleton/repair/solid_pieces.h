@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Which pieces of a surface get a skeleton: neither cavities nor what is too small beside the largest.
+/// @brief Leaves out the pieces of a surface that get no skeleton: cavities, and the smallest ones.
 
 #ifndef VCG_MCF_SOLID_PIECES_H
 #define VCG_MCF_SOLID_PIECES_H
@@ -32,10 +32,10 @@
 
 namespace vcg::tri::mcf {
 
-/// What becomes of cavities, closed pieces inside a body and turned against it.
+/// What becomes of cavities: closed pieces inside a body, oriented against it.
 enum class Cavities {
-	Kept,     ///< they stay as bodies of their own
-	Reported, ///< the same, and a note says so
+	Kept,     ///< they are not looked for, and stay as bodies
+	Reported, ///< they stay as bodies, and a note says so
 	LeftOut
 };
 
@@ -44,10 +44,10 @@ struct LeftOutPieces
 {
 	int small = 0;
 	int cavities = 0;
-	/// Those that stay as bodies of their own.
+	/// Cavities that were found and stay as bodies.
 	int cavitiesKept = 0;
-	/// The whole surface with its cavities turned inward, the boundary of the paper's solid O (Sec. 4); null where
-	/// there is none.
+	/// The whole surface with its cavities turned inward, the boundary of the paper's solid O
+	/// (Sec. 4); null if no cavity was found.
 	std::shared_ptr<const SurfaceMesh> hollow;
 
 	bool any() const { return small > 0 || cavities > 0; }
@@ -76,7 +76,7 @@ struct LeftOutPieces
 
 namespace detail {
 
-/// The connected pieces of a closed surface; the volume of one that faces inward is negative.
+/// The connected components of a closed surface; the volume of one that faces inward is negative.
 struct ClosedPieces
 {
 	std::vector<int> ofVertex;
@@ -114,11 +114,12 @@ struct ClosedPieces
 	size_t count() const { return faces.size(); }
 };
 
-/// For each piece whether it is a cavity: turned against the smallest piece around it, which is a solid.
+/// For each piece whether it is a cavity: oriented against the smallest piece around it, which is
+/// not one. @param turned  of each piece, see CheckedSurface::turned.
 inline std::vector<char> cavitiesAmong(const SurfaceMesh& mesh, const ClosedPieces& pieces,
 	const std::vector<char>& turned, const Progress& progress)
 {
-	constexpr size_t samples = 500; // vertices of a piece that all have to be inside
+	constexpr size_t samples = 500; // up to twice as many vertices of a piece must all be inside
 	std::vector<int> bySize(pieces.count());
 	std::iota(bySize.begin(), bySize.end(), 0);
 	std::stable_sort(bySize.begin(), bySize.end(),
@@ -164,13 +165,14 @@ inline std::vector<char> cavitiesAmong(const SurfaceMesh& mesh, const ClosedPiec
 } // namespace detail
 
 /**
- * The part of a skeleton that lies outside a solid: of the length of its curves, or of the nodes of what has none.
+ * The fraction of a skeleton that lies outside a solid: of its length, or of its nodes where it has
+ * no edges.
  *
- * A point is inside where the surface winds about it at least once: in a cavity the windings of the body and of
- * the cavity cancel out, in a body inside a cavity that body's own is left.
+ * A point is inside where the winding number of the boundary is at least 1/2. In a cavity those of
+ * the body and of the cavity cancel out; in a body inside the cavity its own is left.
  * @param boundary  closed, cavities turned inward, see LeftOutPieces::hollow.
- * @return in [0, 1]; 0 for an empty skeleton. Complexity: O(F log F), about O(log F) for each 0.1 % of the diagonal.
- * @throws Cancelled
+ * @return in [0, 1]; 0 for an empty skeleton. @throws Cancelled
+ * Complexity: O(F log F), and about O(log F) for each 0.1 % of the diagonal along the skeleton.
  */
 inline double partOutside(const CurveSkeleton& skeleton, const SurfaceMesh& boundary,
 	const Progress& progress = Progress())
@@ -195,7 +197,8 @@ inline double partOutside(const CurveSkeleton& skeleton, const SurfaceMesh& boun
 	return all > 0 ? outside / all : 0;
 }
 
-/// A surface with some of its pieces turned inward. @param isTurned of each piece, see connectedComponents().
+/// A copy of a surface with some pieces turned over. @param piece  of each vertex, see
+/// connectedComponents(). @param isTurned  of each piece. @throws Cancelled
 inline SurfaceMesh withPiecesTurned(const SurfaceMesh& mesh, const std::vector<int>& piece,
 	const std::vector<char>& isTurned, const Cancellation& cancel = Cancellation())
 {
@@ -205,10 +208,10 @@ inline SurfaceMesh withPiecesTurned(const SurfaceMesh& mesh, const std::vector<i
 }
 
 /**
- * The surface of a solid with its cavities turned inward, so that what asks on which side of it a point is takes
- * them as outside.
+ * The surface of a solid with its cavities turned inward, so that points in them are outside of it.
+ * @param turned  see CheckedSurface::turned; if empty there are no cavities.
  * @param count  becomes the number of cavities.
- * @return nothing where there is none. Complexity: as keepSolidPieces(). @throws Cancelled
+ * @return nothing if there is none. Complexity: as keepSolidPieces(). @throws Cancelled
  */
 inline std::optional<SurfaceMesh> withCavitiesInward(const SurfaceMesh& mesh,
 	const std::vector<char>& turned, int& count, const Progress& progress = Progress())
@@ -226,15 +229,16 @@ inline std::optional<SurfaceMesh> withCavitiesInward(const SurfaceMesh& mesh,
 }
 
 /**
- * Leaves out the pieces of a surface that get no skeleton; `vertexOfInput` is then -1 for their vertices.
+ * Leaves out the pieces of a surface that get no skeleton; `vertexOfInput` becomes -1 for their
+ * vertices, and `turned` empty.
  *
- * A cavity is a closed piece that lies wholly inside a body and was given turned against it: see
- * CheckedSurface::turned. What is inside a cavity is a body again.
+ * A cavity is a closed piece that lies wholly inside a body and was given oriented against it: see
+ * CheckedSurface::turned. A piece inside a cavity is a body again.
  *
- * @param minimum     volume, as a part of that of the largest piece, below which a piece is left out; 0: none is.
+ * @param minimum  volume below which a piece is left out, as a part of the largest's; 0: none is.
  * @param cavities  what becomes of them.
- * @throws Cancelled. Complexity: O(V + F); O(F log F) for each piece in the box of another one, where some are
- *         turned against others.
+ * @throws Cancelled. Complexity: O(V + F); where some of P pieces are turned against others also
+ *         O(P^2), and O(F log F) for each that has another one in its box.
  */
 inline LeftOutPieces keepSolidPieces(CheckedSurface& surface, double minimum, Cavities cavities,
 	const Progress& progress = Progress())

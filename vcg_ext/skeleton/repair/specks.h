@@ -26,22 +26,23 @@ namespace vcg::tri::mcf::detail {
 /// Pieces of a surface that are to be dropped.
 struct Specks
 {
-	std::vector<char> isOne; ///< for each face whether its piece is one
-	int count = 0;           ///< of pieces
+	std::vector<char> isOne; ///< for each face whether its piece is a speck
+	int count = 0;           ///< of specks
 };
 
-/// What floats about a surface, unless the surface is made of it: open pieces that are small in area, more
-/// readily if they are sheets, and most readily if they are flat, so that nothing that closes them makes a body;
-/// closed ones that are small in size, and those without volume.
+/// The specks of a surface, unless it is made of them. Open pieces are specks if they are small in
+/// area; sheets may be larger, and flat ones, of which no filling makes a body, larger still.
+/// Closed pieces are specks if they are small in size, or have no volume.
+/// @param partner  as PartedSurface has it. @pre there are triangles.
 inline Specks specksOf(const std::vector<Point3d>& points, const std::vector<Triangle>& triangles,
 	const std::vector<int>& partner)
 {
 	constexpr double speck = 0.002, sheet = 0.01, flatSheet = 0.1; // of the whole area
-	// |sum of area vectors| / area: half a sphere has 0.5, what is flat 1
+	// |sum of area vectors| / area: half a sphere has 0.5, a flat piece 1
 	constexpr double likeASheet = 0.25, flatAsSheet = 0.999;
-	constexpr double smallest = 0.01, small = 0.05; // diagonal, of that of the largest piece
-	constexpr double thin = 1e-4; // volume, of that of the largest piece, of what is small
-	// Of the whole area, all of them: beyond, they are the surface.
+	constexpr double smallest = 0.01, small = 0.05; // of the largest piece's diagonal
+	constexpr double thin = 1e-4; // of the largest volume: a small piece with less is a speck
+	// All specks, and all flat sheets, of the whole area: if they are more, they are the surface.
 	constexpr double maxOfAll = 0.05, maxFlatness = 0.2;
 	constexpr double flat = 1e-10; // volume over area^1.5
 	const std::vector<int> piece = pieceOfFaces(partner);
@@ -81,7 +82,7 @@ inline Specks specksOf(const std::vector<Point3d>& points, const std::vector<Tri
 		return p.box.Diag() <= smallest * largest
 			|| (p.box.Diag() <= small * largest && std::abs(p.volume) <= thin * fullest);
 	};
-	// Smaller ones may be what is left of the surface where faces are missing all over.
+	// Smaller ones, see isSpeck(), may be what is left of a surface with faces missing all over.
 	const auto isFlat = [&](const Piece& p) {
 		return p.open && p.area > sheet * whole && p.area <= flatSheet * whole
 			&& p.normal.Norm() > flatAsSheet * p.area;
@@ -107,7 +108,7 @@ inline Specks specksOf(const std::vector<Point3d>& points, const std::vector<Tri
 	return found;
 }
 
-/// Takes limbs that were torn off out of the specks.
+/// Unmarks the specks that are torn-off limbs, see isTornLimb().
 inline void spareTornLimbs(const std::vector<Point3d>& points,
 	const std::vector<Triangle>& triangles, const std::vector<int>& partner, Specks& specks)
 {
@@ -139,7 +140,7 @@ inline void spareTornLimbs(const std::vector<Point3d>& points,
 	}
 }
 
-/// Drops specks. @param partner  of the half-edges; becomes that of those that stay. @return how many pieces.
+/// Removes specks. @param partner  of the half-edges, is updated. @return how many specks.
 inline int dropSpecks(
 	std::vector<Triangle>& triangles, std::vector<int>& partner, const Specks& specks)
 {

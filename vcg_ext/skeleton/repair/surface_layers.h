@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Where a surface is there more than once: scans that overlap, walls between bodies that touch.
+/// @brief Weights that count the layers of an open surface as one, as where scans overlap.
 
 #ifndef VCG_MCF_SURFACE_LAYERS_H
 #define VCG_MCF_SURFACE_LAYERS_H
@@ -23,11 +23,12 @@
 namespace vcg::tri::mcf {
 
 /**
- * How much triangles count in a winding number that takes what several layers stand for as one surface: one over the
- * layers that face the same way, with none between that faces the other way, averaged over three points of each.
- * @param open   for each triangle of `tree` whether it is of a piece with borders: closed ones count as they are.
- * @param reach  layers are no farther apart, mesh units.
- * @return empty if no triangle is one of several layers.
+ * Weights of triangles for a winding number that counts several layers as one surface: 1 / n where
+ * n layers face the same way, with none between them that faces the other way; the mean over three
+ * points of each triangle.
+ * @param open   for each triangle of `tree` whether its piece has a border; the others count as 1.
+ * @param reach  largest distance of a layer from the triangle, mesh units.
+ * @return empty if no triangle has other layers.
  * @throws Cancelled. Complexity: about O(F log F).
  */
 inline std::vector<double> layerWeights(const TriangleTree& tree, const std::vector<char>& open,
@@ -55,7 +56,7 @@ inline std::vector<double> layerWeights(const TriangleTree& tree, const std::vec
 							if (g != f && open[size_t(g)])
 								crossings.emplace_back(2 * t - 1, alongNormal);
 						});
-					double before = 2, after = 2; // the nearest that face the other way
+					double before = 2, after = 2; // nearest facing the other way; in reaches
 					for (const auto& [t, along] : crossings)
 						if (!along)
 							(t < 0 ? before : after) =

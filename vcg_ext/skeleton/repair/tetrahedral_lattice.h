@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief A sparse body-centred cubic lattice of tetrahedra, of which only the nodes in use exist.
+/// @brief A sparse body-centred cubic lattice of tetrahedra: only the nodes in use are stored.
 
 #ifndef VCG_MCF_TETRAHEDRAL_LATTICE_H
 #define VCG_MCF_TETRAHEDRAL_LATTICE_H
@@ -16,9 +16,9 @@
 namespace vcg::tri::mcf {
 
 /**
- * The nodes of a cubic lattice and the centres of its cubes. Each node has 14 neighbours: 6 at the spacing a
- * along the axes, 8 at sqrt(3) / 2 a along the diagonals of the cubes. The tetrahedra, all alike, have two
- * opposite edges along axes; each ball of the radius sqrt(5) / 4 a holds a node.
+ * The nodes of a cubic lattice and the centres of its cubes. Each node has 14 neighbours: 6 at the
+ * spacing a along the axes, 8 at sqrt(3) / 2 a along the diagonals of the cubes. The tetrahedra are
+ * congruent, with two opposite edges along axes; each ball of radius sqrt(5) / 4 a contains a node.
  *
  * Coordinates are integers in units of a / 2: all even, or all odd.
  */
@@ -26,7 +26,7 @@ class TetrahedralLattice
 {
 public:
 	using Place = std::array<int, 3>;
-	/// Directions to the neighbours: the first 7 are the opposites of the last 7, in the same order.
+	/// Directions to the neighbours; d + 7 is opposite to d, for d < 7.
 	static constexpr int directions = 14, forward = 7;
 
 	/// @param origin of the coordinates, and @param spacing a, mesh units.
@@ -93,7 +93,7 @@ public:
 	}
 
 	/**
-	 * Makes all nodes of the tetrahedra around an edge from a node to its neighbour.
+	 * Adds all nodes of the tetrahedra around the edge from a node to its neighbour.
 	 * Complexity: O(1): six nodes around a diagonal, four around an edge along an axis.
 	 */
 	void completeAround(int node, int direction)
@@ -120,9 +120,9 @@ public:
 		}
 	}
 
-	/// Calls visit(tetrahedron) for those around the three edges that go forward along the axes from an even
-	/// node: each tetrahedron has one such edge, and an odd one. Its four nodes a, b, c, d, with
-	/// (b - a) . (c - a) x (d - a) > 0, exist.
+	/// Calls visit({a, b, c, d}) for the tetrahedra around the three forward axis edges of an even
+	/// node, for none at an odd one: over all nodes, once for each tetrahedron whose nodes exist.
+	/// They are oriented so that (b - a) . (c - a) x (d - a) > 0.
 	template <class Visit>
 	void forEachTetrahedron(int node, const Visit& visit) const
 	{
@@ -173,7 +173,7 @@ private:
 			enter(node);
 	}
 
-	/// The direction to the i-th of the four nodes around the edge along axis k, counter-clockwise about it.
+	/// The direction to the i-th of the four nodes around an edge along axis k, counter-clockwise.
 	static int diagonal(int k, int i)
 	{
 		Place s;

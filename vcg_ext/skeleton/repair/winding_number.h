@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Generalized winding numbers of any oriented triangles (Jacobson et al. 2013), by a tree of dipoles
-/// (Barill et al. 2018).
+/// @brief Generalized winding numbers of any oriented triangles (Jacobson et al. 2013), by a tree
+/// of dipoles (Barill et al. 2018).
 
 #ifndef VCG_MCF_WINDING_NUMBER_H
 #define VCG_MCF_WINDING_NUMBER_H
@@ -25,8 +25,8 @@ namespace vcg::tri::mcf {
 namespace detail {
 
 /**
- * The solid angle of a triangle seen from q, in units of the full sphere: positive where its back, the side
- * that its normal points away from, is seen.
+ * The solid angle of a triangle seen from q, as a fraction of the full sphere: positive if q is
+ * behind the triangle, on the side that its normal points away from.
  * Source: van Oosterom and Strackee, "The solid angle of a plane triangle", 1983.
  */
 inline double windingOfTriangle(
@@ -44,21 +44,22 @@ inline double windingOfTriangle(
 } // namespace detail
 
 /**
- * The winding number field w of oriented triangles: how often they wrap around a point. Of a closed surface
- * with its normals outward it is 1 inside and 0 outside; where there are holes it is between, and smooth
- * off the triangles; across each triangle it jumps by 1.
+ * The winding number field w of oriented triangles: how often they wrap around a point. For a
+ * closed surface with outward normals, w is 1 inside and 0 outside. Near holes it lies in between.
+ * It is smooth off the triangles, and jumps by a triangle's weight (1 by default) across it.
  *
- *     w(q) = 1 / (4 pi) sum over the triangles of their solid angles, seen from q
+ *     w(q) = 1 / (4 pi) sum over the triangles of weight times solid angle, seen from q
  *
- * Triangles that are together farther away than three times their own extent count by their first two moments:
- * the sum of the area normals at their area's centroid, and how these vary about it.
- * Complexity: O(F log F) to build, about O(log F) for a point.
- * Source: Barill, Dickson, Schmidt, Levin, Jacobson, "Fast winding numbers for soups and clouds", 2018.
+ * The triangles of a tree node that is far from q, see `farness`, are approximated by their moments
+ * about the centroid of their area: the sum of the area normals, and the first moment of these.
+ * Complexity: O(F) to build, about O(log F) for a point.
+ * Source: Barill, Dickson, Schmidt, Levin, Jacobson, "Fast winding numbers for soups and clouds",
+ * 2018.
  */
 class WindingNumber
 {
 public:
-	/// @param tree kept by reference. @param weights how much each triangle counts; empty: 1.
+	/// @param tree kept by reference. @param weights of its triangles; empty: 1 each.
 	/// @throws Cancelled
 	explicit WindingNumber(const TriangleTree& tree, const Progress& progress = Progress(),
 		std::vector<double> weights = {}) :
@@ -71,7 +72,7 @@ public:
 		detail::reportedLoop(count, progress, what, [&](int i) { gather(size_t(count - 1 - i)); });
 	}
 
-	/// The winding number of a point, mesh units. On a triangle: the mean of both sides.
+	/// The winding number at a point, mesh units. On a triangle: that of a side, or in between.
 	double operator()(const Point3d& q) const
 	{
 		if (moments.empty())
@@ -109,7 +110,7 @@ public:
 		return sum;
 	}
 
-	/// By how much the field jumps across a triangle.
+	/// The jump of the field across a triangle.
 	double weight(int f) const { return weights.empty() ? 1 : weights[size_t(f)]; }
 
 private:
@@ -119,13 +120,13 @@ private:
 		Point3d centre = Point3d(0, 0, 0);
 		double area = 0;
 		Point3d normal = Point3d(0, 0, 0); ///< sum of area normals
-		/// Row i: sum over the triangles of area normal's i-th coordinate times (centroid - centre).
+		/// Row i: sum over the triangles of (area normal)_i (centroid - centre).
 		std::array<Point3d, 3> varying = {Point3d(0, 0, 0), Point3d(0, 0, 0), Point3d(0, 0, 0)};
-		double trace = 0;
-		double squaredReach = 0; ///< beyond, the moments stand for the triangles
+		double trace = 0;        ///< of `varying`
+		double squaredReach = 0; ///< beyond, the moments replace the triangles
 	};
 
-	static constexpr double farness = 3; ///< in extents
+	static constexpr double farness = 3; ///< in distances of the farthest box corner from `centre`
 
 	const TriangleTree& tree;
 	std::vector<double> weights;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief The boundary of the solid that oriented triangles mean: where their winding number is one half.
+/// @brief A closed surface around oriented triangles: where their winding number is one half.
 
 #ifndef VCG_MCF_WRAP_H
 #define VCG_MCF_WRAP_H
@@ -39,9 +39,10 @@ namespace detail {
 /**
  * Extracts the surface { w = 1/2 } from the tetrahedra of a lattice.
  *
- * Evaluated are the nodes near the triangles, where w jumps, and from there on all that have a tetrahedron in
- * common with a change of sign: across holes the surface is followed wherever it goes. All tetrahedra at
- * an edge with a change of sign are then complete, and the surface through them is closed and two-manifold.
+ * w is evaluated at the nodes near the triangles, where it jumps, and then, until there are no new
+ * ones, at those of all tetrahedra around edges where w - 1/2 changes its sign: so the surface is
+ * followed across holes. All tetrahedra around such edges are then complete, and the surface
+ * through them is closed and two-manifold.
  */
 class Wrapping
 {
@@ -91,7 +92,7 @@ private:
 
 	void addNodesNearTriangles(const Progress& progress)
 	{
-		// Both ends of an edge that crosses a triangle are nearer to it than the edge is long.
+		// The ends of an edge that crosses a triangle are no farther from it than the edge is long.
 		const double a = lattice.spacing();
 		std::vector<std::array<Point3d, 3>> pieces;
 		reportedLoop(tree.size(), progress, wrapping, [&](int i) {
@@ -149,7 +150,7 @@ private:
 		for (int from = 0, first = lattice.size(); from < lattice.size();) {
 			const int to = lattice.size();
 			value.resize(size_t(to));
-			// Of what the first round leaves nobody knows how much it is.
+			// How much is left after the first round is unknown.
 			const Progress part = from == 0 ? progress.part(0, 0.9) : progress.cancelOnly();
 			forEachBlock(to - from, part, wrapping, [&](int begin, int end) {
 				for (int i = from + begin; i < from + end; ++i)
@@ -169,10 +170,10 @@ private:
 		}
 	}
 
-	/// Where the surface meets an edge, as a part of it.
+	/// Where the surface meets the edge from `node` to `other`, in [0, 1].
 	double crossing(int node, int other) const
 	{
-		// Off the triangles w is smooth: along an edge it is a straight line with a jump at each triangle.
+		// Off the triangles w is smooth: between its jumps it is taken as linear along an edge.
 		std::vector<std::pair<double, double>> jumps;
 		tree.forEachCrossing(lattice.position(node), lattice.position(other),
 			[&](int f, double t, bool alongNormal) {
@@ -195,12 +196,12 @@ private:
 			t = next;
 			at = before + jump;
 		}
-		return start / (start - end); // a triangle's edge was missed, or met twice
+		return start / (start - end); // a crossing was missed or counted twice
 	}
 
 	void placeVertices(const Progress& progress)
 	{
-		constexpr double nearest = 0.03; // part of an edge: so no triangle is without area
+		constexpr double nearest = 0.03; // part of an edge: no triangle is degenerate
 		firstVertex.reserve(size_t(lattice.size()) + 1);
 		std::vector<std::pair<int, int>> edges;
 		reportedLoop(lattice.size(), progress.part(0, 0.2), wrapping, [&](int node) {
@@ -254,7 +255,7 @@ private:
 		surface.triangles.push_back({a, turned ? c : b, turned ? b : c});
 	}
 
-	/// The surface within a tetrahedron, its normal from inside to outside.
+	/// Adds the surface within a tetrahedron, its normal from inside to outside.
 	void cut(const std::array<int, 4>& corners)
 	{
 		int mask = 0;
@@ -290,18 +291,19 @@ private:
 } // namespace detail
 
 /**
- * The boundary of the solid { w > 1/2 }, w the winding number of oriented triangles: closed, two-manifold,
- * oriented outward, of any number of pieces. Its vertices lie on the triangles where these bound the solid, and
- * across holes on the surface { w = 1/2 }.
+ * The boundary of the solid { w > 1/2 }, w the winding number of oriented triangles: closed,
+ * two-manifold, oriented outward, of any number of pieces. Its vertices lie on the triangles where
+ * these bound the solid, to 3 % of a lattice edge, and across holes near { w = 1/2 }.
  *
- * What is thinner than about the spacing may be torn or missed; cavities are surfaces of their own.
+ * Parts thinner than about the spacing may be torn or missed. Cavities are separate pieces.
  *
- * @param tree      of the triangles, and @param winding their winding number.
+ * @param tree      of the triangles. @param winding  their winding number.
  * @param spacing   of the lattice, mesh units, > 0: about the edge length of the result.
- * @param maxNodes of the lattice.
- * @throws SolverError if more nodes were needed; Cancelled.
- * Complexity: O(A / spacing^2 log F) for the area A of the triangles.
- * Source: ours; marching tetrahedra after Doi and Koide, 1991, on the lattice of Labelle and Shewchuk, 2007.
+ * @param maxNodes  largest number of nodes of the lattice.
+ * @throws SolverError if more nodes are needed; Cancelled.
+ * Complexity: O((F + A / spacing^2) log F) for the area A of the triangles.
+ * Source: ours; marching tetrahedra after Doi and Koide, 1991, on the lattice of Labelle and
+ * Shewchuk, 2007.
  */
 inline WrappedSurface wrap(const TriangleTree& tree, const WindingNumber& winding, double spacing,
 	int maxNodes, const Progress& progress = Progress())

@@ -19,8 +19,8 @@ namespace vcg::tri::mcf {
 
 namespace detail {
 
-/// A triangle is thin if its smallest height is below this part of both its longest edge and the
-/// length that matters there.
+/// A triangle is thin if its smallest height is at most this part of both its longest edge and the
+/// given length.
 constexpr double thinness = 1e-3;
 
 inline bool isThin(const Point3d& a, const Point3d& b, const Point3d& c, double length)
@@ -43,8 +43,8 @@ int extremeEdge(const SurfaceMesh& mesh, int f, Less&& less)
 	return best;
 }
 
-/// Whether a flip of h, the longest edge of a thin triangle, makes things better: it shortens the
-/// edge, so that flips come to an end, or none of the two new triangles is thin.
+/// Whether flipping h, the longest edge of a thin triangle, is an improvement: the new edge is
+/// shorter, so that flips come to an end, or neither of the two new triangles is thin.
 inline bool flipCuresCap(const SurfaceMesh& mesh, int h, double length)
 {
 	const Point3d &a = mesh.position[mesh.origin(h)], &b = mesh.position[mesh.target(h)];
@@ -58,12 +58,12 @@ inline bool flipCuresCap(const SurfaceMesh& mesh, int h, double length)
 /**
  * Removes triangles whose height is below 1/1000 of their longest edge and of lengthAt(vertex):
  * needles by merging the ends of their shortest edge, caps by flipping their longest edge. They
- * have no normal to speak of and stop every walk over the surface. The surface moves by no more
- * than their heights and shortest edges, the topology stays.
+ * have no reliable normal and stop every walk over the surface. The surface moves by no more than
+ * their heights and shortest edges, the topology stays.
  *
  * @param mesh     changes in place; its numbering keeps holes.
- * @param lengthAt double(vertex): the length that matters there, mesh units.
- * @return how many thin triangles are left, where the topology or a fold allows no more.
+ * @param lengthAt double(vertex): the target length there, mesh units.
+ * @return how many thin triangles are left, which neither a merge nor a flip can remove.
  * @throws Cancelled
  * Complexity: O(F) if there are few of them.
  */

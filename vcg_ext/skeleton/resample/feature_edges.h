@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief The sharp edges of a surface, and how they live through changes of its connectivity.
+/// @brief The sharp edges of a surface, and their maintenance under splits, flips and collapses.
 
 #ifndef VCG_MCF_FEATURE_EDGES_H
 #define VCG_MCF_FEATURE_EDGES_H
@@ -30,7 +30,7 @@ enum class CreaseRole : char {
  * A mark on each sharp edge of a SurfaceMesh.
  *
  * A crease is a chain of edges with more than 60 degrees between the normals of their two faces. It
- * counts only if it goes on, turning by less than 45 degrees a vertex, for a few target lengths:
+ * counts only if it is a few target lengths long and turns by less than 45 degrees at each vertex:
  * noise makes many sharp edges but no long chains of them.
  */
 class CreaseEdges
@@ -41,8 +41,8 @@ public:
 
 	/**
 	 * Finds the creases of `surface`.
-	 * @param shortest length, mesh units, below which a chain through a vertex is no crease:
-	 *                 a function of the vertex.
+	 * @param shortest double(vertex): the length, mesh units, below which a chain through the
+	 *                 vertex is no crease.
 	 * @throws Cancelled
 	 * Complexity: O(F + sharp edges x edges in a shortest crease).
 	 */
@@ -98,7 +98,7 @@ public:
 		return role;
 	}
 
-	/// The other crease edge out of origin(h), for a vertex with exactly two; -1 if it has not.
+	/// The other crease edge out of origin(h) if that vertex has exactly two, else -1.
 	int continuation(const SurfaceMesh& surface, int h) const
 	{
 		int other = -1, count = 0;
@@ -140,7 +140,7 @@ public:
 		marks[tp] = bc;
 	}
 
-	/// To be called before mesh.collapse(h): an edge merged from two is a crease if one of them was.
+	/// To be called before mesh.collapse(h): an edge merged from two is a crease if either was.
 	void beforeCollapse(const SurfaceMesh& mesh, int h)
 	{
 		if (empty())
@@ -176,7 +176,7 @@ public:
 	}
 
 private:
-	/// One for each half-edge slot, alike for twins; empty if there are no creases.
+	/// One for each half-edge slot, the same for twins; empty if there are no creases.
 	std::vector<char> marks;
 
 	static constexpr double sharpCosine = 0.5;         // 60 degrees between the normals

@@ -25,8 +25,8 @@
 namespace vcg::tri::mcf::detail {
 
 /**
- * A surface on its way to an even mesh of a given edge length, pass by pass. From refine() on, each pass
- * leaves a mesh without holes in its numbering, as the next one needs it.
+ * Remeshes a surface to an even edge length, pass by pass: coarsen() first, then refine(), then any
+ * others. From refine() on, each pass leaves no holes in the numbering, as the next one needs it.
  */
 class IsotropicRemesher
 {
@@ -44,7 +44,7 @@ public:
 	IsotropicRemesher(const IsotropicRemesher&) = delete;
 	IsotropicRemesher& operator=(const IsotropicRemesher&) = delete;
 
-	/// Merges edges that are much shorter than the target, with vertices of the input only.
+	/// Merges edges that are much shorter than the target; the remaining vertices stay in place.
 	void coarsen(const Progress& progress)
 	{
 		coarsenInStages(
@@ -55,8 +55,8 @@ public:
 
 	/**
 	 * Splits the long edges of the coarsened input. Each of its triangles is subdivided within
-	 * itself, with Delaunay flips, or needles would be cut into countless smaller needles; and where
-	 * the triangle is one of the input it is known where its new vertices lie.
+	 * itself, with Delaunay flips, without which needles would be cut into countless smaller
+	 * needles. New vertices in a triangle of the input are known to lie on it.
 	 */
 	void refine(const Progress& progress)
 	{
@@ -86,8 +86,8 @@ public:
 					+ std::to_string(maxVertices / 1000)
 					+ " thousand vertices. Give a larger one, or do not resample.");
 			const int m = tracked.split(h);
-			// The halves, the new edges, and the two outer edges whose ids have changed, b c and d b:
-			// see SurfaceMesh::split().
+			// The halves, the new edges, and the two outer edges whose ids have changed, (b c) and
+			// (d b): see SurfaceMesh::split().
 			mesh.forEachOutgoing(m, [&](int spoke) { queue.push(spoke); });
 			queue.push(mesh.halfEdgeSlots() - 6 + 1);
 			queue.push(mesh.halfEdgeSlots() - 3 + 2);
@@ -182,8 +182,8 @@ public:
 
 	/**
 	 * Moves every vertex within its tangent plane to the centroid of its triangles, weighted by
-	 * area, then back onto the input; vertices of creases stay on them. What turned a face over is
-	 * undone. The projections run on all cores.
+	 * area, then back onto the input; vertices of creases stay on them. Moves that turn a face over
+	 * are undone. The projections run on all cores.
 	 */
 	void smoothAndProject(const Progress& progress)
 	{
@@ -249,7 +249,7 @@ private:
 	};
 
 	std::vector<int> suspects; ///< scratch of flipInsidePatches()
-	// Scratch of smoothAndProject(), kept: memory that is new in each round costs more than the sums.
+	// Scratch of smoothAndProject(), kept: new memory in each round costs more than the sums.
 	std::vector<Sum> sums;
 	std::vector<Point3d> old; ///< positions before the vertices moved
 

@@ -17,16 +17,16 @@ namespace vcg::tri::mcf::detail {
 /**
  * The edges longer than a limit, the longest first.
  *
- * They are kept in buckets of lengths a factor of 1.1 apart: putting one in and taking one out are
- * O(1). Splits and flips rename edges; whoever makes them pushes the edges with new names again,
- * and stale entries are passed over.
+ * They are kept in buckets of lengths (relative to the limit) a factor of 1.1 apart, so that push()
+ * and pop() are O(1). Splits and flips change the ids of edges: the caller pushes these edges
+ * again, and stale entries are skipped.
  */
 template <class LimitOf>
 class LongEdgeQueue
 {
 public:
-	/// @param limitOf double(half-edge): the greatest length that is not too long, mesh units; the same
-	///                for both half-edges of an edge.
+	/// @param limitOf double(half-edge): the greatest length that is not too long, mesh units; the
+	///                same for both half-edges of an edge.
 	LongEdgeQueue(const SurfaceMesh& mesh, LimitOf limitOf) : mesh(mesh), limitOf(limitOf) {}
 
 	bool isTooLong(int h) const
@@ -54,7 +54,7 @@ public:
 		return int(count);
 	}
 
-	/// Takes out one of the longest edges; -1 if there is none.
+	/// Removes and returns an edge of the bucket of the longest ones; -1 if none is too long.
 	int pop()
 	{
 		while (!buckets.empty()) {
@@ -65,7 +65,7 @@ public:
 			}
 			const int h = longest.back();
 			longest.pop_back();
-			// An id may have come to mean another edge, which was pushed by its own length.
+			// The id may denote another edge by now, which has an entry in its own bucket.
 			if (isTooLong(h) && bucketOf(h) + 1 == int(buckets.size()))
 				return h;
 		}

@@ -23,8 +23,8 @@ namespace vcg::tri::mcf {
 namespace detail {
 
 /**
- * One stage: merges origin(h) into target(h) wherever the edge is shorter than shortest(vertex) and
- * the shape and the topology allow it, in the order of the half-edges.
+ * One stage: merges origin(h) into target(h) wherever the edge is shorter than `fraction` of the
+ * smaller lengthAt() of its ends and shape and topology allow it, in the order of the half-edges.
  * @param allowed  bool(h): whether origin(h) may be merged into target(h).
  * @param collapse void(h): does it.
  */

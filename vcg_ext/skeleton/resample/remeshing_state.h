@@ -31,11 +31,11 @@ enum class Merge {
 };
 
 /**
- * A mesh on its way away from an input surface, and what ties it to the surface.
+ * A copy of an input surface that is remeshed, and its link to that surface.
  *
- * Every vertex knows a half-edge of the surface: its triangle is the one the vertex was projected
- * on last, where the next projection starts to walk; on a crease it is the crease edge itself.
- * Connectivity must change by the functions of this class only; positions may be set.
+ * Every vertex has a half-edge of the surface: its triangle is the one the vertex was projected on
+ * last, where the next projection starts to walk; of a vertex on a crease it is the crease edge
+ * itself. Connectivity must change by the functions of this class only; positions may be set.
  */
 class TrackedMesh
 {
@@ -44,9 +44,9 @@ public:
 	 * Starts as a copy of `surface`.
 	 * @param surface           may have holes in its numbering; must outlive this object.
 	 * @param componentOfVertex connected component of each vertex slot.
-	 * @param targetLength      of each component, mesh units: lengths that matter are parts of it.
-	 * @param localLength       of each vertex slot, at most that of its component, where lengths are not
-	 *                          the same everywhere; else empty.
+	 * @param targetLength      edge length of each component, in the unit of `surface`.
+	 * @param localLength       edge length at each vertex slot, at most that of its component;
+	 *                          empty if it is the same everywhere in a component.
 	 * @throws Cancelled
 	 */
 	TrackedMesh(const SurfaceMesh& surface, const std::vector<int>& componentOfVertex,
@@ -84,7 +84,7 @@ public:
 
 	const std::vector<int>& componentOfVertex() const { return component; }
 	double lengthAt(int v) const { return own.empty() ? length[component[v]] : own[v]; }
-	/// The target of an edge: the smaller one of its ends.
+	/// The target length of the edge of h: the smaller one of its two ends.
 	double lengthOf(int h) const
 	{
 		return own.empty() ? length[component[mesh.origin(h)]]
@@ -121,7 +121,7 @@ public:
 	void collapse(int h)
 	{
 		if (roleOf(mesh.origin(h)) == CreaseRole::Crease && !isCrease(h))
-			role[mesh.target(h)] = CreaseRole::Corner; // two creases meet from now on
+			role[mesh.target(h)] = CreaseRole::Corner; // two creases meet there
 		creases.beforeCollapse(mesh, h);
 		mesh.collapse(h);
 	}
@@ -156,7 +156,7 @@ public:
 		return m;
 	}
 
-	/// Moves v to the point of the surface next to `point`, or of the crease if v is on one.
+	/// Moves v to the point of the surface closest to `point`, or of its crease if it is on one.
 	void moveOntoSurface(int v, const Point3d& point)
 	{
 		if (roleOf(v) == CreaseRole::Crease) {
@@ -170,7 +170,7 @@ public:
 		measureLength(v);
 	}
 
-	/// From now on each triangle there is stands for a patch, of which splits make parts.
+	/// Makes each triangle a patch; splits then divide patches into parts.
 	/// @throws Cancelled
 	void startPatches(const Progress& progress)
 	{
@@ -188,7 +188,7 @@ public:
 		std::vector<char>().swap(isInputPatch);
 	}
 
-	/// Whether the two triangles at h are parts of one patch, so that a flip changes no shape.
+	/// Whether the two triangles at h are parts of one patch, so that a flip keeps the shape.
 	bool isInsidePatch(int h) const
 	{
 		return !patch.empty() && patch[h / 3] == patch[mesh.twin(h) / 3];
@@ -215,7 +215,7 @@ public:
 		mesh = mesh.renumbered(number.vertex, number.face, {}, progress.part(0.4, 1));
 	}
 
-	/// Closes the holes in the numbering, order kept, within the memory there is.
+	/// Closes the holes in the numbering in place, order kept.
 	void compact()
 	{
 		creases.beforeCompact(mesh);
@@ -227,8 +227,8 @@ public:
 		keepAlive(role, newVertex);
 	}
 
-	/// The mesh as it is now, without thin triangles, one component after the other. Only
-	/// componentOfVertex() can be asked afterwards.
+	/// Hands over the mesh without thin triangles, numbered one component after the other. Only
+	/// componentOfVertex() is valid afterwards.
 	/// @throws Cancelled
 	SurfaceMesh take(const Progress& progress)
 	{
@@ -255,12 +255,12 @@ private:
 	std::vector<int> component;        ///< of each vertex
 	std::vector<double> length;        ///< of each component
 	std::vector<double> surfaceLength; ///< target length at each vertex of `surface`; may be empty
-	std::vector<double> own;        ///< the target length at each vertex; empty if `length` tells
+	std::vector<double> own;        ///< target length of each vertex; empty if `length` holds alone
 	std::vector<int> track;         ///< of each vertex a half-edge of `surface`
 	std::vector<int> patch;         ///< of each face its patch; empty if there are none
 	std::vector<char> isInputPatch; ///< of each patch whether it is a triangle of `surface`
 
-	/// The target length where v is on the surface: linear within the triangle that it is tracked on.
+	/// Sets the target length of v: linear within the surface triangle that it is tracked on.
 	void measureLength(int v)
 	{
 		if (own.empty())
@@ -281,7 +281,7 @@ private:
 		own[v] = std::clamp(at[0] + y * (at[1] - at[0]) + z * (at[2] - at[0]), minimum, maximum);
 	}
 
-	/// What `ofVertex` says about each vertex that remains, in the order that there was.
+	/// Keeps the entries of the vertices that remain, in their order.
 	template <class T>
 	static void keepAlive(std::vector<T>& ofVertex, const std::vector<int>& newVertex)
 	{
@@ -292,7 +292,7 @@ private:
 		ofVertex.resize(alive);
 	}
 
-	/// The crease edge of the surface that the middle m of the crease edge (a b) is next to.
+	/// The crease edge of the surface that is closest to the middle m of the crease edge (a b).
 	int creaseOfMiddle(int a, int b, int m) const
 	{
 		// A corner's own half-edge may belong to another crease: start from the other end.
@@ -303,7 +303,7 @@ private:
 		return h;
 	}
 
-	/// A crease edge of the surface on the crease that joins two corners, by its direction at a.
+	/// A crease edge of the surface on the crease from corner a to corner b, by its direction at a.
 	int creaseBetween(int a, int b) const
 	{
 		const int corner = surface.origin(track[a]);
@@ -323,7 +323,7 @@ private:
 		return best;
 	}
 
-	/// The face of the surface that the middle m of the edge (a b) is next to.
+	/// The face of the surface that is closest to the middle m of the edge (a b).
 	int faceOfMiddle(int a, int b, int m) const
 	{
 		if (!patch.empty())

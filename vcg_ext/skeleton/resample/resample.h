@@ -31,9 +31,10 @@
 namespace vcg::tri::mcf {
 
 /**
- * How many vertices an even mesh of a surface needs whose edges are L long, L the smaller of the length of
- * the component and the field: V = integral dA / (L^2 sqrt(3) / 2).
- * @param field @see sizingField(); may be empty. Complexity: O(F) with a field.
+ * The number of vertices of an even mesh of a surface: V = int dA / (L^2 sqrt(3) / 2), where the
+ * edge length L is the smaller of the length of the component and the field.
+ * @param lengthOfComponent mesh units, > 0.
+ * @param field             see sizingField(); may be empty. Complexity: O(F) with a field.
  */
 inline double expectedVertices(const MeasuredSurface& surface,
 	const std::vector<double>& lengthOfComponent, const SizingField& field)
@@ -44,7 +45,7 @@ inline double expectedVertices(const MeasuredSurface& surface,
 		expected += surface.area(c) / (areaOfVertex * lengthOfComponent[c] * lengthOfComponent[c]);
 	if (field.empty())
 		return expected;
-	// What the field adds to that.
+	// The vertices that the field adds.
 	const SurfaceMesh& mesh = surface.mesh();
 	for (int f = 0; f < mesh.faceSlots(); ++f) {
 		if (!mesh.isFace(f))
@@ -77,10 +78,10 @@ inline SurfaceMesh resampleAll(const MeasuredSurface& surface,
 	if (!(expected <= maxVertices))
 		throw InvalidParameter("Parameter target_length is too small: the surface would need "
 			+ std::to_string(std::llround(expected / 1e6)) + " million vertices.");
-	// Needles are cut more often than their area tells, but not endlessly.
+	// Needles need more vertices than their area suggests; this bounds how many they may get.
 	const double limit =
 		std::max(maxOfExpected * expected, fewestAllowed) + surface.mesh().vertexCount();
-	// The input as the passes like it: neighbours near each other, no triangles without a normal.
+	// Prepares the input: neighbours near each other in memory, no triangles without a normal.
 	const char* const what = "Ordering the surface";
 	const auto onGrid = [&](int c, const Point3d& p) { return surface.frame(c).onGrid(p); };
 	std::optional<SurfaceMesh> turnedOver;
@@ -129,7 +130,8 @@ inline SurfaceMesh resampleAll(const MeasuredSurface& surface,
 	const Progress end = progress.cancelOnly();
 	SurfaceMesh result = remesher.take(end);
 	const std::vector<int>& componentOfResult = remesher.componentOfVertex();
-	// On a grid of its own: far from the origin the digits beyond are lost on the way out.
+	// Rounded to a grid of the result's own frame: in mesh units, far from the origin, finer digits
+	// would be lost.
 	const std::vector<PrincipalFrame> frameOfResult =
 		PrincipalFrame::ofPoints(result.position, componentOfResult, size_t(components), end);
 	detail::reportedLoop(result.vertexSlots(), end, what, [&](int v) {
@@ -140,7 +142,7 @@ inline SurfaceMesh resampleAll(const MeasuredSurface& surface,
 	return result;
 }
 
-/// resample() where components rest: the others are resampled as a surface of their own.
+/// resample() where some components rest: the others are resampled as a separate surface.
 inline SurfaceMesh resampleMoving(const MeasuredSurface& surface,
 	const std::vector<double>& targetLengthOfComponent, const SizingField& field,
 	const std::vector<char>& rests, int iterations, const Progress& progress)
@@ -183,7 +185,7 @@ inline SurfaceMesh resampleMoving(const MeasuredSurface& surface,
 			MeasuredSurface(others, begin), length, fieldOfMoving, iterations, progress);
 		componentOfMoving = connectedComponents(moving, nullptr, end);
 	}
-	// Each component's vertices follow those of the one before it, so that their order stays.
+	// Vertices are numbered component by component, so that the order of the components stays.
 	const ComponentVertices ofMoving(componentOfMoving, int(length.size()), end);
 	std::vector<std::vector<int>> ofResting(rests.size());
 	reportedLoop(mesh.vertexSlots(), end, what, [&](int v) {
@@ -219,32 +221,32 @@ inline SurfaceMesh resampleMoving(const MeasuredSurface& surface,
  *
  * Each round splits edges longer than 4/3 L, collapses those shorter than 4/5 L, flips edges so
  * that valences approach six, and moves vertices within the surface to the centroid of their
- * triangles. Delaunay flips and one more smoothing end it. Vertices lie on the triangles of the input, those of
- * creases (sharp edges over 60 degrees in long chains) on the creases. A surface much denser than L
- * is coarsened first.
+ * triangles. Delaunay flips and one more smoothing end it. Vertices lie on the triangles of the
+ * input, those of creases (sharp edges over 60 degrees in long chains) on the creases. A surface
+ * much denser than L is coarsened first.
  *
- * It is done in the shape's own coordinates, see PrincipalFrame, with places rounded as in single
- * precision, and in an order of the vertices that follows from their places: a copy of the shape that
- * is turned, moved, scaled or renumbered gives the same mesh.
+ * This is done in the PrincipalFrame of each component, with positions rounded as in single
+ * precision, and in an order of the vertices that depends on their positions only: a copy of the
+ * shape that is turned, moved, scaled or renumbered gives the same mesh.
  *
- * Components that rest, see componentsAtRest(), stay as they are.
+ * Components that rest, see componentsAtRest(), stay unchanged.
  *
  * Genus, orientation, and the number and order of the components are those of the input.
  *
- * @param surface                 closed, oriented two-manifold.
+ * @param surface                 closed, oriented two-manifold; compact if there is a field.
  * @param targetLengthOfComponent L for each component in the order of connectedComponents(), mesh
  *                                units, > 0: see defaultTargetLength().
  * @param iterations              rounds, >= 0; 0 gives the input back, without holes in its
  *                                numbering. Five is plenty.
  * @param progress                window for reports; cancelling leaves nothing behind.
- * @param field                   where it is smaller than L it takes the place of L, see sizingField();
- *                                each edge goes by the smaller length of its ends. Empty: L everywhere.
+ * @param field                   replaces L where it is smaller, see sizingField(); an edge takes
+ *                                the smaller length of its two ends. Empty: L everywhere.
  * @return a compact mesh; most edges are between 4/5 L and 4/3 L.
- * @throws InvalidParameter if there is not one positive length for each component, or if so small
- *         a length would need more than 20 million vertices, or, on a surface that is narrower than the
- *         length, needs more than three million and four times what the area tells.
+ * @throws InvalidParameter if there is not one positive length for each component, if
+ *         expectedVertices() exceeds 20 million, or if a surface narrower than L needs three
+ *         million vertices, and four times expectedVertices(), more than the input has.
  * @throws Cancelled
- * Complexity: O(iterations (V' + F') + V + F), ' of the result.
+ * Complexity: O(iterations (V' + F') + V + F), where V', F' are of the result.
  * Source: Botsch and Kobbelt, "A remeshing approach to multiresolution modeling", SGP 2004, Sec. 4;
  * the projection by walking, the creases and the coarsening are ours.
  */

@@ -35,12 +35,13 @@ struct ResampledSurface
 {
 	SurfaceMesh mesh;
 	NoiseReport noise;
-	/// Whether to resolve what is thin would take too many vertices, see fieldOfResampling().
+	/// Whether following the local thickness would take too many vertices: see fieldOfResampling().
 	bool isTooThin = false;
 };
 
-/// The local thickness at each vertex of a surface, mesh units; infinite where the sizing field, see sizingField(), is
-/// not below the neutral length. Empty if it is that nowhere. @param poles of all vertices. @throws Cancelled.
+/// The local thickness at each vertex of a surface, mesh units; infinite where sizingField() is not
+/// below neutralLength of the diagonal, and empty if that is so everywhere.
+/// @param poles of all vertices. @throws Cancelled. Complexity: as sizingField().
 inline std::vector<double> localThickness(const MeasuredSurface& surface, const PoleSet& poles,
 	const Parameters& parameters, const Progress& progress = Progress())
 {
@@ -54,13 +55,15 @@ inline std::vector<double> localThickness(const MeasuredSurface& surface, const 
 	return thickness;
 }
 
-/// A mesh that follows the local thickness has at most this many vertices, or as many as its surface needs anyway,
-/// and so many for each of the input: a coarse mesh does not show how thin the shape is between its vertices.
+/// A mesh that follows the local thickness has at most maxVertices vertices, or as many as an even
+/// mesh needs anyway, and never more than maxVerticesOfVertex for each vertex of the input: a
+/// coarse mesh does not show how thin the shape is between its vertices.
 constexpr double maxVertices = 400000, maxVerticesOfVertex = 30;
 
 /**
- * Of what is thin, by its length, where the sizing field of a surface binds: the part that a raised field still
- * resolves, with edges up to 1.5 local thicknesses, four around a tube. Complexity: O(F).
+ * The part of the thin regions that a raised sizing field still resolves, with edges up to 1.5
+ * local thicknesses, four around a tube. Thin is where `field` is finite; regions count by their
+ * length, area / field. Complexity: O(F).
  */
 inline double resolvedPart(const SurfaceMesh& mesh, const SizingField& field,
 	const SizingField& raised, double relativeLength)
@@ -84,12 +87,14 @@ inline double resolvedPart(const SurfaceMesh& mesh, const SizingField& field,
 }
 
 /**
- * The sizing field to resample a surface with. Where its mesh would be too large, see maxVertices, edges may be up to
- * a local thickness long, and where that is not enough, the thinnest parts alone lose: see coarsenToCost(). None
- * where most of what is thin would not be resolved then, as with plates, which no number of vertices serves. It is
- * said what loses.
+ * The sizing field to resample a surface with. Where its mesh would be too large, see maxVertices,
+ * edges may be up to a local thickness long; where that is not enough, the thinnest parts are
+ * resolved less: see coarsenToCost(). No field where most of what is thin would not be resolved
+ * then, as with plates, which no number of vertices serves, nor where an even mesh alone exceeds
+ * maxVerticesOfVertex.
  * @param length of each component, see defaultTargetLength().
  * @param poles  of all vertices, where they are known already; null: they are computed.
+ * @param onNote receives what is resolved less; may be empty.
  * @throws Cancelled. Complexity: as medialPoles().
  */
 inline std::optional<SizingField> fieldOfResampling(const MeasuredSurface& surface,
@@ -147,7 +152,7 @@ inline std::optional<SizingField> fieldOfResampling(const MeasuredSurface& surfa
 	return field;
 }
 
-/// Says what was found of noise, and what is done about it.
+/// Notes which noise was found, and what is done about it.
 inline void tellNoise(const NoiseReport& noise, bool isSmoothed, const NoteCallback& onNote)
 {
 	const auto tell = [&](int rounds, const char* what, double level, const char* of) {
@@ -163,9 +168,9 @@ inline void tellNoise(const NoiseReport& noise, bool isSmoothed, const NoteCallb
 }
 
 /**
- * Smooths the noise of a surface where there is any, if parameters.denoise is set, and resamples it,
- * with the edge length of defaultTargetLength() or, with parameters.adaptive, less where the shape is thin,
- * see sizingField().
+ * Smooths the noise of a surface where there is any, if parameters.denoise is set, and resamples
+ * it, with the edge length of defaultTargetLength() or, with parameters.adaptive, less where the
+ * shape is thin, see sizingField().
  * @param mesh   closed two-manifold, compact.
  * @param given  see sharedAmong() for more than 50 components.
  * @param onNote receives what was found and done; may be empty.

@@ -20,9 +20,9 @@
 namespace vcg::tri::mcf {
 
 /**
- * How often the edges of each component have to be cut until none is longer than L, about: the vertices
- * that resample() may make for a while where triangles are narrower than L, so that the area does not
- * tell. @param length L of each component, mesh units, > 0. Complexity: O(F).
+ * About how many cuts bring all edges of each component down to L: the vertices that resample() may
+ * make for a while where triangles are narrower than L, which their area does not show.
+ * @param length L of each component, mesh units, > 0. Complexity: O(F).
  */
 inline std::vector<double> cutsOfLongEdges(
 	const MeasuredSurface& surface, const std::vector<double>& length)
@@ -44,15 +44,15 @@ inline std::vector<double> cutsOfLongEdges(
  *
  * An even mesh of V vertices has 2 V nearly equilateral triangles, so that a surface of area A gets
  * V = A / (L^2 sqrt(3) / 2) vertices.
- * The default L gives a single component 45000 vertices, the size of the models of the paper (Table 1);
- * c components share them, but none gets fewer than 3000, or its share of 200000 where there are many. It is at most 8 epsilon, beyond which the flow
- * leaves the shape, and at least a twentieth of epsilon: of a wire that is much thinner than epsilon the
- * flow sees no more. Where its edges would still be cut two million times (see cutsOfLongEdges()), it is
- * longer.
+ * The default L gives a single component 45000 vertices, the size of the models of the paper
+ * (Table 1); c components share them, but none gets fewer than 3000, or than 200000 / c where there
+ * are many. L is at most 8 epsilon, beyond which the flow leaves the shape, and at least a
+ * twentieth of epsilon: of a wire much thinner than epsilon the flow sees no more. Where edges
+ * would still be cut more than two million times (see cutsOfLongEdges()), it is longer.
  *
  * @param surface    closed triangle mesh of any number of components.
- * @param parameters targetLength > 0 is taken instead, as a fraction of each component's own
- *                   bounding box diagonal.
+ * @param parameters targetLength > 0 is taken instead, as a fraction of the diagonal of each
+ *                   component's axis-aligned bounding box.
  * @return one length for each component, in the order of connectedComponents().
  * Complexity: O(V + F).
  */

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Which collapses, flips and moves leave a surface in shape.
+/// @brief Which collapses, flips and moves keep the shape of a surface.
 
 #ifndef VCG_MCF_TRIANGLE_QUALITY_H
 #define VCG_MCF_TRIANGLE_QUALITY_H
@@ -52,7 +52,7 @@ inline bool ringAllowsMove(
 	return true;
 }
 
-/// Whether the flip of h leaves the two triangles within 60 degrees of where they were.
+/// Whether h can be flipped and both new normals are within 60 degrees of the mean old one.
 inline bool flipKeepsShape(const SurfaceMesh& mesh, int h)
 {
 	constexpr double minCosine = 0.5;

@@ -21,13 +21,16 @@
 namespace vcg::tri::mcf {
 
 /**
- * Solves (M^2 + D) x = b, as solveBiharmonic() does, by a Cholesky factorisation L L^T in double.
+ * Solves (M^2 + D) x = b, as solveBiharmonic(), by a Cholesky factorisation in double precision.
  *
- * M^2 is formed, and its factor is full: some ten times the time and memory of solveBiharmonic().
+ * M^2 is formed and M^2 + D factorised completely: some ten times the time and memory of
+ * solveBiharmonic().
  *
- * @param M symmetric, positive semi-definite, n by n. @param D positive, n. @param b right-hand sides, n by 3.
+ * @param M symmetric, positive semi-definite, n by n.
+ * @param D diagonal, positive, n.
+ * @param b right-hand sides, n by 3.
  * @return x, n by 3.
- * @throws SolverError if the factorisation breaks down; Cancelled, between its phases only.
+ * @throws SolverError if the factorisation breaks down; Cancelled, only between its phases.
  * Complexity: about O(n log n) on surface meshes.
  */
 inline std::vector<Point3d> solveBiharmonicDirectly(const SymmetricRows& M,

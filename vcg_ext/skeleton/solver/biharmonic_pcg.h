@@ -25,8 +25,8 @@ namespace vcg::tri::mcf {
 
 namespace detail {
 
-/// Of the preconditioner. From 4e-3 to 5.7e-3 all are as good on average, but single tips of large bodies come and
-/// go with the last bits: see docs/design.md.
+/// Drop tolerance of the preconditioner. From 4e-3 to 5.7e-3 all are as good on average, but single
+/// tips of large bodies come and go with the last bits: see docs/design.md.
 constexpr float dropTolerance = 5.28e-3f;
 
 } // namespace detail
@@ -34,13 +34,13 @@ constexpr float dropTolerance = 5.28e-3f;
 /**
  * Solves (M^2 + D) x = b by conjugate gradients from x = 0, preconditioned by (M + sqrt D)^-2.
  *
- * M^2 is never formed: its factor would be several times as full as that of M + sqrt D, which is
- * as close to it in spectrum (the quotient lies in [1/2, 1] for commuting M and D), so that a
- * handful of iterations does. All vectors are in single precision, sums over them in double: half the
- * memory to go through, and one instruction for three columns.
+ * M^2 is never formed: its factor would have several times as many entries as that of M + sqrt D.
+ * The preconditioner is close in spectrum, (M^2 + D) / (M + sqrt D)^2 lies in [1/2, 1] for
+ * commuting M and D, so that a handful of iterations suffices. Vectors are in single precision,
+ * sums over them in double: half the memory traffic, and one SIMD instruction for three columns.
  *
- * @param M     symmetric, positive semi-definite, n by n, numbered in an order of low fill.
- * @param D     positive, n.
+ * @param M     symmetric, positive semi-definite, n by n, in a fill-reducing order.
+ * @param D     diagonal, positive, n.
  * @param b     right-hand sides, n by 3.
  * @param tolerance the residual, in the preconditioner's norm, falls to about this fraction of its
  *              value at the start; 1e-6 is what single precision allows.
@@ -52,7 +52,7 @@ inline std::vector<Point3d> solveBiharmonic(const SymmetricRows& M, const std::v
 {
 	const int n = M.size();
 	std::vector<Point3d> x(n, Point3d(0, 0, 0));
-	// Single precision has no room for meshes of 1e-20 or 1e20 units: b is scaled to one.
+	// Single precision has no room for meshes of 1e-20 or 1e20 units: b is scaled to [-1, 1].
 	double largest = 0;
 	for (const Point3d& bi : b)
 		for (int k = 0; k < 3; ++k)
@@ -65,14 +65,14 @@ inline std::vector<Point3d> solveBiharmonic(const SymmetricRows& M, const std::v
 	const IncompleteFactor factor(M, rootD, detail::dropTolerance, progress.part(0, 0.5));
 	progress.report(0.5, "Contracting");
 
-	using Sum = Eigen::Array4d; // of each column by itself
+	using Sum = Eigen::Array4d; // one for each column
 	FloatQuads r(n);            // the residual
 	FloatQuads z(n);            // preconditioned
 	FloatQuads y(n, FloatQuad::Zero()), p(n), Mp(n), Ap(n);
 	for (int i = 0; i < n; ++i)
 		z[i] = r[i] = FloatQuad(
 			float(b[i][0] / largest), float(b[i][1] / largest), float(b[i][2] / largest), 0.f);
-	/// Ap <- (M^2 + D) p; p . Ap.
+	/// Ap <- (M^2 + D) p. Returns p . Ap.
 	const auto apply = [&] {
 		M.forEachProduct(p, [&](int i, const FloatQuad& sum) { Mp[i] = sum; });
 		Sum product = Sum::Zero();
@@ -82,7 +82,7 @@ inline std::vector<Point3d> solveBiharmonic(const SymmetricRows& M, const std::v
 		});
 		return product;
 	};
-	/// z <- preconditioned r, from its copy there; r . z.
+	/// z <- (M + sqrt D)^-2 z, of a z that equals r. Returns r . z.
 	const auto precondition = [&] {
 		Sum product = Sum::Zero();
 		factor.solve(z);
@@ -96,12 +96,13 @@ inline std::vector<Point3d> solveBiharmonic(const SymmetricRows& M, const std::v
 	Sum rz = precondition();
 	std::swap(p, z);
 	const double target = tolerance * tolerance * rz.sum();
-	// r . z falls to a tenth in each iteration but the first, where it falls further: so it does where the
-	// eigenvalues lie within a factor of 3.7. An iteration that reaches the target so is the last one, and what
-	// is left is not measured. There are two at least: where slivers have nearly all of the residual, one may
-	// reach the target and leave a vertex between soft triangles far from its place.
+	// r . z is expected to fall to a tenth in each iteration, as it does where the eigenvalues lie
+	// within a factor of 3.7; in the first it falls further. An iteration that is expected to reach
+	// the target is the last one; its residual is not computed. There are at least two: where
+	// slivers have nearly all of the residual, one may reach the target and leave a vertex between
+	// soft triangles far from its place.
 	double fall = 0.1;
-	FloatQuad alpha; // the step along p, which y has not made yet
+	FloatQuad alpha; // the step along p, not added to y yet
 	constexpr int maxIterations = 200;
 	for (int iteration = 0;; ++iteration) {
 		progress.report(0.5 + 0.5 * iteration / maxIterations, "Contracting");

@@ -21,19 +21,20 @@
 namespace vcg::tri::mcf {
 
 /**
- * S ~ L D L^T with unit lower triangular L, columns in the order of their numbers.
+ * S ~ L D L^T for S = M + diag(shift), with unit lower triangular L; columns are eliminated in the
+ * order of their numbers.
  *
- * Each column takes the updates of those columns before it that have an entry in its row (left-looking;
- * Jones and Plassmann, ACM TOMS 21(1), 1995). An entry l_rk that contributes less than
- * `dropTolerance` of its row's diagonal, l_rk^2 d_k < dropTolerance^2 s_rr, is dropped as it appears. This
- * is a relaxed modified incomplete factorisation (MILU; Gustafsson, BIT 18, 1978): most of the dropped fill
- * is lumped onto the diagonals of its row and column, so that row sums, and hence smooth modes, are nearly
- * preserved. On the flow's matrices a seventh of the full factor remains, and nothing else is visited.
- * S is a diagonally dominant M-matrix, so that pivots stay positive, but for rounding where the shift is
- * tiny: they are kept above 1e-7 of the diagonal.
+ * Each column takes the updates of the earlier columns that have an entry in its row (left-looking;
+ * Jones and Plassmann, ACM TOMS 21(1), 1995). An entry l_rk that is small beside its row's
+ * diagonal, l_rk^2 d_k < dropTolerance^2 s_rr, is dropped as it appears. This is a relaxed modified
+ * incomplete factorisation (MILU; Gustafsson, BIT 18, 1978): most of the dropped fill is lumped
+ * onto the diagonals of its row and column, so that row sums, and hence smooth modes, are nearly
+ * preserved. On the flow's matrices a seventh of the complete factor remains, and no other entry is
+ * visited. S is a diagonally dominant M-matrix, so that pivots stay positive, except for rounding
+ * where the shift is tiny: they are kept above 1e-7 of the diagonal.
  *
- * @throws SolverError if a diagonal entry is not positive, or something is not a number.
- * Complexity: linear in the updates, about O(n log n) on surface meshes in an order of low fill.
+ * @throws SolverError if a diagonal entry is not positive, or a pivot is not a number.
+ * Complexity: linear in the updates, about O(n log n) on surface meshes in a fill-reducing order.
  */
 class IncompleteFactor
 {
@@ -41,7 +42,7 @@ public:
 	/**
 	 * @param M     symmetric, by rows.
 	 * @param shift added to M's diagonal, one for each row, > 0.
-	 * @throws Cancelled, and what the class says.
+	 * @throws SolverError, see the class; Cancelled.
 	 */
 	IncompleteFactor(const SymmetricRows& M, const std::vector<float>& shift, float dropTolerance,
 		const Progress& progress = Progress())
@@ -50,7 +51,7 @@ public:
 		inverseDiagonal.resize(n);
 		start.resize(n + 1);
 		start[0] = 0;
-		entries.resize(10 * size_t(n)); // of the flow's matrices 8 to 9 are used
+		entries.resize(10 * size_t(n)); // the flow's matrices use 8 to 9 a row
 		std::vector<Row> rows(n);
 		for (int k = 0; k < n; ++k) {
 			const float own = M.diagonal[k] + shift[k];
@@ -95,7 +96,7 @@ public:
 				next = column.nextInChain;
 				const int begin = column.position++, end = column.end;
 				const float y = entries[begin].value * column.diagonal;
-				// The lowest index and its entry as one number, of which the minimum is found without a branch.
+				// The lowest index and its entry, packed into one number: a branchless minimum.
 				std::int64_t lowest = std::numeric_limits<std::int64_t>::max();
 				for (int e = begin + 1; e < end; ++e) {
 					add(entries[e].index, -entries[e].value * y);
@@ -147,7 +148,7 @@ public:
 		solve(x, [](int, const FloatQuad&) {});
 	}
 
-	/// The same; calls visit(i, x_i) for each row that is done, from the last to the first.
+	/// The same; calls visit(i, x_i) for each row as it is finished, from the last to the first.
 	template <class Visitor>
 	void solve(FloatQuads& x, Visitor&& visit) const
 	{
@@ -159,8 +160,8 @@ public:
 					x[entries[k].index] -= entries[k].value * xi;
 		}
 		for (int i = n - 1; i >= 0; --i) {
-			// A column's entries stand in the order of their rows. The first of them, often just found, are
-			// waited for last.
+			// A column's entries are sorted by row. Those of the lowest rows, often just found, are
+			// used last, so that the loop waits for them as late as it can.
 			FloatQuad xi = x[i] * inverseDiagonal[i];
 			for (int e = start[i + 1]; e > start[i]; e -= Group)
 				for (int k = e - 1; k >= e - Group; --k)
@@ -171,33 +172,33 @@ public:
 	}
 
 private:
-	/// A row while the columns before it are made.
+	/// A row while the earlier columns are computed.
 	struct Row
 	{
 		float pivot;    ///< what is left of its diagonal
 		float minimum;  ///< entries that take less from it are dropped
-		int chain = -1; ///< the first column with its next entry in this row
+		int chain = -1; ///< the first column whose next entry is in this row
 	};
 
-	/// A row's entry in the column at hand, if stamped with it.
+	/// A row's entry in the current column, if stamped with that.
 	struct Sum
 	{
 		float value = 0;
 		int stamp = -1;
 	};
 
-	/// A column that is made: its next entry, and the next column of the chain in that entry's row.
+	/// A finished column: its next entry, and the next column of the chain in that entry's row.
 	struct Column
 	{
 		int position, end, nextInChain;
 		float diagonal;
 	};
 
-	/// Columns are zero-padded, with entries in their own row, to a multiple of this: trip counts of few
-	/// different values are more predictable.
+	/// Columns are zero-padded to a multiple of this, with entries in their own row: trip counts of
+	/// few different values are more predictable.
 	static constexpr int Group = 4;
 
-	/// How much of a dropped entry goes to the diagonal.
+	/// Fraction of a dropped entry that is added to each of the two diagonals.
 	static constexpr float Compensation = 0.97f;
 
 	std::vector<float> inverseDiagonal;

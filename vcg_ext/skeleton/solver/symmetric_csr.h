@@ -18,41 +18,42 @@ namespace vcg::tri::mcf {
 using FloatQuad = Eigen::Array4f;
 using FloatQuads = std::vector<FloatQuad, Eigen::aligned_allocator<FloatQuad>>;
 
-/// An entry of a sparse row or column: where, and what.
+/// An entry of a sparse row or column: its place, and its value.
 struct SparseEntry
 {
 	int index = 0;
 	float value = 0;
 };
 
-/// How many entries a row or column of `count` takes up if it is filled up to groups.
+/// The number of entries of a row or column that is padded to groups: `count`, rounded up.
 constexpr int filledUp(int count, int group)
 {
 	return (count + group - 1) / group * group;
 }
 
 /**
- * A symmetric sparse matrix by rows, as the flow's solver wants it: a Laplacian, and something on its diagonal,
+ * A symmetric sparse matrix by rows, in the form that the flow's solver needs: a Laplacian and an
+ * excess of the diagonal,
  *
  *   (A x)_i = excess_i x_i + sum_k value_k (x_index_k - x_i),   k in [start[i], start[i + 1]).
  *
- * In this form constants go to excess exactly, however large the values are: the rounding of a stored
- * diagonal would hold what is to move.
+ * In this form the image of a constant c is exactly c excess, however large the values are: the
+ * rounding of a stored diagonal would hold back vertices that are to move.
  */
 struct SymmetricRows
 {
 	std::vector<float> excess;
-	/// excess_i - sum_k value_k.
+	/// The entries A_ii: excess_i - sum_k value_k.
 	std::vector<float> diagonal;
-	/// Multiples of Group.
+	/// Where each row begins in `entries`, and the last one ends; multiples of Group.
 	std::vector<int> start;
 	std::vector<SparseEntry> entries;
 
-	/// Rows are zero-padded, with entries in column 0, to a multiple of this: trip counts of few different
-	/// values are more predictable.
+	/// Rows are zero-padded to a multiple of this, with entries in column 0: trip counts of few
+	/// different values are more predictable.
 	static constexpr int Group = 3;
 
-	/// Fills up the row that the last entries belong to.
+	/// Ends and pads the row that the last entries belong to.
 	void endRow()
 	{
 		entries.resize(size_t(filledUp(int(entries.size()), Group)));
@@ -61,7 +62,7 @@ struct SymmetricRows
 
 	int size() const { return int(diagonal.size()); }
 
-	/// The rows from begin to end. @pre their entries are in these columns, but for those filled up.
+	/// The rows and columns in [begin, end). @pre padding apart, these rows have no other columns.
 	SymmetricRows part(int begin, int end) const
 	{
 		SymmetricRows rows;

@@ -29,10 +29,11 @@ struct CellGrid
 	/// From a cell to the next along y and along z.
 	static constexpr std::int64_t nextRow = std::int64_t(1) << bits, nextLayer = nextRow << bits;
 
-	/// @param box of all points; wanted: the size of the cells, larger if they would be too many.
+	/// @param box    of all points.
+	/// @param wanted size of the cells; they are larger where there would be too many.
 	CellGrid(const Box3d& box, double wanted) : low(box.min)
 	{
-		// Whoever looks up to two cells away, past an end of a row too, comes to cells that no point is in.
+		// Rows end in cells without points: two cells past an end there are none of the next row.
 		constexpr double maximum = (1 << bits) - 4;
 		const double longest = std::max({box.DimX(), box.DimY(), box.DimZ()});
 		size = std::max(wanted, longest / maximum);
@@ -40,6 +41,7 @@ struct CellGrid
 			size = 1;
 	}
 
+	/// @pre p is in the box.
 	std::int64_t cellOf(const Point3d& p) const
 	{
 		const auto place = [&](int axis) { return 1 + std::int64_t((p[axis] - low[axis]) / size); };

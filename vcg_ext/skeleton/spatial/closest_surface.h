@@ -26,11 +26,11 @@
 namespace vcg::tri::mcf {
 
 /**
- * Answers for points near the medial axis of a surface, where nearly everything around is equally
- * close: a tree of triangles has to look at most of them (50 to 90 us a query on round shapes of
- * 90000 triangles). Here a tree of samples finds the place, and a walk on the surface makes the
- * answer exact there: four to eight times faster. What is missed is a place whose distance differs
- * from the one found by less than the samples' spacing squared over the distance.
+ * Closest points for queries near the medial axis of a surface, where nearly everything around is
+ * equally close: a tree of triangles has to look at most of them (50 to 90 us a query on round
+ * shapes of 90000 triangles). Here a tree of samples finds the place, and a walk on the surface
+ * makes the answer exact there: four to eight times faster. What is missed is a place whose
+ * distance differs from the one found by less than the samples' spacing squared over the distance.
  *
  * Lengths are those of the surface; it should be near the origin.
  */
@@ -49,9 +49,9 @@ public:
 	{
 		Point3d centre;
 		double radius;
-		/// Where it touches apart from the given point, and the angle between both seen from the
-		/// centre, radians; -1 and 0 if nothing bounds the ball, which then is the one around the
-		/// point that was asked for.
+		/// The face that it touches apart from the given point, and the angle between both contacts
+		/// seen from the centre, radians; -1 and 0 if nothing bounds the ball, which then is the
+		/// one around the query.
 		int face;
 		double spokeAngle;
 		Point3d contact;
@@ -75,14 +75,14 @@ public:
 
 	/**
 	 * The closest point of the surface.
-	 * @param near  a face that is perhaps close, to begin with.
+	 * @param near  a face that may be close, to start from.
 	 * Complexity: O(log S), more where many points are as close.
 	 */
 	Hit closest(const Point3d& query, int near) const
 	{
 		return closest(query, closestFrom(query, near));
 	}
-	/// The same from what closestFrom() has found.
+	/// The same, starting from a result of closestFrom().
 	Hit closest(const Point3d& query, const Hit& first) const
 	{
 		if (alwaysExact)
@@ -99,26 +99,26 @@ public:
 		return alwaysExact ? closestExactly(query) : closestNearSample(query);
 	}
 
-	/// The closest point, none missed, however thin the shape is: by a tree of the triangles, which the
-	/// first such query makes. Slower than closest().
+	/// The exact closest point, however thin the shape is: by a tree of the triangles, which the
+	/// first such query builds. Slower than closest().
 	Hit closestExactly(const Point3d& query) const
 	{
 		return exactFrom(query, closestNearSample(query));
 	}
 
-	/// From now on closest() is closestExactly(), whatever asks for it.
+	/// Makes closest() exact, as closestExactly(), for all callers.
 	void makeExact() { alwaysExact = true; }
 	bool isExact() const { return alwaysExact; }
 
-	/// A lower bound of the distance to the surface, on whichever side: as far as no sample is, less what
-	/// triangles reach beyond their samples. Cheap, and near the surface 0.
+	/// A lower bound of the distance to the surface, inside or outside: the distance to the nearest
+	/// sample less what triangles reach beyond their samples. Cheap; 0 near the surface.
 	double emptyRadius(const Point3d& query) const
 	{
 		return std::max(tree.distance(query) - covering, 0.0);
 	}
 
-	/// The places of the vertices among those given at the beginning, in an order in which neighbours are
-	/// near each other. @throws Cancelled
+	/// Indices into the constructor's `vertices`, ordered so that neighbours are near each other.
+	/// @throws Cancelled
 	std::vector<int> vertexOrder(const Cancellation& cancel = Cancellation()) const
 	{
 		std::vector<int> order;
@@ -138,11 +138,11 @@ public:
 	}
 
 	/**
-	 * Whether a query is inside, given its closest point: by the normal there, which at an edge is the
-	 * sum of both faces' and at a vertex is weighted by the angles (Baerentzen and Aanaes, "Signed
-	 * distance computation using the angle weighted pseudonormal", IEEE TVCG 11(3), 2005). Where that sum nearly
-	 * cancels, or a face is a sliver, the winding number decides: at the bottom of a slit or the edge of a blade whose walls
-	 * are closer than the coordinates are precise.
+	 * Whether a query is inside, given its closest point: by the normal there, which at an edge is
+	 * the sum of both faces' and at a vertex is weighted by the angles (Baerentzen and Aanaes,
+	 * "Signed distance computation using the angle weighted pseudonormal", IEEE TVCG 11(3), 2005).
+	 * Where that sum nearly cancels, or a face is a sliver, the winding number decides: at the
+	 * bottom of a slit, or the edge of a blade, thinner than the precision of the coordinates.
 	 */
 	bool isInside(const Point3d& query, const Hit& hit) const
 	{
@@ -179,7 +179,7 @@ public:
 
 	/// Distance to the surface: positive inside, negative outside.
 	double clearance(const Point3d& query) const { return signedDistance(query, closest(query)); }
-	/// The same, none missed: see closestExactly().
+	/// The same from closestExactly().
 	double exactClearance(const Point3d& query) const
 	{
 		return signedDistance(query, closestExactly(query));
@@ -191,7 +191,7 @@ public:
 	 * The ball returned touches the point that holds it: the tolerance only keeps noise and facets
 	 * from being that point, and does not widen the ball.
 	 * @pre hit is the closest point of `inside`, which is not on the surface.
-	 * @param near  a face that perhaps holds the ball, to begin with; -1: none is known.
+	 * @param near  a face that may hold the ball, to start from; -1: none is known.
 	 */
 	Ball maximalBall(const Point3d& inside, const Hit& hit, double tolerance, int near) const
 	{
@@ -218,7 +218,7 @@ public:
 	}
 
 private:
-	/// A search region: all that is nearer than the best so far.
+	/// A search region: all that is nearer than the best sample so far.
 	struct Nearest
 	{
 		Point3d query;
@@ -312,7 +312,7 @@ private:
 		const Point3d ac = surface.position[surface.apex(base)] - a;
 		const double length = ab.Norm();
 		const bool isSampled = length > spacing;
-		// Of corners: the centre of an equilateral triangle. Of rows: between two of them, between samples.
+		// Farthest from corners: the centre of an equilateral triangle; from rows: midway.
 		covering =
 			std::max(covering, isSampled ? std::sqrt(1.25) * spacing : length / std::sqrt(3));
 		if (!isSampled)
@@ -351,8 +351,8 @@ private:
 		return isInside(query, hit) ? hit.distance : -hit.distance;
 	}
 
-	/// The ball if the surface bounds it; else what is known of the point asked for: the radius with which
-	/// a search began, or the one of a ball that is nearly a half-space, is no distance from the surface.
+	/// The ball if the surface bounds it, else the one around the query: the radius with which a
+	/// search began, or that of nearly a half-space, is not a distance from the surface.
 	Ball boundedBall(const Ball& ball, const Point3d& inside, const Hit& hit) const
 	{
 		return ball.face >= 0 && ball.radius <= box.Diag()
@@ -360,7 +360,8 @@ private:
 			: Ball {inside, hit.distance, -1, 0, hit.point};
 	}
 
-	/// Shrinks a ball by walking to the point deepest in it, until it holds; its face is -1 if nothing does.
+	/// Fits a ball: walks to the point closest to its centre and takes the ball through there,
+	/// until the radius settles. Its face is -1 if nothing holds it.
 	Ball heldBall(const Hit& hit, const Point3d& outward, double radius, int face) const
 	{
 		constexpr int maxSteps = 8;

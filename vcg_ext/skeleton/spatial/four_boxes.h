@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Four boxes side by side in single precision: the node of a tree, tested by vector instructions.
+/// @brief Four boxes in single precision: a node of a tree, tested by vector instructions.
 
 #ifndef VCG_MCF_FOUR_BOXES_H
 #define VCG_MCF_FOUR_BOXES_H
@@ -19,7 +19,7 @@ namespace vcg::tri::mcf {
 /**
  * Four axis-parallel boxes, relative to the origin of their tree.
  *
- * Coordinates are rounded, not widened: whoever asks enlarges the question by slack().
+ * Coordinates are rounded, not widened: the caller enlarges its query by slack().
  */
 class FourBoxes
 {
@@ -61,8 +61,8 @@ public:
 		return sum;
 	}
 
-	/// How far [from, to] is from each box along the axis on which it is farthest; 0 or less where they
-	/// share a point.
+	/// How far [from, to] is from each box along the axis on which it is farthest; 0 or less where
+	/// they share a point.
 	Eigen::Array4f gaps(const float (&from)[3], const float (&to)[3]) const
 	{
 		using Four = Eigen::Array4f;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Four slabs side by side in single precision: what bounds pieces of a surface that lie askew.
+/// @brief Four slabs in single precision: tight bounds of oblique pieces of a surface.
 
 #ifndef VCG_MCF_FOUR_SLABS_H
 #define VCG_MCF_FOUR_SLABS_H
@@ -20,14 +20,14 @@ namespace vcg::tri::mcf {
 /**
  * Four slabs, each the space between two parallel planes, relative to the origin of their tree.
  *
- * Points of a surface lie in a slab that is thin, s^2 / (8 R) for a piece of size s and radius of
- * curvature R, where an axis-parallel box around a piece askew is nearly as thick as it is wide: a ball
- * that touches the surface from inside reaches into many such boxes, but into few slabs.
+ * A piece of a surface of size s and radius of curvature R lies in a slab of thickness s^2 / (8 R),
+ * but an axis-parallel box around an oblique piece is nearly as thick as it is wide. A ball that
+ * touches the surface from inside reaches into many such boxes, but into few slabs.
  */
 class FourSlabs
 {
 public:
-	/// All four hold all of space.
+	/// All four are unbounded.
 	FourSlabs()
 	{
 		for (int k = 0; k < 4; ++k) {
@@ -41,7 +41,7 @@ public:
 	/**
 	 * The slab of `count` points across the direction in which they spread least.
 	 * @param pointAt  of an index from 0 to count - 1.
-	 * @param slack    by how much it is thicker than the points ask for, see FourBoxes::slack().
+	 * @param slack    added on either side of the points, see FourBoxes::slack().
 	 * @pre count > 0. Complexity: O(count).
 	 */
 	template <class PointAt>
@@ -70,7 +70,7 @@ public:
 		solver.computeDirect(spread);
 		const Eigen::Vector3f across = solver.eigenvectors().col(0).cast<float>();
 		if (!across.allFinite())
-			return; // the squares of its coordinates are too large for a number
+			return; // overflow: the slab stays unbounded
 		double low = std::numeric_limits<double>::infinity(), high = -low;
 		for (int i = 0; i < count; ++i) {
 			const Point3d p = pointAt(i) - origin;

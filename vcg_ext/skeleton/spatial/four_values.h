@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Which of four numbers side by side are small: what the searches in trees go on with.
+/// @brief Which of four numbers are small: the children into which a search in a tree descends.
 
 #ifndef VCG_MCF_FOUR_VALUES_H
 #define VCG_MCF_FOUR_VALUES_H
@@ -18,13 +18,13 @@ namespace vcg::tri::mcf {
 /**
  * Writes first + k for those k from 3 down to 0 whose value is no more than `limit`, in this order.
  * Branchless: the comparisons are unpredictable.
- * @param to has room for four numbers; those after the ones that count are undefined.
- * @return how many count.
+ * @param to has room for four numbers; those after the returned count are undefined.
+ * @return how many were within the limit.
  */
 inline int writeWithin(const Eigen::Array4f& values, float limit, int first, int* to)
 {
 #ifdef __SSE2__
-	// For each of the sixteen answers the numbers to be written, and how many.
+	// For each of the sixteen outcomes of the comparisons the numbers to be written, and how many.
 	struct alignas(16) Answer
 	{
 		int numbers[4];

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Whether a pole can be seen from its vertex through the inside of the shape.
+/// @brief Whether a pole is visible from its vertex through the inside of the shape.
 
 #ifndef VCG_MCF_INNER_SEGMENTS_H
 #define VCG_MCF_INNER_SEGMENTS_H
@@ -26,11 +26,12 @@ namespace vcg::tri::mcf {
 /**
  * Tests segments that start at a vertex and end in the middle of a ball without vertices in it.
  *
- * A ball of radius r around c may be empty of vertices and still reach through a triangle, its centre
- * outside. Where the segment [p, c] crosses a triangle, at x, a depth t below p, the power of x to the
- * ball is t (2 r - t). In the triangle's plane, the power to the ball less the power to the triangle's
- * own circumcircle is linear and not positive at the corners, and the latter is at most L^2 / 3 for a
- * longest edge L. So t (2 r - t) <= L^2 / 3: only a first, short piece of the segment can cross.
+ * A ball of radius r around c may be empty of vertices and still reach through a triangle, its
+ * centre outside. Where the segment [p, c] crosses a triangle, at x, a depth t below p, the power
+ * of x to the ball (positive inside: r^2 - |x - c|^2) is t (2 r - t). In the triangle's plane, the
+ * power to the ball less that to the triangle's own circumcircle is linear and not positive at the
+ * corners, and the latter is at most L^2 / 3 for a longest edge L. So t (2 r - t) <= L^2 / 3: only
+ * a short first piece of the segment can cross.
  */
 class InnerSegments
 {
@@ -83,7 +84,7 @@ public:
 
 	/**
 	 * Whether the segment from vertex v to c leaves v into the inside and crosses no triangle.
-	 * @param leadsInside  that the segment leaves v behind all of its triangles is known.
+	 * @param leadsInside  whether the segment is known to start behind all triangles of v.
 	 * @pre no vertex lies deeper than `depth` in the ball around c through v.
 	 * Complexity: O(log F).
 	 */
@@ -100,8 +101,9 @@ public:
 	}
 
 	/**
-	 * Whether the surface is crossed on the way from vertex v that is `depth` long: then staysInside() holds with
-	 * that depth for no segment on from there, since the piece of one that may cross is at least as long.
+	 * Whether the vector `depth`, put at vertex v, crosses the surface. Then staysInside() with its
+	 * length as the depth holds for no segment in its direction that is as long: the piece that is
+	 * tested is, too.
 	 * Complexity: O(log F).
 	 */
 	bool isThinner(int v, const Point3d& depth) const { return crosses(v, depth); }
@@ -134,7 +136,7 @@ private:
 			[&](int f) { faces[start[key(f)]++] = mesh.triangle(f); });
 	}
 
-	/// Whether the surface around v, seen as a cone of endless triangles, has the direction inside.
+	/// Whether the direction leads into the cone of v: its triangles, extended without end.
 	bool leavesInwards(int v, const Point3d& direction) const
 	{
 		bool behindAll = true;
@@ -144,8 +146,8 @@ private:
 	}
 
 	/**
-	 * The sign of the distance to the nearest part of the cone: a triangle's normal, the sum of two at
-	 * an edge, of all, weighted by angle, at the apex (Baerentzen and Aanaes, "Signed distance
+	 * The sign of the distance to the nearest part of the cone: a triangle's normal, the sum of two
+	 * at an edge, of all, weighted by angle, at the apex (Baerentzen and Aanaes, "Signed distance
 	 * computation using the angle weighted pseudonormal", IEEE TVCG 11(3), 2005).
 	 */
 	bool isInsideCone(int v, const Point3d& d) const
@@ -192,8 +194,8 @@ private:
 		const float (&from)[3], (&to)[3]; ///< its box
 	};
 
-	/// Whether the segment crosses a triangle in some nodes of a level. They are few, but go down level by
-	/// level together: one by one, each would wait for the boxes of the one before.
+	/// Whether the segment crosses a triangle in some nodes of a level. The nodes descend together:
+	/// one by one, each would wait for the boxes of the one before.
 	bool anyCrossed(int level, const int* nodes, int count, const Query& query) const
 	{
 		constexpr int together = 8;

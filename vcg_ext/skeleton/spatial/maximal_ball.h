@@ -16,18 +16,19 @@ namespace vcg::tri::mcf {
 namespace detail {
 
 /**
- * The largest ball through p, on the inner side of its normal, with no sample deeper inside than delta.
+ * The largest ball through p, on the inner side of its normal, with no sample deeper than delta.
  *
  * The ball of radius r has its centre at c = p - r n. A sample q, with e = p - q, lies exactly
  * delta deep where |c - q| = r - delta, that is at
  *     r(q) = (|e|^2 - delta^2) / (2 (e.n - delta)),   e.n > delta,
- * and the balls grow monotonically with r, so the answer is the minimum of r(q) over all q. A search
- * finds it whatever the order of its visits, to the last bit: the test that skips a sample leaves
- * room for rounding, and what passes is compared by r(q) itself.
+ * and the balls grow monotonically with r, so the answer is the minimum of r(q) over all q. A
+ * search finds it whatever the order of its visits, to the last bit: the test that skips a sample
+ * leaves room for rounding, and what passes is compared by r(q) itself.
  */
 class MaximalBall
 {
 public:
+	/// @param n outward, unit length. @param largest the radius if nothing bounds the ball.
 	MaximalBall(const Point3d& p, const Point3d& n, double delta, double largest) :
 			p(p), n(n), c(p - n * largest), delta(delta), r(largest)
 	{

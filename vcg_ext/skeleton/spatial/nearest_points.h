@@ -28,24 +28,24 @@ namespace vcg::tri::mcf {
 
 /**
  * For each query the id of the point nearest to it, the lowest of several: PointTree::nearest(), in
- * a fraction of its time where the points are spread evenly over a surface and the queries are near it.
+ * a fraction of its time where the points cover a surface evenly and the queries are near it.
  *
- * Points and queries are sorted into cells about as large as the points are far from each other. Both
- * lists are gone through once, side by side: the nearest point is in the query's cell or in one of the
- * 26 round it, nine rows of three that follow each other in the list. Where it is farther than a cell
- * is wide, or many points share these cells, the tree is asked.
+ * Points and queries are sorted into cells about as large as the points are far from each other.
+ * Both lists are gone through once, side by side: the nearest point is in the query's cell or in
+ * one of the 26 around it, nine rows of three that follow each other in the list. Where it is
+ * farther than a cell is wide, or many points share these cells, a PointTree is searched.
  *
  * @param points   finite, at least one.
  * @param queries  finite.
  * @param spacing  about how far the points are from each other; it does not change the result.
- * @throws Cancelled. Complexity: O(P + Q) for such points and queries, O(P log P + Q log P) at most.
+ * @throws Cancelled. Complexity: O(P + Q) for such points and queries, at most O((P + Q) log P).
  * Same result on any number of threads.
  */
 inline std::vector<int> nearestPoints(const std::vector<Point3d>& points,
 	const std::vector<Point3d>& queries, double spacing, const Progress& progress = Progress())
 {
 	constexpr double cellOfSpacing =
-		0.85; // on even triangles no place is farther than 0.58 from a corner
+		0.85; // on even triangles no place is farther than 0.58 edges from a corner
 	constexpr size_t maxCandidates = 256;
 	const char* const what = "Finding the nearest points";
 	Box3d box;
@@ -98,7 +98,7 @@ inline std::vector<int> nearestPoints(const std::vector<Point3d>& points,
 				double minimum = certain, squaredReach = certain * certain;
 				int nearest = -1;
 				for (const Candidate& c : candidates) {
-					// Most are farther: told without a root, with room for its rounding.
+					// Most are farther, by a test without a root that leaves room for rounding.
 					if (SquaredDistance(c.point, query) > squaredReach)
 						continue;
 					const double distance = Distance(c.point, query);

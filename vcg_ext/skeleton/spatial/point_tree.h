@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief A kd-tree over a fixed set of points, for searches in a ball that shrinks while they run.
+/// @brief A tree of boxes over fixed points, for searches in a ball that shrinks while they run.
 
 #ifndef VCG_MCF_POINT_TREE_H
 #define VCG_MCF_POINT_TREE_H
@@ -29,13 +29,13 @@
 namespace vcg::tri::mcf {
 
 /**
- * A 4-ary bounding volume hierarchy of points, split at medians of the longest side: each node has an
- * axis-aligned box and, since the points are mostly those of a surface, a best-fit slab.
+ * A 4-ary bounding volume hierarchy of points, split at medians of the longest side: each node has
+ * an axis-aligned box and, since the points are mostly those of a surface, a best-fit slab.
  *
- * A nearest-neighbour query has a fixed centre; a shrinking ball moves its centre with every contact it
- * finds. search() lets the ball change during one descent, which saves the repeated queries of the
- * classical algorithm. Culling is conservative, in single precision, four children per SIMD test; the ball
- * itself confirms candidates in double precision.
+ * A nearest-neighbour query has a fixed centre; a shrinking ball moves its centre with every
+ * contact it finds. search() lets the ball change during one descent, which saves the repeated
+ * queries of the classical algorithm. Culling is conservative, in single precision, four children
+ * per SIMD test; the ball itself confirms candidates in double precision.
  */
 class PointTree
 {
@@ -89,8 +89,9 @@ public:
 	/**
 	 * Visits every point of the ball, and some outside it, each once.
 	 *
-	 * Ball: `Point3d centre()`, `double reach()`, its radius, and `void visit(int slot, const Point3d&)`,
-	 * which may replace the ball by one inside it. `order()[slot]` is the point's id.
+	 * Ball: `Point3d centre()`, `double reach()`, its radius, and
+	 * `void visit(int slot, const Point3d&)`, which may replace the ball by one inside
+	 * it. `order()[slot]` is the point's id.
 	 * @tparam nearestFirst  visits the boxes nearest to the centre first: it pays where the ball is
 	 *                       much too large to begin with.
 	 * Complexity: O(log n) for a ball that holds few points.
@@ -127,20 +128,20 @@ private:
 	static constexpr size_t LeafSize = 32;
 	static constexpr int Lanes = 4;
 
-	/// The bounds of four children: points are in both, the box and the slab.
+	/// The bounds of four children: each point is both in its box and in its slab.
 	struct Node
 	{
 		FourBoxes boxes;
 		FourSlabs slabs;
 
-		/// At most the squared distances from x to the points of each child.
+		/// Lower bounds of the squared distances from x to the points of each child.
 		Eigen::Array4f squaredDistances(const float (&x)[3]) const
 		{
 			return boxes.squaredDistances(x).max(slabs.distances(x).square());
 		}
 	};
 
-	/// A ball about the tree's origin in single precision, scaled, enlarged by what rounding may lose.
+	/// A ball about the tree's origin, scaled, in single precision, enlarged for rounding.
 	struct SingleBall
 	{
 		float centre[3];
@@ -181,7 +182,7 @@ private:
 
 	static double scaleOf(double diagonal)
 	{
-		constexpr int farthest = 300; // far beyond all that comes from single precision
+		constexpr int farthest = 300; // far beyond the exponents of single precision
 		return diagonal > 0 && std::isfinite(diagonal)
 			? std::exp2(-std::clamp(std::ilogb(diagonal), -farthest, farthest))
 			: 1;
@@ -189,7 +190,7 @@ private:
 
 	SingleBall toSingle(const Point3d& centre, double reach) const
 	{
-		// From farther away all points are as far: within reach, since their squares are numbers.
+		// Seen from farther away, all points are equally far; squares of this are finite.
 		constexpr double farthest = 1e18;
 		constexpr double largest = std::numeric_limits<float>::max();
 		const Point3d c = (centre - origin) * scale;
@@ -202,8 +203,8 @@ private:
 
 	bool isLeaf(int node) const { return node >= int(nodes.size()); }
 
-	/// Searches some nodes of a level. They are few, but go down level by level together: one by one, each
-	/// would wait for the boxes of the one before.
+	/// Searches some nodes of a level. The nodes descend together: one by one, each would wait for
+	/// the boxes of the one before.
 	template <class Ball>
 	void searchTogether(const int* some, int count, SingleBall& single, Ball& ball) const
 	{
@@ -232,7 +233,7 @@ private:
 			int node;
 			float squaredDistance; ///< of its bounds from the centre, when it was found
 		};
-		std::array<Place, 64> stack; // three a level and one to spare; 4^16 leaves fill it
+		std::array<Place, 64> stack; // three a level and one to spare; 4^21 leaves fill it
 		int top = 0;
 		if (!ids.empty())
 			stack[top++] = {0, 0};
@@ -284,7 +285,7 @@ private:
 		return found > beyond;
 	}
 
-	/// A point on its way to its leaf, beside its id: fetched by the id, points would be far apart.
+	/// A point beside its id while the tree is built: fetched by the id, points would be far apart.
 	struct Sample
 	{
 		Point3d point;

@@ -24,11 +24,11 @@
 namespace vcg::tri::mcf {
 
 /**
- * The solid bounded by a closed, oriented surface: all points whose winding number is not 0. Unlike the
- * side of the nearest triangle, that is defined where the surface crosses itself.
+ * The solid bounded by a closed, oriented surface: all points whose winding number is not 0. Unlike
+ * the side of the nearest triangle, that is defined where the surface crosses itself.
  *
- * Points are taken in coordinates of the test's own, see in(): the diagonal of the bounding box is 1, and
- * the axes are turned so that nothing in the shape is parallel to them.
+ * Points and lengths are in the test's own coordinates, see in(): the diagonal of the bounding box
+ * is 1, and the axes are turned, so that edges and faces along the mesh's axes are oblique.
  */
 class SolidTest
 {
@@ -36,7 +36,8 @@ public:
 	using Closest = TriangleTree::Closest;
 
 	/**
-	 * @param points    of the surface, mesh units; @param triangles whose corners are indices into them.
+	 * @param points    of the surface, mesh units.
+	 * @param triangles corners as indices into `points`, the same at common edges.
 	 * @throws Cancelled. Complexity: O(F log F).
 	 */
 	SolidTest(const std::vector<Point3d>& points, const std::vector<Triangle>& triangles,
@@ -74,8 +75,8 @@ public:
 	const std::vector<Triangle>& triangles() const { return faces; }
 
 	/**
-	 * Whether the winding number at p is not 0: the crossings of a ray along the third axis are counted
-	 * by their sense. Two triangles decide in the same way on which side of their common edge the ray is.
+	 * Whether the winding number at p is not 0: the sum of the signed crossings of a ray along the
+	 * third axis. Two triangles decide alike on which side of their common edge the ray is.
 	 * Complexity: about O(log F + n) for n triangles whose boxes the ray meets.
 	 */
 	bool isInside(const Point3d& p) const
@@ -97,13 +98,13 @@ public:
 	}
 
 	/**
-	 * Whether no part of the segment from p to q is farther outside than `tolerance`, judged at the middle
-	 * of each part between two crossings of the surface, and of sixteenths.
+	 * Whether no part of the segment from p to q is farther outside than `tolerance`. It is cut
+	 * into sixteenths and at its crossings of the surface; each piece is tested at its middle.
 	 */
 	bool segmentIsInside(const Point3d& p, const Point3d& q, double tolerance) const
 	{
 		constexpr double negligible = 1e-9; // part of the segment
-		constexpr int samples = 16;         // besides: along a triangle a crossing may be missed
+		constexpr int samples = 16;         // in a triangle's plane a crossing may be missed
 		std::vector<double> at;
 		for (int i = 0; i <= samples; ++i)
 			at.push_back(double(i) / samples);
@@ -126,7 +127,7 @@ public:
 		int face; ///< -1: nowhere
 	};
 
-	/// Where the ray from a point of the surface meets another part of it, no farther than 1.
+	/// Where the ray from a point of the surface meets another part of it, at most a diagonal away.
 	/// @param direction of unit length.
 	Crossing chord(const Point3d& from, const Point3d& direction) const
 	{
@@ -150,7 +151,7 @@ private:
 	Box3d box;
 	std::optional<TriangleTree> tree; ///< of `corner` and `faces`
 
-	/// Axes of a rotation about (1, 2, 3) by 1 rad: a shape that stands straight does not to them.
+	/// Axes turned about (1, 2, 3) by 1 rad: oblique to shapes aligned with the mesh's axes.
 	static const Point3d& axis(int k)
 	{
 		static const std::array<Point3d, 3> axes = [] {
@@ -168,9 +169,10 @@ private:
 	}
 
 	/**
-	 * Whether p is on the left of v w seen along the third axis; for w v the answer is the opposite, to the
-	 * bit. On the line, p counts as moved by an infinitesimal step along the first axis and one along the
-	 * second that is infinitesimal beside it, so that the answers fit together at a vertex, too.
+	 * Whether p is on the left of v w in the plane of the first two axes; for w v the answer is
+	 * exactly the opposite. On the line, p counts as moved by an infinitesimal step along the first
+	 * axis, and by a yet infinitely smaller one along the second, so that the answers are
+	 * consistent at a vertex, too.
 	 */
 	bool isLeft(int v, int w, const Point3d& p) const
 	{
@@ -182,7 +184,7 @@ private:
 		return (side > 0) == (v < w);
 	}
 
-	/// +1 or -1 where the ray from p along the third axis leaves or enters the solid through f, else 0.
+	/// +1 or -1 where the ray from p along the third axis leaves or enters through f, else 0.
 	int crossingAbove(int f, const Point3d& p) const
 	{
 		const Triangle& t = faces[f];

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Short ways over a surface, from a point of it to another.
+/// @brief Short paths over a surface, from one of its points to another.
 
 #ifndef VCG_MCF_SURFACE_WAYS_H
 #define VCG_MCF_SURFACE_WAYS_H
@@ -25,11 +25,12 @@
 namespace vcg::tri::mcf {
 
 /**
- * Ways over a surface that cross its triangles, as over few large ones the edges lead far around.
+ * Paths over a surface that cross its triangles: where triangles are few and large, paths along the
+ * edges would be long detours.
  *
- * Shortest paths of a graph (A*) whose nodes are the vertices and points of the edges, evenly spaced, and in
- * which all nodes of a triangle are neighbours; the points then slide along their edges to where the way is
- * shortest.
+ * Shortest paths (A*) of a graph whose nodes are the vertices and evenly spaced points of the
+ * edges, and in which all nodes of a triangle are neighbours; the points then slide along their
+ * edges to where the path is shortest.
  */
 class SurfaceWays
 {
@@ -43,9 +44,9 @@ public:
 	};
 
 	/**
-	 * @param points    of the surface, kept by reference, and @param triangles whose corners are indices into
-	 *                  them, kept likewise.
-	 * @param spacing   of the nodes on edges that are longer.
+	 * @param points    of the surface; kept by reference.
+	 * @param triangles corners as indices into `points`; kept by reference.
+	 * @param spacing   maximum distance of the nodes along an edge, in the points' unit; > 0.
 	 * Complexity: O(F log F + N) for N nodes.
 	 */
 	SurfaceWays(const std::vector<Point3d>& points, const std::vector<Triangle>& triangles,
@@ -90,10 +91,10 @@ public:
 	}
 
 	/**
-	 * Where a short way from one point of the surface to another crosses edges, in order.
+	 * Where a short path from one point of the surface to another crosses edges, in order.
 	 * @param fromFace the triangle with `from`.
 	 * @param toFace   the one with `to`.
-	 * @return empty within one triangle, or where there is no way.
+	 * @return empty within one triangle, or where there is no path.
 	 * Complexity: O(N log N), less for ends that are near each other.
 	 */
 	std::vector<Place> way(int fromFace, const Point3d& from, int toFace, const Point3d& to) const
@@ -115,7 +116,7 @@ private:
 	struct Edge
 	{
 		std::array<int, 2> ends;
-		/// Its nodes are `pieces - 1` from here on.
+		/// The edge has `pieces - 1` nodes, numbered from `firstNode` on.
 		int firstNode, pieces;
 		std::vector<int> faces;
 	};
@@ -126,7 +127,7 @@ private:
 	std::vector<std::vector<int>> facesAt;
 	std::vector<std::array<int, 3>> edgesOf;
 	std::vector<Edge> edges;
-	/// Of each node that is no vertex: these are numbered after the vertices.
+	/// Of each node that is not a vertex; these are numbered after the vertices.
 	std::vector<int> edgeOfNode;
 
 	static Point3d unit(const Point3d& n)
@@ -193,7 +194,7 @@ private:
 	std::vector<int> shortestPath(
 		int fromFace, const Point3d& from, int toFace, const Point3d& to) const
 	{
-		// Length of the way with the straight rest, length so far, node.
+		// Length so far plus the straight distance to the end, length so far, node.
 		using Entry = std::tuple<double, double, int>;
 		std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
 		const double infinity = std::numeric_limits<double>::infinity();
@@ -230,8 +231,8 @@ private:
 		return path;
 	}
 
-	/// Moves the places that are no vertices to where their edge is crossed by the straight way between their
-	/// neighbours, with both triangles in one plane.
+	/// Moves each place on an edge to where the straight line between its neighbours crosses the
+	/// edge, both triangles unfolded into one plane.
 	void slideAlongEdges(const std::vector<int>& nodes, std::vector<Place>& places,
 		const Point3d& from, const Point3d& to) const
 	{

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief A tree of boxes over any triangles: closest points, crossings of segments, pairs that meet.
+/// @brief A tree of boxes over triangles: closest points, crossings of segments, faces in a box.
 
 #ifndef VCG_MCF_TRIANGLE_TREE_H
 #define VCG_MCF_TRIANGLE_TREE_H
@@ -24,13 +24,13 @@
 namespace vcg::tri::mcf {
 
 /**
- * A balanced binary tree of bounding boxes over triangles, which need neither be closed nor manifold nor
- * oriented. The same triangles in the same order give the same tree and the same answers.
+ * A balanced binary tree of bounding boxes over triangles, which need neither be closed nor
+ * manifold nor oriented. The same triangles in the same order give the same answers.
  */
 class TriangleTree
 {
 public:
-	/// A node; its left child is the next one. Leaves hold the triangles order()[begin], ..., order()[end - 1].
+	/// A node of the triangles order()[begin], ..., order()[end - 1]; its left child is the next.
 	struct Node
 	{
 		Box3d box;
@@ -40,12 +40,12 @@ public:
 		bool isLeaf() const { return right < 0; }
 	};
 
-	/// The point of the triangles that is closest to another one.
+	/// The point of the triangles that is closest to a query.
 	struct Closest
 	{
 		Point3d point;
 		double distance;
-		int face; ///< -1 if there are no triangles
+		int face; ///< -1 if no triangle is within reach
 	};
 
 	/**
@@ -79,8 +79,8 @@ public:
 	}
 	int size() const { return int(ids.size()); }
 
-	/// The closest point, of several the one on the triangle that the tree meets first.
-	/// @param reach nothing farther away is found. Complexity: about O(log F).
+	/// The closest point; of equally close ones, the one on the triangle that is visited first.
+	/// @param reach only points nearer than this are found. Complexity: about O(log F).
 	Closest closest(const Point3d& p, double reach = std::numeric_limits<double>::infinity()) const
 	{
 		Closest best = {p, reach, -1};
@@ -124,8 +124,9 @@ public:
 		return best;
 	}
 
-	/// Calls visit(face, t, forward) for each triangle that the segment p + t (q - p), t in [0, 1], crosses;
-	/// forward: it goes the way of the triangle's normal. Through an edge it may cross both triangles.
+	/// Calls visit(face, t, forward) for each triangle that the segment p + t (q - p), t in [0, 1],
+	/// crosses; forward: along the triangle's normal. A crossing of an edge may be reported for
+	/// both of its triangles.
 	/// Complexity: O(log F + crossings).
 	template <class Visit>
 	void forEachCrossing(const Point3d& p, const Point3d& q, const Visit& visit) const
@@ -151,7 +152,7 @@ public:
 			});
 	}
 
-	/// Calls visit(face) for each triangle whose box meets a box, be it in their sides alone.
+	/// Calls visit(face) for each triangle whose box meets a box; boxes that only touch do.
 	template <class Visit>
 	void forEachFaceIn(const Box3d& box, const Visit& visit) const
 	{
@@ -193,7 +194,7 @@ private:
 	public:
 		Segment(const Point3d& p, const Point3d& step) : p(p), step(step) {}
 
-		/// Whether they meet, to a rounding in favour of meeting.
+		/// Whether they meet, rounded in favour of meeting.
 		bool meets(const Box3d& box) const
 		{
 			constexpr double margin = 1e-9; // as far as a crossing may be beyond its triangle
@@ -218,7 +219,7 @@ private:
 		Point3d p, step;
 	};
 
-	/// Calls visit(face) for each triangle of the leaves down to which isNear(box) holds.
+	/// Calls visit(face) for each triangle of the leaves that isNear(box) leads to from the root.
 	template <class IsNear, class Visit>
 	void forEachLeaf(const IsNear& isNear, const Visit& visit) const
 	{
