@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Cancelling for scripts: pymeshlab has no way to end a filter, so its caller gives one.
+/// @brief Cancelling from scripts: pymeshlab cannot cancel a filter, so the caller provides a flag.
 
 #ifndef MCFSKEL_CANCEL_FLAG_H
 #define MCFSKEL_CANCEL_FLAG_H
@@ -15,9 +15,9 @@ const volatile int* cancelFlag();
 } // namespace mcfskel
 
 /**
- * The filters that the calling thread runs from now on are cancelled as soon as `*flag` is not 0, whoever
- * sets it. For callers from other languages, through dlsym() or ctypes; the flag must outlive the filters.
- * @param flag null: they are not cancelled any more.
+ * Filters that the calling thread starts after this call are cancelled as soon as `*flag` is not 0,
+ * whichever thread sets it. For callers from other languages, through dlsym() or ctypes.
+ * @param flag must outlive the filters; null: they are not cancelled.
  */
 extern "C" void mcfskel_cancel_when(const volatile int* flag);
 

@@ -23,8 +23,8 @@ namespace mcfskel {
 
 namespace {
 
-/// Hands progress on to the host, but not more often than anyone can see: a GUI redraws each time. What is
-/// tried again after it has failed, as a collapse with fewer sheets, does not take the bar back.
+/// Passes progress on to the host: each new percentage at once, the same one at most every 50 ms,
+/// since a GUI redraws each time. The bar never moves back, even where a step is tried again.
 vcg::tri::mcf::Progress hostProgress(const HostCallback& callback)
 {
 	using Clock = std::chrono::steady_clock;
@@ -79,7 +79,7 @@ bool isOffered(const char* pythonName)
 		[&](const FilterSpec& filter) { return filter.pythonName == pythonName; });
 }
 
-/// Which filter cures a mesh, as a sentence after the library's own; empty if none does.
+/// What cures a defect in MeshLab, as a sentence to append to the library's; empty if nothing does.
 QString cureInMeshLab(vcg::tri::mcf::Defect defect)
 {
 	using vcg::tri::mcf::Defect;
@@ -118,7 +118,7 @@ QString cureInMeshLab(vcg::tri::mcf::Defect defect)
 	return "";
 }
 
-/// What the colours of a new layer of nodes say, for whoever looks at them; empty if nobody does.
+/// A legend for the colours of a new layer without faces; empty if no window shows it.
 QString legend(const MeshModel& layer)
 {
 	if (!host::hasWindow() || layer.cm.fn > 0)
@@ -130,8 +130,8 @@ QString legend(const MeshModel& layer)
 		.arg(*std::max_element(thickness.begin(), thickness.end()));
 }
 
-/// The percentage that a dialog showed. It shows three decimals, but hands on mesh units, in steps of a
-/// ten-millionth of the power of ten above the diagonal, so that its own defaults come back as others.
+/// The percentage that a dialog showed, with three decimals. The dialog returns mesh units in steps
+/// of 1e-7 times the power of ten above the diagonal, so that even untouched defaults change.
 double percentInDialog(double percent, double diagonal)
 {
 	const double shown = std::round(1000 * percent) / 1000;
@@ -149,7 +149,7 @@ Scalarm defaultLength(const ParameterSpec& spec, double diagonal)
 
 void ParameterValues::setLength(const ParameterSpec& spec, Scalarm length, double diagonal)
 {
-	// A host's single precision must not show: six digits of a percentage are what all hosts agree on.
+	// Six digits of a percentage are the same in hosts with single and with double precision.
 	double percent = diagonal > 0 ? 100 * double(float(length)) / diagonal : 0;
 	percent = QString::number(percent, 'g', 6).toDouble();
 	if (diagonal > 0 && host::hasWindow())
@@ -202,7 +202,7 @@ Outcome runFilter(const FilterSpec& filter, MeshDocument& document,
 					log(text);
 		}
 		catch (const std::bad_alloc&) {
-			// The document has its results by now: this is no failure any more.
+			// The results are in the document already: the filter has succeeded.
 		}
 	}
 	catch (const vcg::tri::mcf::Cancelled&) {

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief The catalogue: what filters there are, their names, texts and parameters, and how to run
-/// one. The adapters translate it for each plugin interface; a new filter is a file in
-/// filters/ and a line in catalogue().
+/// @brief The catalogue of filters: their names, texts and parameters, and how to run one. The
+/// adapters translate it for each plugin interface. A new filter is a file in filters/ with a line
+/// in filters/all_filters.h and one in catalogue().
 
 #ifndef MCFSKEL_FILTERS_H
 #define MCFSKEL_FILTERS_H
@@ -38,12 +38,12 @@ enum class ParameterKind {
 struct ParameterSpec
 {
 	ParameterKind kind;
-	/// The name that scripts use: an identity, never changed.
+	/// The name in scripts. It must never change.
 	QString name;
-	/// Length: percent of the diagonal; Choice: index into `choices`; Boolean: 0 or 1; files: unused.
+	/// Length: percent of the diagonal; Choice: an index; Boolean: 0 or 1; Layer and files: unused.
 	double defaultValue;
 	QString label;
-	/// What it does, its unit, and what is sane.
+	/// What the parameter does, its unit and its recommended range.
 	QString tooltip;
 	QStringList choices = {};
 	bool advanced = false;
@@ -58,7 +58,7 @@ struct ParameterSpec
 
 /**
  * The default of a Length in mesh units, as the host holds it.
- * @param diagonal of the layer, see referenceDiagonal().
+ * @param diagonal of the layer, mesh units, see referenceDiagonal().
  */
 Scalarm defaultLength(const ParameterSpec& spec, double diagonal);
 
@@ -70,8 +70,8 @@ public:
 	void setText(const QString& name, const QString& value) { texts[name] = value; }
 
 	/**
-	 * Takes a Length in mesh units and keeps it as a fraction of the diagonal, rounded so that hosts
-	 * that count in float and in double, or show it in a dialog, get the same one, and with it the same
+	 * Takes a Length in mesh units and keeps it as a fraction of the diagonal. It is rounded, so
+	 * that hosts with floats, with doubles and with a dialog get the same fraction, and so the same
 	 * results.
 	 */
 	void setLength(const ParameterSpec& spec, Scalarm length, double diagonal);
@@ -101,7 +101,7 @@ struct FilterRun
 	std::function<void(const QString&)> log;
 	vcg::tri::mcf::Progress progress;
 
-	/// The current layer. @pre the host has one, as runFilter() sees to if the filter needs it.
+	/// The current layer. @pre There is one: runFilter() checks it where FilterSpec::needsLayer.
 	MeshModel& layer() const { return *document.mm(); }
 };
 
@@ -109,9 +109,9 @@ enum class FilterCategory { Remeshing, Quality };
 
 struct FilterSpec
 {
-	/// The name that pymeshlab scripts use: an identity, never changed.
+	/// The name in pymeshlab scripts. It must never change.
 	QString pythonName;
-	/// The name in the menus, and the identity in .mlx scripts, never changed.
+	/// The name in the menus and in .mlx scripts. It must never change.
 	QString menuName;
 	QString help;
 	FilterCategory category;
@@ -120,7 +120,7 @@ struct FilterSpec
 	std::vector<ParameterSpec> parameters;
 	Results (*run)(FilterRun&);
 	bool needsLayer = true;
-	/// MeshModel::MeshElement bits that change on layers that were there before.
+	/// MeshModel::MeshElement bits that the filter changes on existing layers.
 	int changes = MeshModel::MM_NONE;
 };
 
@@ -139,8 +139,8 @@ struct Outcome
 using HostCallback = std::function<bool(int percent, const char* what)>;
 
 /**
- * Runs a filter. This is the one boundary that no exception crosses: the hosts stop, with the user's
- * work lost, on most of them. After an error the document is as it was.
+ * Runs a filter. It is the plugin's one exception boundary: most exceptions would end the host, and
+ * the user's work would be lost. After an error the document is unchanged.
  */
 Outcome runFilter(const FilterSpec& filter, MeshDocument& document,
 	const ParameterValues& parameters, const std::function<void(const QString&)>& log,

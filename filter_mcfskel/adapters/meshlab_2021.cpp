@@ -24,8 +24,8 @@ namespace {
 void registerFormats([[maybe_unused]] IOPlugin* plugin)
 {
 #if MCFSKEL_PYTHON_HOST
-	// While pymeshlab loads its own plugins at start, the registry is not to be touched: it is made
-	// from them afterwards, formats of ours included.
+	// While pymeshlab loads its own plugins at start the registry must not be touched: it is built
+	// from them afterwards, including the formats of this plugin.
 	if (meshlab::pluginManagerInstance().isInputMeshFormatSupported("ply"))
 		pymeshlab::functionSetInstance().loadIOPlugin(plugin);
 #endif
@@ -152,7 +152,7 @@ void FilterMcfskelPlugin::exportMaskCapability(
 
 void FilterMcfskelPlugin::fail(const QString& error)
 {
-	// A host that prints its log leaves the plugin with the log of a document that may go.
+	// A verbose host leaves the plugin a pointer to the log of a document that may be deleted.
 	setLog(nullptr);
 	throw MLException(error);
 }

@@ -3,7 +3,7 @@
 
 /// @file
 #if MCFSKEL_FILES
-/// @brief The plugin for MeshLab and pymeshlab from 2021.05 on: the catalogue as a FilterPlugin, the
+/// @brief The plugin for MeshLab and pymeshlab since 2021.05: the catalogue as a FilterPlugin, the
 /// file formats as an IOPlugin.
 #else
 /// @brief The plugin: the catalogue of filters as a FilterPlugin.
@@ -61,7 +61,7 @@ public:
 		const RichParameterList& parameters, vcg::CallBackPos* callback) override;
 
 private:
-	/// Ends a reading or writing that has failed.
+	/// Throws MLException after reading or writing has failed.
 	[[noreturn]] void fail(const QString& error);
 #endif
 };

@@ -18,11 +18,11 @@ namespace {
 
 using Word = std::uintptr_t;
 
-/// Of all that follows and of pymeshlab's pointer, as far as filters of this plugin are concerned.
+/// Guards `running` and, among filters of this plugin, pymeshlab's pointer to a log.
 std::mutex mutex;
 int running = 0;
 
-/// A word to look for in the static memory of the module that has an address.
+/// A search for the word `value` in the writable memory of the module that contains `address`.
 struct Search
 {
 	Word address;
@@ -62,7 +62,7 @@ int searchModule(dl_phdr_info* module, size_t, void* data)
 	return 1;
 }
 
-/// Where output goes that nobody has redirected: as it was when the plugin was loaded.
+/// Where std::cout, std::cerr and Qt's messages went when the plugin was loaded.
 class Output
 {
 public:

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Filter dialogs that fit the screen. MeshLab 2020.09 shows every parameter in a dialog that cannot be
-/// scrolled: of a long list, Apply and Close would lie below the edge of the screen.
+/// @brief Filter dialogs that fit the screen. MeshLab 2020.09 shows all parameters in a dialog that
+/// cannot scroll: with a long list, Apply and Close would lie below the edge of the screen.
 
 #ifndef MCFSKEL_SCROLLING_DIALOG_H
 #define MCFSKEL_SCROLLING_DIALOG_H
@@ -29,7 +29,7 @@ inline void scrollWhereTooHigh(QDockWidget& dialog)
 	const QScreen* const screen = QApplication::primaryScreen();
 	if (!content || !screen || qobject_cast<QScrollArea*>(content))
 		return;
-	// The host replaces the whole content for each filter, and leaves the scroll area of the last one.
+	// The host replaces the content for each filter and leaves the scroll area of the last one.
 	for (QScrollArea* old :
 		dialog.findChildren<QScrollArea*>(QString(), Qt::FindDirectChildrenOnly))
 		if (!old->widget())
@@ -50,7 +50,7 @@ inline void scrollWhereTooHigh(QDockWidget& dialog)
 	dialog.resize(width, highest);
 }
 
-/// Does so for the dialog of that title that the host is about to show.
+/// Calls scrollWhereTooHigh() for the dialog with this title as soon as the host has shown it.
 inline void scrollDialogWhereTooHigh(const QString& title)
 {
 	QTimer::singleShot(0, qApp, [title] {

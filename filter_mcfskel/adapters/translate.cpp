@@ -9,7 +9,7 @@ namespace mcfskel::host {
 
 namespace {
 
-/// Names a type in an argument.
+/// Passes a type as an argument.
 template <class T>
 struct Tag
 {

@@ -53,7 +53,7 @@ Start startOf(FilterRun& run, const mcf::Parameters& parameters)
 #endif
 		return start;
 	}
-	// What was closed and is not any more has lost faces in an edit: it is no shape to be repaired.
+	// A former stage that is not closed has lost faces in an edit: it must not be repaired.
 	const QString lost = lostState(run.layer());
 	const bool wasStage = !lost.isEmpty();
 	const mcf::Repair repair = wasStage ? mcf::Repair::Off : readRepair(run.parameters);

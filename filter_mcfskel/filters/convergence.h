@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief What filters say of a stage that becomes a curve too early.
+/// @brief Warnings about a stage that becomes a curve before it has converged.
 
 #ifndef MCFSKEL_FILTERS_CONVERGENCE_H
 #define MCFSKEL_FILTERS_CONVERGENCE_H
@@ -17,7 +17,7 @@ namespace mcfskel {
 inline constexpr char surfaceSpreads[] =
 	"The surface does not contract but spreads, being inside out in large parts";
 
-/// Says in the log that a stage that becomes a curve has not converged, and what to do; nothing if it has.
+/// Logs that a stage that becomes a curve has not converged, and what to do; nothing if it has.
 inline void logIfNotConverged(
 	const FilterRun& run, const vcg::tri::mcf::Stage& stage, const char* cure)
 {

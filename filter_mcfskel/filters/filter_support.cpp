@@ -20,7 +20,7 @@ QString menuName(const char* name)
 
 QString helpPage(const QString& whatItDoes)
 {
-	// Short: MeshLab 2020.09 shows all of it above the parameters, in a dialog that cannot be scrolled.
+	// Short: MeshLab 2020.09 shows all of it above the parameters, in a dialog that cannot scroll.
 	return whatItDoes
 		+ "<br>See Tagliasacchi, Alhashim, Olson, Zhang, \"Mean Curvature Skeletons\", SGP 2012, "
 		  "<a href=\"https://doi.org/10.1111/j.1467-8659.2012.03178.x\">"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief What several filters share: parameters, the way to a surface with poles, numbers, texts.
+/// @brief What several filters share: parameters, surfaces with poles, results and log texts.
 
 #ifndef MCFSKEL_FILTER_SUPPORT_H
 #define MCFSKEL_FILTER_SUPPORT_H
@@ -53,16 +53,16 @@ vcg::tri::mcf::Repair readRepair(const ParameterValues& values);
 // Reports, for Python and for the log.
 
 Results stageResults(const vcg::tri::mcf::Stage& stage);
-/// `repaired` (0: as it was, 1: mended, 2: wrapped), the distances of the solid from the input in percent of the
-/// diagonal, and what crosses or is left out.
+/// `repaired` (0: unchanged, 1: mended, 2: wrapped), the distances of the solid from the input in
+/// percent of the diagonal, and how many triangles cross others and how many pieces are left out.
 Results repairResults(const vcg::tri::mcf::SolidReport& report);
 Results curveResults(const vcg::tri::mcf::CurveSkeleton& skeleton);
-/// What a stage has left of the surface's volume, such as "12.3 % of the volume".
+/// What is left of the surface's volume at a stage, such as "12.3 % of the volume".
 QString partOfVolume(double fraction);
 QString stageLine(const vcg::tri::mcf::StageFigures& figures);
 
 /**
- * The selected vertices of the current surface layer, if the parameter fix_selected is set; else empty.
+ * 1 for each selected vertex of the current surface layer; empty unless fix_selected is set.
  * @throws InvalidInput if it is set and no vertex is selected.
  */
 std::vector<char> selectionToHold(const FilterRun& run, const SurfaceLayer& surface);
@@ -71,8 +71,8 @@ std::vector<char> selectionToHold(const FilterRun& run, const SurfaceLayer& surf
 StateSources sourcesOf(const FilterRun& run);
 
 /**
- * For a filter that takes surfaces: a stage, or a copy of one, is none. What became of the state of a layer that
- * was one goes into the log.
+ * For filters that take surfaces: refuses a stage, or a copy of one. If the layer was a stage and
+ * its state is lost, the log says why.
  * @throws InvalidInput
  */
 void refuseStage(const FilterRun& run);
@@ -83,7 +83,7 @@ void logNotes(const FilterRun& run, const SurfaceLayer& surface);
 /// Writes the library's notes into the log; valid as long as the run.
 vcg::tri::mcf::NoteCallback noteLog(const FilterRun& run);
 
-/// What a layer made from a surface will be. @param hollow see SurfaceLayer.
+/// A new layer with this mesh, in which slots are vertices. @param hollow see SurfaceLayer.
 SurfaceLayer compactSurface(std::shared_ptr<const vcg::tri::mcf::SurfaceMesh> mesh,
 	std::shared_ptr<const vcg::tri::mcf::SurfaceMesh> hollow);
 
@@ -91,7 +91,7 @@ SurfaceLayer compactSurface(std::shared_ptr<const vcg::tri::mcf::SurfaceMesh> me
 struct PoledSurface
 {
 	SurfaceLayer surface;
-	/// What the surface had to be repaired of; it is then no layer yet.
+	/// How the surface was repaired; if it isChanged(), the surface is no layer yet.
 	vcg::tri::mcf::SolidReport solid;
 	std::shared_ptr<const vcg::tri::mcf::PoleSet> poles;
 	/// Whether the poles were computed just now, and are not on the layer yet.
@@ -105,7 +105,7 @@ PoledSurface surfaceWithPoles(FilterRun& run, vcg::tri::mcf::PoleMethod method,
 /// NAME_meso_K.
 QString stageLabel(const QString& name, const vcg::tri::mcf::Stage& stage);
 
-/// Layers of the stages of a run, NAME_meso_K, in the frame of the layer that they come from. @throws Cancelled
+/// Adds a layer NAME_meso_K for each stage of a run, in the frame of `source`. @throws Cancelled
 void addStages(DocumentEdit& edit, const MeshModel& source, KeptStages& stages,
 	const SurfaceLink& surface, const vcg::tri::mcf::Progress& progress);
 

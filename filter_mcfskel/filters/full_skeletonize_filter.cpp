@@ -106,7 +106,7 @@ Results fullSkeletonize(FilterRun& run)
 	const QString name = baseName(input);
 	MeshModel* surface = &input;
 	SurfaceLayer contracted = read;
-	// A resampled surface that is too thin is not the one that was contracted.
+	// Where the shape is too thin for its resampled surface, the input itself was contracted.
 	const bool isResampled = result.surface != surfaceInput.mesh;
 	const bool isInput = !isResampled && !solid.isRepaired();
 	if (!isInput) {

@@ -19,7 +19,7 @@ namespace mcf = vcg::tri::mcf;
 
 namespace {
 
-/// The surface with its cavities, be they in it or known from the mesh that it was made of; null if it has none.
+/// The surface with its own cavities, or with those of the mesh it was made from; null if none.
 std::shared_ptr<const mcf::SurfaceMesh> hollowOf(
 	const SurfaceLayer& surface, const mcf::Progress& progress)
 {

@@ -45,7 +45,7 @@ Results pruneSkeleton(FilterRun& run)
 	for (size_t v = target.size(); v-- > 0;)
 		if (pruned.position[size_t(target[v])] == tracked.position[v])
 			pruned.radius[size_t(target[v])] = curve.skeleton.radius[v];
-	// Merged junctions move, and edges that lead to them may grow: what counts is the edges that are gone.
+	// Merged junctions move, so edges that lead to them may grow: only edges that are gone count.
 	double lengthRemoved = 0;
 	for (const auto& [a, b] : tracked.edges)
 		if (target[size_t(a)] == target[size_t(b)])

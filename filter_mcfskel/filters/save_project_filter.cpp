@@ -34,7 +34,7 @@ struct SavedLayer
 	QString path; ///< from the project's folder
 };
 
-/// A name for a layer's file that is no other's, on systems that do not tell cases apart, too.
+/// A name for a layer's file, unique even on systems that ignore case.
 QString fileName(const MeshModel& layer, QSet<QString>& taken)
 {
 	static const QRegularExpression notPortable("[^\\w ().+-]");
@@ -49,7 +49,7 @@ QString fileName(const MeshModel& layer, QSet<QString>& taken)
 	return unique + ".ply";
 }
 
-/// All that is to be written, read before the first file is: a layer may know itself from one of these.
+/// The layers, all read before any file is written: it may hold the state of another layer.
 std::vector<SavedLayer> layersToSave(const FilterRun& run, const QString& folder)
 {
 	std::vector<SavedLayer> saved;
@@ -95,7 +95,7 @@ QByteArray projectText(const MeshDocument& document, const std::vector<SavedLaye
 	std::vector<std::optional<host::ProjectLook>> looks;
 	for (const SavedLayer& saved : layers)
 		looks.push_back(host::projectLook(document, *saved.layer));
-	// MeshLab takes them for those of all layers, or for none.
+	// MeshLab uses them only if all layers have them.
 	const bool all = std::all_of(looks.begin(), looks.end(), [](const auto& look) { return look; });
 	auto look = looks.begin();
 	for (const SavedLayer& saved : layers) {
@@ -145,8 +145,8 @@ Results saveProject(FilterRun& run)
 	for (size_t i = 0; i < layers.size(); ++i) {
 		const mcf::Progress part = run.progress.part(
 			double(i) / double(layers.size()), double(i + 1) / double(layers.size()));
-		// From the first file that is replaced on there is no way back: of a project that was there before some
-		// layers would be the old ones.
+		// No cancelling once the first file is replaced: an existing project would be left with a
+		// mixture of old and new layers.
 		try {
 			writeLayer(layers[i], place, i == 0 ? part : part.showOnly());
 		}

@@ -32,8 +32,8 @@ int choiceOf(const FilterRun& run, const char* name, int count)
 	return choice;
 }
 
-/// Gives the skeleton the correspondence of the surface that the user chose, or of the one that it remembers.
-/// @return its fingerprint; 0 if it is not known.
+/// Gives the skeleton the correspondence of the chosen surface, or of the one that it remembers.
+/// @return the surface's fingerprint; 0 if it is not known.
 std::uint64_t takeSources(const FilterRun& run, CurveLayer& curve)
 {
 	const int surfaceId = run.parameters.integer("surface");

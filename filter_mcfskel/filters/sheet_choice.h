@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief What the filters share that can keep sheets.
+/// @brief What the filters that can keep sheets share.
 
 #ifndef MCFSKEL_SHEET_CHOICE_H
 #define MCFSKEL_SHEET_CHOICE_H
@@ -17,10 +17,10 @@ namespace mcfskel {
 ParameterSpec keepSheetsParameter();
 ParameterSpec sheetThresholdParameter();
 
-/// Reads both of them.
+/// Reads keep_sheets and sheet_threshold.
 void readSheets(const ParameterValues& values, vcg::tri::mcf::Parameters& parameters);
 
-/// The numbers of the curves, and b0, b1, b2 and the sheets.
+/// curveResults() of the curves, the Betti numbers b0, b1 and b2, and the numbers of the sheets.
 Results sheetResults(const vcg::tri::mcf::SheetCollapse& collapse);
 
 } // namespace mcfskel

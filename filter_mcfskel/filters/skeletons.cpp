@@ -28,7 +28,7 @@ MeshModel* rememberedLayer(const FilterRun& run, const CurveLayer& curve)
 	return layerOf(run.document, curve.surface);
 }
 
-/// What mcfskel_node tells, if all of it can be about a skeleton of that many nodes; else empty.
+/// The attribute mcfskel_node, if all of it fits a skeleton of that many nodes; else empty.
 std::vector<int> nodesFromAttribute(const SkeletonSurface& surface, size_t nodes)
 {
 	const std::vector<int> shown = readNodes(*surface.layer);
@@ -175,7 +175,7 @@ void addDerivedSkeleton(FilterRun& run, const CurveLayer& curve, mcf::CurveSkele
 			if (skeleton.radius[v] < 0)
 				skeleton.radius[v] = before[v];
 	}
-	// Surfaces of the same name have their correspondence from the one that was contracted.
+	// Surfaces of the same name got their correspondence from the one that was contracted.
 	struct Other
 	{
 		MeshModel* layer;

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief What the filters that take a skeleton share: the skeleton, the surface that goes with it, and
-/// the correspondence between both.
+/// @brief What the filters that take a skeleton share: the skeleton, its surface, and the
+/// correspondence between the two.
 
 #ifndef MCFSKEL_FILTERS_SKELETONS_H
 #define MCFSKEL_FILTERS_SKELETONS_H
@@ -42,18 +42,17 @@ SkeletonSurface requireSurface(
 	const FilterRun& run, const CurveLayer& curve, const vcg::tri::mcf::Progress& progress);
 
 /**
- * For each vertex of a surface its node of the skeleton: what the skeleton remembers, carried over from
- * the nearest vertex if it remembers another surface; else what the attribute mcfskel_node tells; else
- * empty.
- * @throws Cancelled
+ * The node of each vertex of a surface: from the skeleton's correspondence, by the nearest vertex
+ * if that is of another surface; else from the surface's attribute mcfskel_node; else empty.
+ * @throws InvalidInput as readSurface(); Cancelled
  */
 std::vector<int> nodesOnSurface(const FilterRun& run, const CurveLayer& curve,
 	const SkeletonSurface& surface, const vcg::tri::mcf::Progress& progress);
 
 /**
- * The skeleton with the correspondence of a surface, as if it had been made from it: nodesOnSurface(),
- * and where nothing is known the nearest node of each vertex.
- * @throws Cancelled
+ * The skeleton with the correspondence of a surface, as if it had been made from it:
+ * nodesOnSurface(), or if that is empty the nearest node of each vertex.
+ * @throws InvalidInput as readSurface(); Cancelled
  */
 CurveLayer skeletonOf(const FilterRun& run, CurveLayer curve, const SkeletonSurface& surface,
 	const vcg::tri::mcf::Progress& progress);
@@ -63,11 +62,11 @@ std::vector<double> clearances(const std::vector<vcg::Point3d>& nodes,
 	const vcg::tri::mcf::SurfaceMesh& surface, const vcg::tri::mcf::Progress& progress);
 
 /**
- * Adds a layer NAME_suffix with a skeleton that was made from another one, and writes its
- * correspondence on the surfaces that tell that of the other one. The radius is measured anew where the
- * correspondence is known and `measureRadius` is set.
- * @param curve  the other one, of the current layer.
- * @throws Cancelled
+ * Adds a layer NAME_suffix with a skeleton made from that of the current layer, and writes its
+ * correspondence on the surface that this one remembers and on all surfaces NAME with mcfskel_node.
+ * The radius is measured anew if the correspondence is known and `measureRadius` is set.
+ * @param curve  the skeleton of the current layer.
+ * @throws InvalidInput as readSurface(), for any of these surfaces; Cancelled
  */
 void addDerivedSkeleton(FilterRun& run, const CurveLayer& curve,
 	vcg::tri::mcf::CurveSkeleton skeleton, const char* suffix, bool measureRadius,

@@ -3,7 +3,7 @@
 
 #if MCFSKEL_IN_MESHLAB
 /// @file
-/// @brief What the filters and layers take of MeshLab, under names of their own.
+/// @brief What the filters and layers use of MeshLab, under the names that they use.
 #else
 /// @file
 /// @brief What differs between MeshLab's two plugin interfaces, under one name each, so that the
@@ -41,7 +41,7 @@ Q_DECLARE_METATYPE(Eigen::VectorXd)
 
 namespace mcfskel::host {
 
-/// Whether somebody looks at the layers: in MeshLab's main window, which scripts do not have.
+/// Whether MeshLab's main window shows the layers. Scripts have none.
 inline bool hasWindow()
 {
 	const QWidgetList windows = QApplication::topLevelWidgets();
@@ -62,10 +62,10 @@ using RichFileSave = ::RichSaveFile;
 #if MCFSKEL_HOST_API == 2020
 
 using FilterBase = MeshFilterInterface;
-/// The document as a filter's parameters may see it.
+/// The type of the document that MeshLab's parameters are made for.
 using ParameterDocument = MeshDocument;
 
-/// A parameter of MeshLab's; this age cannot mark one as advanced.
+/// Makes a MeshLab parameter. This interface cannot mark one as advanced.
 template <class Rich, class... Arguments>
 Rich makeParameter(bool /*advanced*/, Arguments&&... arguments)
 {
@@ -113,7 +113,7 @@ Rich makeParameter(bool advanced, Arguments&&... arguments)
 	return Rich(std::forward<Arguments>(arguments)..., advanced);
 }
 
-/// The current layer as a RichMesh takes it.
+/// The id of the current layer, as RichMesh takes it; 0 if there is none.
 inline unsigned currentLayer(ParameterDocument& document)
 {
 	return document.mm() ? unsigned(document.mm()->id()) : 0;

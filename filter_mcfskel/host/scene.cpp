@@ -19,7 +19,7 @@ namespace {
 
 using Data = MLRenderingData;
 
-/// What draws the layers of a document; null if it has no window.
+/// The object that draws the layers of a document; null if it has no window.
 MLSceneGLSharedDataContext* sceneOf(const MeshDocument& document)
 {
 	for (QWidget* widget : QApplication::allWidgets()) {
@@ -148,7 +148,7 @@ void setLooks(MeshDocument& document, const std::vector<std::pair<int, Look>>& l
 				view->update();
 		}
 		catch (...) {
-			// The layers look as the host draws them.
+			// The layers keep the host's looks.
 		}
 	});
 }

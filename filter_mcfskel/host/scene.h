@@ -21,23 +21,23 @@ enum class Look {
 	Curve,    ///< thick edges in the colours of their vertices
 	Outline,  ///< the edges of a coarse surface, the points of a fine one: what is inside shows
 	Stage,    ///< lit from both sides: contracted lobes may be inside out
-	ThinStage ///< the same with the edges of the triangles, of which most show no face any more
+	ThinStage ///< as Stage, with edges: most triangles are too thin to be seen as faces
 };
 
-/// Surfaces of more vertices cover what is inside, however they are drawn.
+/// Surfaces with more vertices hide what is inside even if only their points are drawn.
 constexpr int maxOutlineVertices = 150'000;
-/// Up to here the edges of a surface are drawn, above its points.
+/// An outline shows the edges of a surface up to this many vertices, else its points.
 constexpr int maxEdgedVertices = 2'500;
 
 /**
- * Sets how layers are drawn, by their ids, in all views of a document; nothing where it has no window.
- * It is done when the host has taken in the results of the filter that is running, since it gives new layers
- * looks of its own.
+ * Sets how layers, given by their ids, are drawn in all views of a document; does nothing where it
+ * has no window. It takes effect after the host has taken in the results of the running filter,
+ * because the host then sets its own looks for new layers.
  */
 void setLooks(MeshDocument& document, const std::vector<std::pair<int, Look>>& looks);
 
-/// How a layer is drawn, as MeshLab's project files say it: the text of an element RenderingOption, and its
-/// attributes by their names.
+/// How a layer is drawn, as in MeshLab's project files: the text of an element RenderingOption, and
+/// its attributes by name.
 struct ProjectLook
 {
 	QString text;

@@ -19,7 +19,7 @@ FileError readingError(const QString& name, const QFile& file)
 	return FileError(QString("Cannot read '%1': %2").arg(name, file.errorString()).toStdString());
 }
 
-/// A file of Qt's behind an input stream of the standard's.
+/// The buffer of a std::istream that reads a QFile.
 class FileBuffer : public std::streambuf
 {
 public:
@@ -37,7 +37,7 @@ protected:
 		return count > 0 ? traits_type::to_int_type(*gptr()) : traits_type::eof();
 	}
 
-	/// Tells how much has been read; cannot go elsewhere.
+	/// Supports tellg(), but no other position.
 	pos_type seekoff(off_type offset, std::ios_base::seekdir from, std::ios_base::openmode) override
 	{
 		const bool tells = offset == 0 && from == std::ios_base::cur;
@@ -71,7 +71,7 @@ struct InputFile::Opened
 	{
 		if (!file.open(QIODevice::ReadOnly))
 			throw readingError(name, file);
-		stream.exceptions(std::ios_base::badbit); // hands on what the buffer throws
+		stream.exceptions(std::ios_base::badbit); // rethrows what the buffer throws
 	}
 };
 

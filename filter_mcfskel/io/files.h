@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Whole files by their names, in any alphabet.
+/// @brief Reading files, and replacing them as a whole; names in any alphabet.
 
 #ifndef MCFSKEL_FILES_H
 #define MCFSKEL_FILES_H
@@ -24,11 +24,11 @@ public:
 	using Error::Error;
 };
 
-/// The name of a file that a filter was given; `purpose` as in "to read".
-/// @throws InvalidParameter if it was given none.
+/// Returns the file name that a filter was given; `purpose` completes the error, as in "to read".
+/// @throws InvalidParameter if the name is empty.
 QString requiredName(const QString& name, const char* purpose);
 
-/// A file to read from: the stream throws FileError where the system cannot read on.
+/// A file to read from. The stream throws FileError where the system cannot read on.
 class InputFile
 {
 public:
@@ -44,17 +44,19 @@ private:
 };
 
 /**
- * Replaces a file by what `write` writes, or leaves it as it was: after an error such as a full disk, if `write`
- * throws, and if the process is killed.
+ * Replaces a file by what `write` writes. The old file is unchanged after an error such as a full
+ * disk, if `write` throws, and if the process is killed.
  *
- * The new file is written beside the old one, flushed to the disk and renamed; a process that is killed may
- * leave it there, as `.mcfskel-NUMBER`. A symbolic link stays, and the file that it leads to is replaced. The
- * file's permissions and, where the user may, its owner are kept. Pipes, devices and what is open already, as
- * /dev/stdout, are written to, once `write` has written everything.
+ * The new file is written beside the old one, flushed to the disk and renamed; a process that is
+ * killed may leave it behind as `.mcfskel-NUMBER`. A symbolic link stays, and the file that it
+ * leads to is replaced. The file's permissions and, where the user may, its owner are kept. Pipes,
+ * devices and what is open already, such as /dev/stdout, are written to once `write` has written
+ * everything.
  *
- * Where the folder takes no new files the old one is overwritten, which needs memory for both: the space
- * is taken first and what the file held is put back after an error. Only there can a process that is killed
- * leave a mixture.
+ * Where the folder takes no new files the old one is overwritten, which needs memory for both
+ * contents: the space is allocated first, and the old content is restored after an error. Only
+ * there can a process that is killed leave a mixture. All this holds on Linux; for other systems
+ * see write_file_elsewhere.cpp.
  * @throws FileError with the system's reason
  */
 void writeFile(const QString& name, const std::function<void(std::ostream&)>& write);

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief The file formats of skeletons: which there are, and layers to files and back. The adapters in
-/// adapters/ offer them in the host's import and export; a new format is a header in vcg_ext/skeleton/io/ and a
-/// line in skeletonFormats().
+/// @brief The file formats of skeletons, and how layers are written to and read from them. The
+/// adapters in adapters/ offer them in the host's import and export. A new format is a header in
+/// vcg_ext/skeleton/io/ and a line in skeletonFormats().
 
 #ifndef MCFSKEL_FORMATS_H
 #define MCFSKEL_FORMATS_H
@@ -26,10 +26,10 @@
 
 namespace mcfskel {
 
-/// What a file is made from, beside the skeleton with its correspondence.
+/// What a file is made from, besides the skeleton with its correspondence.
 struct SkeletonContext
 {
-	/// Of the surface's layer, in UTF-8.
+	/// Name of the surface's layer, in UTF-8.
 	std::string surfaceName;
 	/// The surface; without faces if it is not at hand.
 	vcg::tri::mcf::SkinnedSurface surface;
@@ -39,7 +39,7 @@ struct SkeletonContext
 	double diagonal = 0;
 	/// How far the bones of an armature may be from the curve, mesh units; 0: the default.
 	double boneTolerance = 0;
-	/// Of what takes long; silent unless set.
+	/// Used by formats that take long to write; silent unless set.
 	vcg::tri::mcf::Progress progress;
 };
 
@@ -47,13 +47,13 @@ struct SkeletonFormat
 {
 	QString extension;
 	QString description;
-	/// Whether the host's import and export list it. Not so where every host has a format of that
-	/// extension already, which it prefers.
+	/// Whether the host's import and export list it. False where hosts have a format of that
+	/// extension themselves, which they prefer.
 	bool offered;
-	/// Null if it is not written; returns warnings.
+	/// Returns warnings. Null if the format is not written.
 	QStringList (*write)(
 		std::ostream&, const vcg::tri::mcf::CurveSkeleton&, const SkeletonContext&);
-	/// Null if it is not read.
+	/// Null if the format is not read.
 	vcg::tri::mcf::SkeletonFile (*read)(std::istream&);
 	/// Whether it holds the surface as well.
 	bool needsSurface = false;
@@ -70,8 +70,8 @@ constexpr int writtenElements = vcg::tri::io::Mask::IOM_VERTCOORD
 
 /**
  * Writes a skeleton to a file of the format that its name ends with.
- * @param skeleton its correspondence counts the vertices of the surface's layer, or of `context.surface`
- *                 where the format needs that.
+ * @param skeleton its correspondence has an entry for each vertex of the surface's layer, or of
+ *                 `context.surface` where the format needs that.
  * @return warnings, a sentence each.
  * @throws FileError, InvalidInput, Cancelled
  */
@@ -94,7 +94,7 @@ struct FileOutcome
 /// Writes a skeleton layer.
 FileOutcome saveSkeleton(const QString& file, const MeshModel& layer);
 
-/// Reads a file into an empty layer, which stays empty after an error.
+/// Reads a file into an empty layer, which stays empty if the file is refused.
 FileOutcome openSkeleton(const QString& file, MeshModel& layer);
 
 } // namespace mcfskel

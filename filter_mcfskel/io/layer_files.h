@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Layers as PLY that MeshLab reads, edges included, and with what the filters know of them.
+/// @brief Layers as PLY files that MeshLab can read, with edges and with the filters' state.
 
 #ifndef MCFSKEL_LAYER_FILES_H
 #define MCFSKEL_LAYER_FILES_H
@@ -15,17 +15,17 @@
 
 namespace mcfskel {
 
-/// The layer of a stage, with all that the next step needs, and its colours.
+/// Writes the layer of a stage, with all that the next step needs, and its colours.
 /// @throws FileError, InvalidStage, Cancelled
 void writeStageFile(const QString& file, const MeshModel& layer, const StageLayer& stage,
 	const vcg::tri::mcf::Progress& progress);
 
-/// The layer of a skeleton, with its correspondence and its colours. @throws FileError, InvalidInput
+/// Writes the layer of a skeleton, with correspondence and colours. @throws FileError, InvalidInput
 void writeCurveFile(const QString& file, const MeshModel& layer, const CurveLayer& curve);
 
 /**
- * Any layer: vertices, faces and edges, quality and colours of vertices and faces, the attributes mcfskel_*.
- * Textures and what else a layer may have are left out.
+ * Writes any layer: vertices, faces and edges, quality and colours of vertices and faces, and the
+ * attributes mcfskel_*. Textures and all else are left out.
  * @throws FileError, Cancelled
  */
 void writeMeshFile(

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Not QSaveFile: in Qt 5 its commit() ignores the error of its last flush and so replaces a good file by a
-// cut one on a full disk, its text for that error is "Unknown error", it replaces devices, and where
-// it writes in place it truncates first.
+// Not QSaveFile: in Qt 5 its commit() ignores the error of its last flush and so replaces a good
+// file by a truncated one on a full disk, its text for that error is "Unknown error", it replaces
+// devices, and where it writes in place it truncates first.
 
 #include "files.h"
 
@@ -56,7 +56,7 @@ struct Errors
 	}
 };
 
-/// A file descriptor of one's own; negative: none.
+/// Owns a file descriptor; negative: none.
 class Descriptor
 {
 public:
@@ -73,14 +73,14 @@ public:
 
 	operator int() const { return number; }
 
-	/// Closes it; some file systems tell of a full disk only now.
+	/// Closes it; some file systems report a full disk only then.
 	void close(const Errors& errors) { errors.check(::close(std::exchange(number, -1)) != 0); }
 
 private:
 	int number;
 };
 
-/// Holds back the signals that a failing write sends beside its error: they would end the host.
+/// Blocks the signals that a failing write raises besides its error: they would end the host.
 class HeldSignals
 {
 public:
@@ -138,7 +138,7 @@ std::string readAll(int file, const Errors& errors)
 			continue;
 		errors.check(count < 0);
 		if (count == 0)
-			content.resize(done); // somebody else has cut it
+			content.resize(done); // truncated by another process
 		done += size_t(count);
 	}
 	return content;
@@ -146,11 +146,11 @@ std::string readAll(int file, const Errors& errors)
 
 void flushToDisk(int file, const Errors& errors)
 {
-	// EINVAL: the file system has no such thing.
+	// EINVAL: this kind of file cannot be flushed.
 	errors.check(::fsync(file) != 0 && errno != EINVAL);
 }
 
-/// A stream's blocks, each handed to `sink(bytes, count)`; what that throws, the stream throws.
+/// A stream buffer that passes blocks to `sink(bytes, count)`; the stream rethrows its exceptions.
 template <class Sink>
 class BlockBuffer : public std::streambuf
 {
@@ -185,7 +185,7 @@ void stream(const std::function<void(std::ostream&)>& write, const Sink& sink)
 {
 	BlockBuffer<Sink> buffer(sink);
 	std::ostream out(&buffer);
-	out.exceptions(std::ios_base::badbit); // hands on what the buffer throws
+	out.exceptions(std::ios_base::badbit); // rethrows what the buffer throws
 	write(out);
 	out.flush();
 }
@@ -197,7 +197,7 @@ std::string inMemory(const std::function<void(std::ostream&)>& write)
 	return content;
 }
 
-/// Writes into a pipe or a device, once there is all to write.
+/// Writes the complete content into a pipe or a device.
 void writeThrough(Descriptor&& file, const std::string& content, const Errors& errors)
 {
 	errors.check(file < 0);
@@ -206,8 +206,8 @@ void writeThrough(Descriptor&& file, const std::string& content, const Errors& e
 }
 
 /**
- * Writes over what a file holds. The space is taken first; after an error the file is as it was. A process that
- * is killed meanwhile leaves a mixture of both, so this is for where nothing else can be done.
+ * Overwrites the content of a file. The space is allocated first; after an error the old content is
+ * restored. A process that is killed meanwhile leaves a mixture of both: this is the last resort.
  */
 void writeInPlace(const fs::path& path, const std::string& content, const Errors& errors)
 {
@@ -248,13 +248,13 @@ void writeInPlace(const fs::path& path, const std::string& content, const Errors
 class NewFile
 {
 public:
-	/// @param status of the file that is there; null: none is. Then the process's usual permissions hold.
+	/// @param status of the existing file; null: there is none, the process's default mode is used.
 	NewFile(const fs::path& beside, const struct stat* status) :
 			file(create(beside.parent_path(), status ? status->st_mode & 0600 : 0666))
 	{
 		if (file < 0 || !status)
 			return;
-		// What may not be kept, another user's ownership say, is not worth an error.
+		// An owner or a group that the user may not set is not worth an error.
 		if (::fchown(file, status->st_uid, status->st_gid) != 0)
 			(void)!::fchown(file, uid_t(-1), status->st_gid);
 		(void)!::fchmod(file, status->st_mode & 0777);
@@ -278,7 +278,7 @@ public:
 	}
 
 private:
-	/// The name tells nothing of the other's, which may be as long as a name can be.
+	/// The name does not contain the other file's, which may be as long as a name can be.
 	int create(const fs::path& folder, mode_t mode)
 	{
 		std::random_device random;
@@ -296,8 +296,8 @@ private:
 	Descriptor file;
 };
 
-/// Whether a file that may not be replaced may still be written to: so it is with one in a folder that takes
-/// no new files, and with one that is mounted.
+/// Whether a file that cannot be replaced may still be writable: so are files in a folder that
+/// takes no new ones, and files that are mount points.
 bool onlyInPlace(int error)
 {
 	return error == EACCES || error == EPERM || error == EROFS || error == EBUSY;
@@ -321,7 +321,7 @@ void replace(const fs::path& path, const struct stat* status,
 			if (file.takePlaceOf(path)) {
 				const Descriptor folder(
 					::open(path.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-				::fsync(folder); // the name; where that fails, the old file may come back
+				::fsync(folder); // for the name: without it a crash may bring the old file back
 				return;
 			}
 			if (!(status && onlyInPlace(errno)))
@@ -359,7 +359,7 @@ void writeFile(const QString& name, const std::function<void(std::ostream&)>& wr
 		return writeThrough(
 			Descriptor(::open(path.c_str(), O_WRONLY | O_CLOEXEC)), content, errors);
 	}
-	// A read-only file in a folder that may be changed could be replaced, against its owner's will.
+	// rename() would replace even a read-only file, against its owner's will.
 	errors.check(exists && ::faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) != 0);
 	replace(path, exists ? &status : nullptr, write, errors);
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Where there are no system calls of Linux, or where MCFSKEL_PORTABLE_FILES is defined: by Qt alone, with the
+// For systems other than Linux, or where MCFSKEL_PORTABLE_FILES is defined: Qt alone, with the
 // faults of QSaveFile that write_file.cpp names.
 
 #include "files.h"

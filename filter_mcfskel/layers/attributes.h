@@ -2,16 +2,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Attributes of layers that do not outlive their layer.
+/// @brief Attributes of layers whose memory is freed with their layer.
 ///
-/// VCG never frees the attributes of a mesh that is destroyed: what they hold is lost to the process.
-/// But TriMesh::Clear(), which the destructor calls, resizes the attributes of vertices to nothing in
-/// releases since 2023.12 (in earlier ones all is lost as ever). An ordinary attribute keeps its memory
-/// then; those here give it back, so that nothing of a layer stays but some 60 bytes for each attribute.
-/// An attribute of the whole mesh gets no such call.
+/// VCG never frees the attributes of a mesh that is destroyed: their memory leaks. But since
+/// release 2023.12 TriMesh::Clear(), which the destructor calls, resizes the attributes of vertices
+/// to 0 (in earlier releases all of them leak). An ordinary attribute keeps its memory even then;
+/// those here free it, so that only some 60 bytes for each attribute of a layer leak. An attribute
+/// of the whole mesh gets no such call.
 ///
-/// No list of layers is kept: a mesh may be swapped with another one, moved, cleared or destroyed by any
-/// filter, in any document and any thread, and the attribute is always called by whoever owns it.
+/// No list of layers is kept: any filter may swap, move, clear or destroy a mesh, in any document
+/// and any thread, and the mesh that owns an attribute always calls it.
 
 #ifndef MCFSKEL_ATTRIBUTES_H
 #define MCFSKEL_ATTRIBUTES_H
@@ -24,7 +24,7 @@
 
 namespace mcfskel {
 
-/// One value for each vertex slot; the memory is given back when the mesh is cleared.
+/// One value for each vertex slot; the memory is freed when the mesh is cleared.
 template <class T>
 class VertexAttribute : public vcg::SimpleTempData<CMeshO::VertContainer, T>
 {
@@ -41,15 +41,15 @@ public:
 	}
 };
 
-/// What a MeshAttribute<Data> has at each vertex: a type of its own, to be told from all others.
+/// The placeholder that a MeshAttribute<Data> has at each vertex. Its type identifies it.
 template <class Data>
 struct NoValue
 {
 	char unused;
 };
 
-/// One `Data` for the whole mesh, dropped when the mesh is cleared. To VCG it is an attribute of vertices,
-/// sound in every way: whatever a host does to all of them may be done to it.
+/// One `Data` for the whole mesh, dropped when the mesh is cleared. To VCG it is a regular
+/// attribute of vertices: a host may do to it whatever it does to all of them.
 template <class Data>
 class MeshAttribute : public VertexAttribute<NoValue<Data>>
 {
@@ -78,7 +78,7 @@ inline const vcg::PointerToAttribute* findAttribute(
 }
 
 /**
- * Adds an attribute of vertices as VCG does, with a handle that is a `Handle`.
+ * Adds an attribute of vertices as VCG does, but stored in a `Handle`.
  * @pre the mesh has none of that name.
  */
 template <class Handle>

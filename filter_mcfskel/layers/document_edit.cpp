@@ -176,7 +176,7 @@ void DocumentEdit::writePoles(
 			for (size_t slot = 0; slot < layer.cm.vert.size(); ++slot) {
 				const int v = (*vertexOfSlot)[slot];
 				const bool has = v >= 0 && poles->has(v);
-				// A vertex without a pole shows itself: readers that ignore the radius stay inside the box.
+				// No pole: the vertex itself, in the box for readers that ignore the radius.
 				centre[slot] = has ? toHost(poles->centre[size_t(v)]) : layer.cm.vert[slot].cP();
 				radius[slot] = has ? Scalarm(poles->radius[size_t(v)]) : Scalarm(-1);
 			}
@@ -218,7 +218,7 @@ void DocumentEdit::commit()
 			present();
 	}
 	catch (const std::bad_alloc&) {
-		// The results are there, if not as they are best seen.
+		// The results are there, only not presented.
 	}
 }
 
@@ -288,8 +288,7 @@ void DocumentEdit::present()
 		MeshModel& layer = *document.getMesh(id);
 		if (layer.cm.fn > 0)
 			continue;
-		// Curves and points have no normals; with the shading that comes of it they would be all but
-		// black.
+		// Curves and points have no normals; shaded, they would be almost black.
 		layer.clearDataMask(MeshModel::MM_VERTNORMAL);
 		const std::vector<double> values = vertexQuality(layer);
 		if (!values.empty())
@@ -308,7 +307,7 @@ void DocumentEdit::present()
 			looks.emplace_back(id, host::Look::Curve);
 		if (layer == outline)
 			looks.emplace_back(id, host::Look::Outline);
-		// What was made from the same surface before would lie upon the new layer.
+		// What was made from the same surface before would hide the new layer.
 		const bool isKin = baseName(*layer) == baseName(shown) && isMade(*layer);
 		if (layer != &shown && layer != outline && (isNew || isSource || isKin))
 			document.setVisible(id, false);

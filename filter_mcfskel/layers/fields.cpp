@@ -27,7 +27,7 @@ vcg::Color4b fromHsv(double hue, double saturation, double value)
 	return vcg::Color4b(channel(5), channel(3), channel(1), 255);
 }
 
-/// Colours that differ for numbers that follow each other: steps of the golden angle round the hues.
+/// Consecutive numbers get different colours: the hue advances by the golden angle.
 vcg::Color4b partColour(int part)
 {
 	if (part < 0)
@@ -132,7 +132,7 @@ void setFaceParts(MeshModel& layer, const std::vector<int>& ofSlot)
 		layer.updateDataMask(MeshModel::MM_FACEQUALITY | MeshModel::MM_FACECOLOR);
 	}
 	catch (const std::bad_alloc&) {
-		// VCG takes them for enabled now, though they have no memory.
+		// VCG now counts them as enabled, though they have no memory.
 		if (!hadQuality)
 			faces.DisableQuality();
 		if (!hadColour)

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Quality and colour on layers that are there, and faces on layers of points.
+/// @brief Setting quality and colour on existing layers, and adding faces to layers of points.
 
 #ifndef MCFSKEL_FIELDS_H
 #define MCFSKEL_FIELDS_H
@@ -24,23 +24,24 @@ std::vector<double> vertexQuality(const MeshModel& layer);
 /// Sets the vertex quality; one value for each vertex that is not deleted.
 void setVertexQuality(MeshModel& layer, const std::vector<double>& values);
 
-/// As above for a surface layer, one value for each vertex of `surface`; 0 where there is none.
+/// As above for a surface layer, one value for each vertex of `surface`; 0 for other vertices.
 void setVertexQuality(
 	MeshModel& layer, const SurfaceLayer& surface, const std::vector<double>& values);
 
-/// Colours the vertices from blue for `low` through green to red for `high`.
+/// Colours the vertices that are not deleted, from blue for `low` through green to red for `high`.
 void setVertexColours(MeshModel& layer, const std::vector<double>& values, double low, double high);
 
 /**
- * For each face slot of a layer its part; -1 where the face was left out.
- * @param ofFace  one for each face of `surface`, which the layer was read as.
+ * The part of each face slot of a layer; -1 for deleted faces and those that `surface` lacks.
+ * @param surface  what the layer was read as.
+ * @param ofFace   the part of each face of `surface`.
  * @throws Cancelled
  */
 std::vector<int> facePartsOfSlots(const MeshModel& layer, const SurfaceLayer& surface,
 	const std::vector<int>& ofFace, const vcg::tri::mcf::Progress& progress);
 
-/// Sets the quality of each face slot to its part, and its colour to one for that part; what has no
-/// part, -1, is grey.
+/// Sets the quality of each face slot to the number of its part, and its colour to that of the
+/// part; faces without a part, -1, are grey.
 void setFaceParts(MeshModel& layer, const std::vector<int>& ofSlot);
 
 } // namespace mcfskel

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief What a new layer is filled with. For layers/ alone.
+/// @brief Filling new layers. Internal to layers/.
 
 #ifndef MCFSKEL_FILL_LAYERS_H
 #define MCFSKEL_FILL_LAYERS_H
@@ -60,15 +60,15 @@ inline void addVertices(MeshModel& layer, const std::vector<vcg::Point3d>& point
 		(vertex++)->P() = toHost(p);
 }
 
-/// With the normals of its faces, and of its vertices, means by area: those that MeshLab makes, means by
-/// angle, take longer than all the rest.
+/// Also sets the normals of faces, and of vertices weighted by area: MeshLab's, weighted by angle,
+/// take longer than all the rest.
 /// @throws Cancelled
 void fillSurface(MeshModel& layer, const mcf::SurfaceMesh& mesh, const mcf::Progress& progress);
 
 void fillCurve(MeshModel& layer, const std::vector<vcg::Point3d>& nodes,
 	const std::vector<std::array<int, 2>>& edges, const std::vector<double>& radius);
 
-/// Curves vermilion, sheets blue, volume grey: told apart by colour-blind eyes, too.
+/// Also colours vertices, safe for the colour-blind: curves vermilion, sheets blue, volume grey.
 void writeKinds(MeshModel& layer, const std::vector<mcf::VertexKind>& kinds,
 	const mcf::Progress& progress = mcf::Progress());
 

@@ -44,7 +44,7 @@ KeptStages::KeptStages()
 			teller = std::thread([this] { tell(); });
 		}
 		catch (const std::system_error&) {
-			// No thread is to be had: takeFields() does the work.
+			// No thread can be started: takeFields() does the work.
 		}
 }
 

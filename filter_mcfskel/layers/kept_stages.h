@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief The stages of a run that will become layers, and their fields, told while the flow goes on.
+/// @brief The stages of a run that will become layers, and their fields, computed during the flow.
 
 #ifndef MCFSKEL_KEPT_STAGES_H
 #define MCFSKEL_KEPT_STAGES_H
@@ -22,9 +22,9 @@ namespace mcfskel {
 /**
  * Stages in the order of their iterations.
  *
- * To tell the fields of a stage takes about as long as to make the next one. Where there is more than one
- * core, a thread of its own does that from the moment a stage is added, and while FlowShare lives, the flow
- * leaves that thread a core. The fields are the same bits either way.
+ * Computing the fields of a stage takes about as long as the next iteration of the flow. With more
+ * than one core a worker thread begins as soon as a stage is added, and while a FlowShare lives,
+ * the flow leaves that thread a core. The fields are bitwise the same with and without the thread.
  */
 class KeptStages
 {
@@ -32,7 +32,7 @@ public:
 	using StagePointer = std::shared_ptr<const vcg::tri::mcf::Stage>;
 
 	KeptStages();
-	/// Fields that are still being told are given up.
+	/// Cancels the fields that are still being computed.
 	~KeptStages();
 	KeptStages(const KeptStages&) = delete;
 	KeptStages& operator=(const KeptStages&) = delete;
@@ -44,11 +44,11 @@ public:
 	const StagePointer& stage(size_t i) const { return kept[i].stage; }
 	const StagePointer& last() const { return kept.back().stage; }
 
-	/// The fields of stage i, once: waited for, or told by this thread if that one has not begun with them.
-	/// @throws Cancelled
+	/// The fields of stage i, which are moved out: waits for the worker thread, or computes them in
+	/// this thread if the worker has not begun. @throws Cancelled
 	StageFields takeFields(size_t i, const vcg::tri::mcf::Progress& progress);
 
-	/// While it lives, parallel loops of this thread leave a core to the one that tells fields.
+	/// While it lives, parallel loops of this thread leave a core to the worker thread.
 	class FlowShare
 	{
 	public:
@@ -68,16 +68,16 @@ private:
 	{
 		StagePointer stage;
 		std::future<StageFields> fields;
-		Task telling; ///< not valid once a thread has begun with it
+		Task telling; ///< not valid once a thread has begun it
 	};
 
-	std::deque<Kept> kept; ///< a deque: what is in it stays in its place
-	std::mutex mutex; ///< of the tasks and of the number of stages; held where `givenUp` is set
+	std::deque<Kept> kept; ///< a deque: its elements never move
+	std::mutex mutex; ///< guards the tasks and the number of stages; held where `givenUp` is set
 	std::condition_variable changed;
 	std::atomic<bool> givenUp {false};
 	std::thread teller;
 
-	/// The task of stage i for the one who asks first; for all others one that is not valid.
+	/// The task of stage i for the first caller; for later ones a task that is not valid.
 	Task begin(size_t i);
 	void tell();
 };

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief What a layer knows beyond its attributes, and the attributes by name and type. For layers/ alone.
+/// @brief A layer's state beyond its attributes; attributes by name and type. Internal to layers/.
 
 #ifndef MCFSKEL_LAYER_STATE_H
 #define MCFSKEL_LAYER_STATE_H
@@ -38,10 +38,10 @@ constexpr char kindAttribute[] = "mcfskel_kind";
 constexpr char bridgeAttribute[] = "mcfskel_bridge";
 constexpr char stateAttribute[] = "mcfskel_state";
 
-/// What a layer knows beyond its attributes. Immutable: copies share it.
+/// The exact state of a layer, beyond its attributes. Immutable: copies share it.
 struct LayerState
 {
-	/// Of the geometry that the state belongs to.
+	/// fingerprint() of the geometry that the state belongs to.
 	std::uint64_t fingerprint = 0;
 	/// Surface layers.
 	SurfaceLayer surface;
@@ -50,7 +50,7 @@ struct LayerState
 	StageLayer stage;
 	/// Skeletons.
 	std::shared_ptr<const CurveLayer> curve;
-	/// What 100 % of a Length meant where a skeleton was made; 0: not known.
+	/// What 100 % of a Length was, mesh units, where a skeleton was made; 0: not known.
 	double diagonal = 0;
 };
 
@@ -132,7 +132,7 @@ inline void requireOwnAttributes(const MeshModel& layer)
 	requireType<StateMark>(layer, layer.cm.vert_attr, stateAttribute);
 }
 
-/// Handle to a per-vertex attribute, made if need be.
+/// Handle to a per-vertex attribute, added if missing. @throws InvalidInput: see requireType()
 template <class T>
 auto vertexAttribute(MeshModel& layer, const char* name)
 {
@@ -171,7 +171,7 @@ inline StatePointer newState(const MeshModel& layer, LayerState state)
 	return std::make_shared<const LayerState>(std::move(state));
 }
 
-/// A layer's state, made if need be.
+/// Where a layer's state is, added if missing. @throws InvalidInput: see requireType()
 inline StateAttribute& stateOf(MeshModel& layer)
 {
 	requireType<StateMark>(layer, layer.cm.vert_attr, stateAttribute);
@@ -203,7 +203,7 @@ inline vcg::Box3d liveBounds(const CMeshO& mesh)
 	return box;
 }
 
-/// The slots of a layer that are vertices, in order.
+/// The vertex slots of a layer that are not deleted, ascending.
 inline std::vector<int> liveSlots(const CMeshO& mesh)
 {
 	std::vector<int> live;

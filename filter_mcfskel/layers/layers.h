@@ -6,10 +6,10 @@
 /// writing results as new layers and as custom attributes.
 ///
 /// What users and scripts see are the attributes mcfskel_*. They hold the host's scalar, often a
-/// float, while the pipeline counts in double; so each layer also carries its exact state, in one more
-/// attribute (attributes.h). Steps made one by one are then the same, bit for bit, as a full run.
-/// What somebody has edited since, positions or attributes, replaces what the state says; once the
-/// triangles or edges are others, the state is gone.
+/// float, while the pipeline computes in double. So each layer also carries its exact state, in one
+/// more attribute (attributes.h), and steps made one by one equal a full run, bit for bit.
+/// Positions and attributes that are edited later replace those of the state; if the triangles or
+/// edges change, the state is lost.
 
 #ifndef MCFSKEL_LAYERS_H
 #define MCFSKEL_LAYERS_H
@@ -38,9 +38,9 @@ struct SurfaceLayer
 	std::shared_ptr<const std::vector<int>> vertexOfSlot;
 	/// What had to be repaired, for the log.
 	std::vector<std::string> notes;
-	/// For each connected component whether it was given inside out; empty if all or none of them were.
+	/// For each connected component whether it was inside out; empty if all or none of them were.
 	std::vector<char> turned = {};
-	/// The surface with the cavities that are not in `mesh`, see mcf::LeftOutPieces::hollow; null if there are none.
+	/// The surface with the cavities that `mesh` lacks, see LeftOutPieces::hollow; null if none.
 	std::shared_ptr<const vcg::tri::mcf::SurfaceMesh> hollow = nullptr;
 };
 
@@ -65,8 +65,8 @@ struct StageLayer
 /// A skeleton as found on a layer.
 struct CurveLayer
 {
-	/// Exact where the layer still is what a filter made; else what the layer shows, radius and
-	/// significance from their attributes or empty. `node` is empty where the correspondence is not known.
+	/// Exact if the layer is still what a filter made; else what the layer shows, with radius and
+	/// significance from their attributes or empty. `node` is empty if it is not known.
 	vcg::tri::mcf::CurveSkeleton skeleton;
 	/// The surface whose vertices `skeleton.node` counts.
 	SurfaceLink surface;
@@ -77,15 +77,17 @@ struct CurveLayer
 };
 
 /**
- * The length, in mesh units, that 100 % of a Length means on this layer: the bounding box diagonal; of
- * a stage, or a skeleton as a filter made it, that of its surface: the same at every step.
+ * The length, in mesh units, that 100 % of a Length means on this layer: the bounding box diagonal,
+ * 0 if it is not finite; of a stage, or of a skeleton that a filter made, that of its surface, so
+ * that it is the same at every step.
  */
 double referenceDiagonal(const MeshModel& layer);
 
-/// A name without file type and without what the filters append: NAME of NAME_meso_4.
+/// A name without copy number, file type and what the filters append: NAME of NAME_meso_4(1);
+/// "mesh" if nothing is left.
 QString baseName(QString name);
 
-/// The layer's name without file type and without what the filters append: NAME of NAME_meso_4.
+/// The same for the layer's name.
 QString baseName(const MeshModel& layer);
 
 /**
@@ -97,7 +99,7 @@ QString baseName(const MeshModel& layer);
 SurfaceLayer readSurface(
 	const MeshModel& layer, const vcg::tri::mcf::Progress& progress = vcg::tri::mcf::Progress());
 
-/// A surface layer as that of a solid: what it had to be made into may have other vertices.
+/// A surface layer made into that of a solid, which may have other vertices.
 struct SolidLayer
 {
 	/// `vertexOfSlot` names the closest vertex where the layer's own is not one of the solid's.
@@ -110,7 +112,7 @@ struct SolidLayer
 
 /**
  * As readSurface(), with what does not bound a solid repaired: see solidSurface().
- * @throws InvalidInput as readSurface() where `choices` do not allow for more; SolverError, Cancelled.
+ * @throws InvalidInput as readSurface(), for what `choices` do not repair; SolverError, Cancelled.
  */
 SolidLayer readSolid(const MeshModel& layer, const vcg::tri::mcf::SolidChoices& choices,
 	const vcg::tri::mcf::Progress& progress = vcg::tri::mcf::Progress());
@@ -126,7 +128,7 @@ std::vector<char> readSelection(
 /// As above for a layer whose slots are its vertices, as those of a stage are.
 std::vector<char> readSelection(const MeshModel& layer);
 
-/// Where the state of a layer is looked for if the layer has none, and who reads what became of it.
+/// Where the state of a layer is looked for if the layer has none, and the log that says so.
 struct StateSources
 {
 	const MeshDocument& document;
@@ -135,14 +137,14 @@ struct StateSources
 };
 
 /**
- * The stage that a layer holds, with positions, poles, fixed and held marks as they were edited since; false if it
- * is none, or if its triangles were changed. Copies of a layer and files that a filter wrote count.
- * @throws InvalidStage if what was edited makes no stage.
+ * The stage that a layer holds, with later edits of positions, poles, fixed and held marks; empty
+ * if it is none, or if its triangles were changed. Copies of layers and a filter's files count.
+ * @throws InvalidStage if the edits make no valid stage; InvalidInput if the layer has an attribute
+ *         mcfskel_* of a foreign type.
  */
 StageLayer readStage(const MeshModel& layer, const StateSources& sources);
 
-/// What became of the state of a layer that seems to have been a stage, for which readStage() finds none; empty if
-/// it never was one.
+/// Why readStage() finds no stage on a layer that seems to have been one; empty for other layers.
 QString lostState(const MeshModel& layer);
 
 /**
@@ -152,13 +154,13 @@ QString lostState(const MeshModel& layer);
  */
 CurveLayer readCurve(const MeshModel& layer);
 
-/// As above, with what readStage() would find, too: edited positions and radii, copies, files.
+/// As above, but finds skeletons as readStage() finds stages: with edits, in copies and in files.
 CurveLayer readCurve(const MeshModel& layer, const StateSources& sources);
 
 /// Puts a skeleton into a new, empty layer.
 void fillCurve(MeshModel& layer, const CurveLayer& curve);
 
-/// The values of mcfskel_node on a surface layer, for each vertex; empty if it has none.
+/// The values of mcfskel_node on a surface layer, for each vertex not deleted; empty if none.
 std::vector<int> readNodes(const MeshModel& layer);
 
 /**
@@ -170,9 +172,9 @@ std::shared_ptr<const vcg::tri::mcf::PoleSet> readPoles(
 	const MeshModel& layer, const SurfaceLayer& surface, const vcg::tri::mcf::Progress& progress);
 
 /**
- * Changes to a document, all or none: what was added is removed again unless commit() is reached, and what
- * was there is not changed before.
- * Layers that were there before must have gone through readSurface() or readStage().
+ * Changes to a document, all or none. Until commit() only layers and attributes are added, and they
+ * are removed again if it is not reached; existing values change in commit() alone.
+ * @pre existing layers that are written on have gone through readSurface() or readStage().
  */
 class DocumentEdit
 {
@@ -195,11 +197,11 @@ public:
 		const std::vector<vcg::Point3d>& nodes, const std::vector<std::array<int, 2>>& edges,
 		const std::vector<double>& radius);
 
-	/// The same with all that the skeleton knows, its correspondence included.
+	/// The same with the skeleton's whole state, correspondence included.
 	MeshModel& addCurve(const MeshModel& source, const QString& label, const CurveLayer& curve);
 
 #if MCFSKEL_SHEETS
-	/// A new layer of curves and sheets, with mcfskel_kind and mcfskel_radius; the radius is also the
+	/// A new layer of curves and sheets, with mcfskel_kind and mcfskel_radius, which is also the
 	/// quality.
 	MeshModel& addMesoSkeleton(
 		const MeshModel& source, const QString& label, const vcg::tri::mcf::MesoSkeleton& skeleton);
@@ -210,7 +212,7 @@ public:
 		std::shared_ptr<const vcg::tri::mcf::Stage> stage, const StageFields& fields,
 		const SurfaceLink& surface, const vcg::tri::mcf::Progress& progress);
 
-	/// As above, read from files: in the frame of their surface's layer, if that is there.
+	/// As above for what a file held: in the frame of its surface's layer, if that is there.
 	/// @param diagonal what 100 % of a Length is on the layer; 0: not known.
 	MeshModel& addCurve(const QString& label, const CurveLayer& curve, double diagonal);
 	MeshModel& addStage(const QString& label, std::shared_ptr<const vcg::tri::mcf::Stage> stage,
@@ -232,12 +234,12 @@ public:
 	void writeNodes(const SurfaceLink& surface, const std::vector<int>& node);
 
 	/**
-	 * Comes last in a filter: whatever else may fail, such as the memory for its results, has been done. Keeps
-	 * the changes and makes the layer added last the current one. In MeshLab's window that one
-	 * is seen at once: it lies inside the layers that it was made from, so these are hidden, and so
-	 * are the other new ones and what was made from the same surface before; curves and points are coloured by
-	 * their quality, not shaded, and lie in the outline of their surface. Where
-	 * there is no window nothing of this is done: scripts use visibility to say which layers a filter
+	 * Keeps the changes and makes the layer added last the current one. To be called last in a
+	 * filter, after all that can fail, such as allocating its results. In MeshLab's window the
+	 * layer added last lies inside those that it was made from. To make it visible these are
+	 * hidden, and so are the other new ones and what was made from the same surface before; curves
+	 * and points are coloured by their quality, not shaded, within the outline of their surface.
+	 * Without a window nothing of this is done: scripts use visibility to say which layers a filter
 	 * works on, and colours would be saved with the layer.
 	 */
 	void commit();
@@ -258,22 +260,22 @@ private:
 	void changeState(MeshModel& layer, const SurfaceLayer& surface,
 		std::shared_ptr<const vcg::tri::mcf::PoleSet> poles);
 	void present();
-	/// The layer that shows the shape around what was added last; null if there is none. One that a skeleton lay in
-	/// already counts only while it is visible: the user may have hidden it.
+	/// The surface to outline around the layer added last; null if there is none. Around a skeleton
+	/// made from another one it counts only while it is visible: the user may have hidden it.
 	const MeshModel* surfaceToOutline() const;
 
 	MeshDocument& document;
 	int previousLayer;
 	std::vector<int> added;
 	std::vector<NewAttribute> newAttributes;
-	/// What commit() does to layers that may have been there before. It cannot fail: memory is had by then.
+	/// What commit() does to existing layers. It cannot fail: all memory is allocated before.
 	std::vector<std::function<void()>> changes;
 	/// The layers that the added ones were made from.
 	std::vector<int> sources;
 	bool committed = false;
 };
 
-/// The layer that a link leads to: the one with its id, or else one with its geometry; null if there is none.
+/// The layer that a link leads to: that of its id if unchanged, else one of its geometry; or null.
 MeshModel* layerOf(MeshDocument& document, const SurfaceLink& link);
 
 /// The link to a surface layer, for the stages that will come from it.

@@ -135,7 +135,7 @@ LayerTriangles readTriangles(const MeshModel& layer, const mcf::Progress& progre
 		mcf::Triangle triangle;
 		for (int k = 0; k < 3; ++k) {
 			const size_t slot = vcg::tri::Index(mesh, f.cV(k));
-			// The host takes a number that no vertex has from a file as it is.
+			// A host may read an index from a file that no vertex has: the input check refuses it.
 			triangle[size_t(k)] = slot < read.pointOfSlot.size()
 				? read.pointOfSlot[slot]
 				: int(std::min<size_t>(slot, std::numeric_limits<int>::max()));

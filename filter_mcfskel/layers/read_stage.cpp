@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Stages and skeletons of layers, with what was edited on them since a filter made them, and where
+/// @brief Stages and skeletons of layers, with the edits made since a filter made them, and where
 /// their state is looked for if it is not on the layer.
 
 #include "stored_state.h"
@@ -43,8 +43,8 @@ bool isUnmoved(const LayerState& state, const MeshModel& layer)
 		== 0;
 }
 
-/// The state of a stage or skeleton: the layer's own; else that of a layer of the same geometry, as a copy's
-/// original is; else that in the file that it was loaded from.
+/// The state of a stage or skeleton: the layer's own; else that of a layer of the same geometry,
+/// such as the original of a copy; else that in the file that the layer was loaded from.
 StatePointer foundState(const MeshModel& layer, const StateSources& sources)
 {
 	if (StatePointer own = findState(layer.cm)) {
@@ -80,7 +80,7 @@ const T* attributeValues(const MeshModel& layer, const char* name)
 	return attribute && isOfType<T>(*attribute) ? valuesOf<T>(*attribute) : nullptr;
 }
 
-/// A stage while it takes over what was edited on its layer: it is copied for the first change.
+/// Applies the edits on a layer to its stage, which is copied at the first change.
 class StageEditor
 {
 public:

@@ -21,7 +21,7 @@ struct StageFields
 	std::vector<vcg::tri::mcf::VertexKind> kind;
 };
 
-/// @throws Cancelled
+/// Computes the fields of a stage. @throws Cancelled
 inline StageFields stageFields(
 	const vcg::tri::mcf::Stage& stage, const vcg::tri::mcf::Progress& progress)
 {

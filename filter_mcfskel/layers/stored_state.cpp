@@ -125,7 +125,7 @@ StatePointer storedState(const MeshModel& layer)
 		return fits ? std::make_shared<const LayerState>(state) : nullptr;
 	}
 	catch (const mcf::Error&) {
-		return nullptr; // as any mesh: who wants the state in it uses Load Stage, which says what is wrong
+		return nullptr; // taken as any mesh; Load Stage says what is wrong with the file
 	}
 }
 #endif

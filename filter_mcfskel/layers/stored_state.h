@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief The state of a layer in the file that it was loaded from. For layers/ alone.
+/// @brief The state of a layer in the file that it was loaded from. Internal to layers/.
 
 #ifndef MCFSKEL_STORED_STATE_H
 #define MCFSKEL_STORED_STATE_H
@@ -17,7 +17,7 @@ bool hasTrianglesOf(const MeshModel& layer, const mcf::Stage& stage);
 /// Whether a layer has the edges of a skeleton, wherever its nodes are.
 bool hasEdgesOf(const MeshModel& layer, const mcf::CurveSkeleton& skeleton);
 
-/// How many vertices of a layer are elsewhere, and the greatest distance.
+/// How many vertices of a layer have moved, and the greatest distance, mesh units.
 struct Moved
 {
 	int count = 0;
@@ -29,8 +29,9 @@ Moved movedFrom(const MeshModel& layer, const std::vector<vcg::Point3d>& places)
 
 #if MCFSKEL_FILES
 /**
- * The stage or skeleton in the PLY that a layer was loaded from, if the layer still has its triangles or edges;
- * null if there is none: MeshLab itself reads of such a file no more than a mesh. The surface is not looked for.
+ * The stage or skeleton in the PLY file that a layer was loaded from, of which MeshLab itself reads
+ * only the mesh; null if there is none, or if the layer no longer has its triangles or edges. The
+ * layer of its surface is not looked for.
  */
 StatePointer storedState(const MeshModel& layer);
 #endif
