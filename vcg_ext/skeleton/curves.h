@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Public: curve skeletons as graphs: branches, radii, tables, pruning, resampling, comparison.
+/// @brief Public: curve skeletons as graphs: branches, tables, pruning, resampling, comparison.
 
 #ifndef VCG_MCF_CURVES_H
 #define VCG_MCF_CURVES_H

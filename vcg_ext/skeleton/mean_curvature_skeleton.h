@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Curve skeletons of the meshes of VCG: the way in for programs that have one.
+/// @brief Public: curve skeletons of VCG meshes, in one call or stage by stage.
 
 #ifndef VCG_MCF_MEAN_CURVATURE_SKELETON_H
 #define VCG_MCF_MEAN_CURVATURE_SKELETON_H
@@ -23,10 +23,10 @@
 namespace vcg::tri {
 
 /**
- * Curve skeleton of a closed triangle mesh by mean curvature flow that is drawn to the medial axis:
+ * Curve skeleton of a closed triangle mesh by mean curvature flow with medial attraction (Eq. 6):
  *
- * Tagliasacchi, Alhashim, Olson, Zhang, "Mean Curvature Skeletons", Computer Graphics Forum (SGP) 31(5),
- * 2012, doi 10.1111/j.1467-8659.2012.03178.x.
+ * Tagliasacchi, Alhashim, Olson, Zhang, "Mean Curvature Skeletons", Computer Graphics Forum (SGP)
+ * 31(5), 2012, doi 10.1111/j.1467-8659.2012.03178.x.
  *
  * All in one call:
  * \code
@@ -35,7 +35,7 @@ namespace vcg::tri {
  * tri::MeanCurvatureSkeleton<MyMesh>::Do(mesh, skeleton, params);
  * \endcode
  *
- * or stage by stage, with the same result to the last bit:
+ * or stage by stage:
  * \code
  * tri::MeanCurvatureSkeleton<MyMesh> run(mesh, params);
  * run.Resample();
@@ -48,16 +48,21 @@ namespace vcg::tri {
  * run.WriteNodes(mesh);
  * \endcode
  *
- * MeshType is any TriMesh with vertices and triangles, in float or double; it needs no adjacency, no
- * normals, and may have deleted elements. The mesh should bound a solid: closed, two-manifold, of any
- * number of components. What does not is repaired in a copy, as Params::repair says: see
+ * Both ways make the same stages, to the last bit, unless the shape is too thin for its resampled
+ * surface. Do() alone tries a second way where the first fails, see mcf::skeletonize(), brings what
+ * the refined curve has outside the input back inside, see mcf::bringInsideInput(), and can join
+ * the pieces.
+ *
+ * MeshType is any TriMesh with vertices and triangles, in float or double; it needs no adjacency,
+ * no normals, and may have deleted elements. The mesh should bound a solid: closed, two-manifold,
+ * of any number of components. One that does not is repaired in a copy, as Params::repair says: see
  * mcf::solidSurface().
  *
- * Computed in double whatever the scalar type; the same bits in each run and on any number of threads.
+ * Computed in double whatever the scalar type; the same bits in each run, on any number of threads.
  *
- * Everything throws: mcf::InvalidInput (the mesh bounds no solid: what is wrong, how many, where),
- * mcf::InvalidParameter, mcf::SolverError and mcf::Cancelled (a callback returned false). Meshes are
- * written to last, so that after an exception they are as they were.
+ * Functions throw mcf::InvalidInput (the mesh bounds no solid: what is wrong, how many, where),
+ * mcf::InvalidParameter, mcf::SolverError and mcf::Cancelled (a callback returned false). Meshes
+ * are written to last, so that an exception leaves them unchanged.
  */
 template <class MESH_TYPE>
 class MeanCurvatureSkeleton
@@ -67,15 +72,16 @@ public:
 	using ScalarType = typename MeshType::ScalarType;
 
 	/**
-	 * The parameters, under the names that the MeshLab filter Full Skeletonize and the error messages
-	 * have for them. Lengths are fractions of the bounding box diagonal of each connected component.
+	 * The parameters, under the names that the MeshLab filter Full Skeletonize and the error
+	 * messages use for them. Lengths are fractions of the bounding box diagonal of each component.
 	 */
 	struct Params
 	{
-		/// `Paper`: the paper's algorithm and nothing else, whatever `pole_method`, `denoise`, `adaptive` and
-		/// `refine` say, with weights in the published unit; see mcf::Parameters::apply().
+		/// `Paper`: the paper's algorithm and nothing else, whatever `pole_method`, `denoise`,
+		/// `adaptive` and `refine` say, with weights in the published unit; see
+		/// mcf::Parameters::apply().
 		mcf::Preset preset = mcf::Preset::Default;
-		/// Cover the surface with even triangles first, as in the paper.
+		/// Cover the surface with even triangles first, as in the paper; read by Do() only.
 		bool resample = true;
 		/// Their edge length, in [0, 0.5]; 0: chosen from the mesh. Recommended: 0.003 to 0.015.
 		double target_length = 0;
@@ -83,48 +89,53 @@ public:
 		int resample_iterations = 5;
 		/// Measure the noise of the surface, and smooth it before the resampling.
 		bool denoise = true;
-		/// Lengths follow the local thickness where that is small; without, they are the same everywhere.
+		/// Lengths follow the local thickness where it is small; else they are the same everywhere.
 		bool adaptive = true;
-		/// With `adaptive`, the longest edge in local thicknesses, in (0, 2]. Recommended: 0.4 to 1.
+		/// With `adaptive`, the longest edge in local thicknesses, in (0, 2].
+		/// Recommended: 0.4 to 1.
 		double relative_length = mcf::Parameters().relativeLength;
-		/// Smoothness weight w_L (Eq. 6), > 0; 1 is half the published weight unless `preset` is `Paper`.
-		/// Recommended: 0.5 to 4.
+		/// Smoothness weight w_L (Eq. 6), > 0; 1 is half the published weight unless `preset` is
+		/// `Paper`. Recommended: 0.5 to 4.
 		double w_l = 1;
-		/// Velocity weight w_H, > 0, as published. A larger one makes smaller steps. Recommended: 10 to 50.
+		/// Velocity weight w_H, > 0, as published. A larger one makes smaller steps.
+		/// Recommended: 10 to 50.
 		double w_h = 20;
-		/// Medial weight w_M, >= 0, as published. A larger one centres better and keeps more branches; 0: mean
-		/// curvature flow alone. Recommended: 0 to 80.
+		/// Medial weight w_M, >= 0, as published. A larger one centres better and keeps more
+		/// branches; 0: mean curvature flow alone. Recommended: 0 to 80.
 		double w_m = 40;
 		/// Edges shorter than this are collapsed, in [0, 0.1]; 0: the default, 0.002.
 		double epsilon = 0;
-		/// An edge whose two opposite angles are wider is split, degrees in [60, 180).
+		/// An edge whose two opposite angles are wider than this is split; degrees, in [60, 180).
 		double split_angle = 110;
-		/// Every k-th stage of the contraction is given to `on_stage`, >= 0; 0: none.
+		/// Do() calls `on_stage` with every k-th stage of the contraction, >= 0; 0: none.
 		int keep_stages = 0;
-		/// Receives these stages, and the iterations made; valid during the call.
+		/// Receives these stages, valid during the call, and the iterations made; these begin anew
+		/// where the contraction starts over, see mcf::Observer::onStartOver.
 		std::function<void(const MeshType& stage, int iteration)> on_stage;
 		/// The contraction stops after this many iterations, >= 0; it usually needs 10 to 40.
 		int max_iterations = 500;
-		/// Shrinking balls, or the Voronoi diagram, as in the paper: needs Qhull.
+		/// Shrinking balls, or the Voronoi diagram as in the paper, which needs Qhull.
 		mcf::PoleMethod pole_method = mcf::PoleMethod::Balls;
-		/// A mesh that does not bound a solid: `Auto` mends small defects, and wraps the surface where that
-		/// is not enough; `Mend` does no more than the former; `Off` refuses it.
+		/// A mesh that does not bound a solid: `Auto` mends small defects, and wraps the surface
+		/// where that is not enough; `Mend` does no more than the former; `Off` refuses it.
 		mcf::Repair repair = mcf::Repair::Auto;
-		/// Pieces with a smaller part of the largest one's volume get no skeleton, in [0, 1); 0: all get one.
+		/// Pieces below this fraction of the largest one's volume get no skeleton, in [0, 1).
 		double min_component = 0;
-		/// Do() joins the skeletons of all pieces by bridges over the narrowest gaps: nodes in their middle
-		/// have 1 in the per-vertex attribute `mcfskel_bridge`. Not where there are sheets.
+		/// Do() joins the skeletons of all pieces by bridges over the narrowest gaps: nodes in
+		/// their middle have 1 in the per-vertex attribute `mcfskel_bridge`. Ignored where there
+		/// are sheets.
 		bool join = false;
 		/// Refine the curve: spurs, centring, smoothness, tips.
 		bool refine = true;
-		/// With `refine`, how small branches may be, in [0, 1]: those stay whose significance is at least
-		/// 1 - detail. 0: the trunk alone; 1: all.
+		/// With `refine`, how small branches may be, in [0, 1]: those stay whose significance is at
+		/// least 1 - detail. 0: the trunk alone; 1: all.
 		double detail = mcf::Parameters().detail;
 		/// Selected vertices of the surface stay where they are; the curve is then not refined.
 		bool fix_selected = false;
-		/// Flat parts become sheets, faces of the skeleton mesh; it is then not refined.
+		/// Flat parts become sheets, faces of the skeleton, which is then not refined.
 		bool keep_sheets = false;
-		/// How flat a part must be to become a sheet, in [0, 1]; 1: curves only. Recommended: 0.6 to 0.9.
+		/// How flat a part must be to become a sheet, in [0, 1]; 1: curves only.
+		/// Recommended: 0.6 to 0.9.
 		double sheet_threshold = mcf::Parameters().sheetThreshold;
 		/// Receives one sentence each on what was repaired, found and decided; may be empty.
 		mcf::NoteCallback on_note;
@@ -133,17 +144,19 @@ public:
 	/**
 	 * Computes the skeleton of a surface.
 	 *
-	 * @param surface  closed triangle mesh. Its geometry stays as it is; it gets the per-vertex
-	 *                 attribute `mcfskel_node` (ScalarType): the vertex of `skeleton` that each vertex
-	 *                 belongs to, -1 for vertices of no face, or of pieces that get no skeleton.
-	 * @param skeleton any mesh with vertices and edges, and with faces if params.keep_sheets is set;
-	 *                 what was in it goes. The local thickness, the mean distance to the surface, is
-	 *                 its per-vertex attribute `mcfskel_radius`, and its vertex quality where it has one; if the
-	 *                 curve was refined, `mcfskel_significance` is how much of the shape its branch
-	 *                 stands for, 0 to 1. VCG frees attributes in a mesh's ClearAttributes(), not with it.
+	 * @param surface  closed triangle mesh. Its geometry is unchanged; it gets the per-vertex
+	 *                 attribute `mcfskel_node` (ScalarType): the vertex of `skeleton` that each
+	 *                 vertex belongs to, -1 if it has no face or its piece gets no skeleton.
+	 * @param skeleton any mesh with vertices and edges, and with faces if params.keep_sheets is
+	 *                 set; its contents are replaced. The local thickness, the mean distance to the
+	 *                 surface, is its per-vertex attribute `mcfskel_radius`, and its vertex quality
+	 *                 where it has one; if the curve was refined, `mcfskel_significance` is how
+	 *                 much of the shape its branch stands for, 0 to 1. VCG frees attributes in a
+	 *                 mesh's ClearAttributes(), not with it.
 	 * @param params   see Params.
-	 * @param cb       progress callback of VCG, or null; to return false cancels.
-	 * @throws mcf::InvalidInput, mcf::InvalidParameter, mcf::SolverError, mcf::Cancelled; std::bad_alloc.
+	 * @param cb       progress callback of VCG, or null; it cancels by returning false.
+	 * @throws mcf::InvalidInput, mcf::InvalidParameter, mcf::SolverError, mcf::Cancelled;
+	 *         std::bad_alloc.
 	 * Complexity: O(V log V), some 10 to 40 steps of the flow: about a second for 50,000 vertices.
 	 */
 	template <class SkeletonMesh>
@@ -173,8 +186,8 @@ public:
 	}
 
 	/**
-	 * Begins a run in single stages: reads and checks the surface, which may change or go afterwards.
-	 * The parameters and the callback count for all stages.
+	 * Begins a run stage by stage: reads and checks the surface, which may be changed or deleted
+	 * afterwards. The parameters and the callback apply to all stages. @throws as Do().
 	 */
 	explicit MeanCurvatureSkeleton(
 		const MeshType& surface, const Params& params = Params(), vcg::CallBackPos* cb = nullptr) :
@@ -184,7 +197,8 @@ public:
 	{
 	}
 
-	/// Smooths what noise there is and resamples the surface. @pre the first stage, if it is wanted at all.
+	/// Resamples the surface, with params.denoise after smoothing its noise; may be left out.
+	/// @pre there are no poles yet.
 	void Resample()
 	{
 		Require(!poles, "Resample() comes first.");
@@ -195,7 +209,7 @@ public:
 		contracted = std::move(resampled);
 	}
 
-	/// Finds the medial pole of each vertex of the surface.
+	/// Finds the medial pole of each vertex of the surface. @pre Step() was not called.
 	void ComputePoles()
 	{
 		Require(!stage, "ComputePoles() comes before Step().");
@@ -204,9 +218,9 @@ public:
 	}
 
 	/**
-	 * Makes one iteration of the contraction, with poles computed first if there are none yet.
-	 * @return whether there is more to do: the flow has neither converged nor reached max_iterations, nor does it
-	 * spread the surface, as it does where large parts are inside out.
+	 * Makes one iteration of the contraction; computes the poles first if there are none yet.
+	 * @return whether there is more to do: false when the flow has converged or made
+	 *         max_iterations, or spreads the surface, as where large parts are inside out.
 	 */
 	bool Step()
 	{
@@ -217,7 +231,8 @@ public:
 		return !IsDone();
 	}
 
-	/// Collapses the stage to curves, or, if it keeps sheets, to curves and sheets. A stage need not have converged.
+	/// Collapses the stage to curves or, if the flow keeps sheets, to curves and sheets. The stage
+	/// need not have converged.
 	void Collapse()
 	{
 		Begin();
@@ -231,7 +246,7 @@ public:
 		sheets.reset();
 	}
 
-	/// Collapses the stage to curves, and to sheets where it has contracted to them by now.
+	/// Collapses the stage to curves and to the sheets that it has, see mcf::sheetVertices().
 	void CollapseKeepingSheets()
 	{
 		Begin();
@@ -239,7 +254,7 @@ public:
 		curve.reset();
 	}
 
-	/// Refines the curve. @pre it was collapsed to curves, and no vertices are held.
+	/// Refines the curve. @pre the stage was collapsed without sheets, and no vertices are held.
 	void Refine()
 	{
 		Require(curve.has_value(),
@@ -256,16 +271,17 @@ public:
 			params.on_note(text);
 	}
 
-	/// Iterations made so far, whether they have converged, and what is left of the surface.
+	/// Iterations so far, convergence, and the fractions of area and volume that are left.
 	mcf::StageFigures Figures() const
 	{
 		return stage ? mcf::figuresOf(*stage) : mcf::StageFigures();
 	}
 
-	/// The surface that is contracted: checked, and resampled if it was.
+	/// The surface that is contracted: the checked one, or the resampled one after Resample().
 	void GetSurface(MeshType& mesh) const { mcf::fillMesh(mesh, *contracted); }
 
-	/// The poles of its vertices, in their order. @pre ComputePoles() or Step() was called.
+	/// The poles of that surface's vertices, in their order.
+	/// @pre ComputePoles() or Step() was called.
 	const mcf::PoleSet& Poles() const
 	{
 		Require(poles != nullptr, "ComputePoles() comes first.");
@@ -290,7 +306,7 @@ public:
 
 	/**
 	 * Writes `mcfskel_node` on the surface of the run: see Do(). @pre Collapse() was called.
-	 * @throws mcf::InvalidInput if the surface has another number of vertices than when the run began.
+	 * @throws mcf::InvalidInput if its number of vertices has changed since the run began.
 	 */
 	void WriteNodes(MeshType& surface) const
 	{
@@ -319,7 +335,7 @@ private:
 		std::vector<int> vertexOfSlot;
 		/// 1 for the vertices that are held; empty if there are none.
 		std::vector<char> held;
-		/// With its cavities; null if there are none.
+		/// The surface with its cavities, see mcf::SurfaceInput::hollow; null if there are none.
 		std::shared_ptr<const mcf::SurfaceMesh> hollow;
 
 		Surface(const MeshType& surface, const Params& params, const mcf::Progress& progress)
@@ -403,7 +419,7 @@ private:
 
 	double Epsilon() const { return mcf::sharedAmong(parameters, stage->diagonal).epsilon; }
 
-	/// @throws mcf::InvalidInput if the order of the stages is not kept.
+	/// @throws mcf::InvalidInput with this text unless the condition holds.
 	static void Require(bool holds, const char* text)
 	{
 		if (!holds)

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Public: how good a skeleton is, and what is made from it: the medial axis, union of balls, segmentation.
+/// @brief Public: quality of a skeleton, medial axis, union of balls, segmentation.
 
 #ifndef VCG_MCF_MEASURES_H
 #define VCG_MCF_MEASURES_H

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Public: the steps of the pipeline one by one, in the order of Fig. 4; skeletonize.h runs them all.
+/// @brief Public: the steps of the pipeline one by one, by Fig. 4; skeletonize.h runs them all.
 
 #ifndef VCG_MCF_PIPELINE_H
 #define VCG_MCF_PIPELINE_H

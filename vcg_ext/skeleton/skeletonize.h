@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Fig. 4 of the paper, top to bottom: from a closed surface to its skeleton.
+/// @brief Public: Fig. 4 of the paper, top to bottom: from a closed surface to its skeleton.
 
 #ifndef VCG_MCF_SKELETONIZE_H
 #define VCG_MCF_SKELETONIZE_H
@@ -42,7 +42,7 @@
 
 namespace vcg::tri::mcf {
 
-/// The lines of Fig. 4, ours at both ends included.
+/// The phases of a run: the lines of Fig. 4, and Check and Refine, which the paper does not have.
 enum class Phase { Check, Resample, Poles, Contraction, Collapse, Refine };
 
 /// Wall-clock time of each phase, seconds; 0 for those that were left out.
@@ -62,60 +62,60 @@ struct PhaseSeconds
 	}
 };
 
-/// Callbacks invoked during skeletonize(), beside those of the contraction. Unset ones cost nothing.
+/// Callbacks invoked during skeletonize(), beside the contraction's. Unset ones cost nothing.
 struct Observer : StageObserver
 {
 	/// One sentence on what was repaired, found, or decided.
 	NoteCallback onNote;
 	/// A phase has ended, or was left out.
 	std::function<void(Phase)> onPhase;
-	/// The contraction starts over on another surface, see skeletonize(): stages so far count no more.
+	/// The contraction starts over, see skeletonize(): the stages so far are to be discarded.
 	std::function<void()> onStartOver;
 };
 
-/// A surface that has been checked, and what is known of it.
+/// A surface that has been checked, and data that belong to it.
 struct SurfaceInput
 {
 	/// As checkedSurface() makes it: closed, oriented, compact.
 	std::shared_ptr<const SurfaceMesh> mesh;
 	/// 1 for the vertices that are to stay where they are; empty if there are none.
 	std::vector<char> held = {};
-	/// The medial poles of all vertices; null: they are computed. Of no use if the surface is resampled.
+	/// The medial poles of all vertices; null: computed. Ignored if the surface is resampled.
 	std::shared_ptr<const PoleSet> poles = nullptr;
-	/// The surface with cavities that are not in `mesh`, or not as such, see LeftOutPieces::hollow; null if there are
-	/// none.
+	/// The surface with its cavities, see LeftOutPieces::hollow; null if there are none.
 	std::shared_ptr<const SurfaceMesh> hollow = nullptr;
 };
 
 /// What skeletonize() returns.
 struct Skeletonization
 {
-	/// The skeleton; empty where there are sheets.
+	/// The skeleton, unless `sheets` is set.
 	CurveSkeleton curve;
 	/// The skeleton where sheets were kept.
 	std::optional<SheetCollapse> sheets;
 	/// For each vertex of the input its node of the skeleton, -1 for vertices that no face uses.
 	std::vector<int> node;
-	/// The surface that was contracted: the resampled one, or the input; the skeleton's own `node` is of it. Of several
-	/// components some may have the curve of the input all the same, see skeletonize().
+	/// The surface that was contracted, the resampled one or the input; the skeleton's own `node`
+	/// refers to it. Single components may have a curve of the input, see skeletonize().
 	std::shared_ptr<const SurfaceMesh> surface;
 	/// Its medial poles.
 	std::shared_ptr<const PoleSet> poles;
-	/// The last stage of the contraction, with iterations, convergence and fractions: see figuresOf().
+	/// The last stage of the contraction; see figuresOf() for iterations and convergence.
 	std::shared_ptr<const Stage> stage;
 	/// The noise of the input; not measured if it is not resampled.
 	NoiseReport noise;
 	/// The components whose curve was cut when it was brought inside.
 	CutCurves cut;
-	/// Fraction of the components whose curve is refined, and whole, see CutCurves; 0 if it was not asked for.
+	/// Fraction of the components with a refined curve that is not cut, see CutCurves; 0 without
+	/// Parameters::refine.
 	double refined = 0;
 	/// What became of each component in the refinement.
 	RefineReport refinement;
-	/// What was done to the triangles to make them those of a solid.
+	/// What was done to the triangles so that they bound a solid.
 	SolidReport solid;
-	/// The part of the skeleton that lies in cavities, see partOutside().
+	/// The fraction of the skeleton that lies in cavities, see partOutside().
 	double inCavities = 0;
-	/// Between the skeletons of pieces, where they were to be joined.
+	/// The bridges between the skeletons of pieces, with Parameters::join.
 	Bridges bridges;
 	PhaseSeconds seconds;
 
@@ -158,7 +158,7 @@ private:
 	Clock::time_point begin = Clock::now();
 };
 
-/// skeletonize(), on the surface that the parameters say, whatever comes out.
+/// skeletonize() in one attempt, on the surface resampled or not as the parameters say.
 inline Skeletonization skeletonizeOnce(const SurfaceInput& input, const Parameters& given,
 	const Progress& progress, const Observer& observer, const RefineParameters& refinement)
 {
@@ -239,9 +239,9 @@ inline Skeletonization skeletonizeOnce(const SurfaceInput& input, const Paramete
 }
 
 /**
- * How much of a shape a curve does not describe: the part of its limbs, by length, that is farther from the curve
- * than three times as thick as it is there.
- * @param poles of all vertices of the surface. @return 0 to 1; 1 for a curve without nodes.
+ * How much of a shape a curve does not describe: the fraction of the length of its limbs, area over
+ * radius, that is farther from the curve than three local thicknesses.
+ * @param poles of all vertices of the surface. @return in [0, 1]; 1 for a curve without nodes.
  * @throws Cancelled. Complexity: O((V + N) log N).
  */
 inline double partLeftOut(const SurfaceMesh& surface, const PoleSet& poles,
@@ -272,10 +272,12 @@ inline double partLeftOut(const SurfaceMesh& surface, const PoleSet& poles,
 }
 
 /**
- * Whether a skeleton of the surface as it is replaces one of the resampled surface that could not be refined.
- * Not where it describes less of the shape, as of limbs whose triangles are many times as long as thick, while
- * the other one describes nearly all of it and hardly leaves it.
- * @throws Cancelled
+ * Whether `asItIs`, the skeleton of a surface without resampling, replaces `resampled`, which could
+ * not be refined: where more of its components are refined or, if as many are, where it is less
+ * than half as long. Of two of similar length it does not where it describes less of the shape, as
+ * of limbs whose triangles are many times as long as thick, while the other one describes nearly
+ * all of it and hardly leaves it.
+ * @param surface without resampling. @throws Cancelled
  */
 inline bool isBetter(const SurfaceMesh& surface, const Skeletonization& asItIs,
 	const Skeletonization& resampled, const Progress& progress)
@@ -294,16 +296,16 @@ inline bool isBetter(const SurfaceMesh& surface, const Skeletonization& asItIs,
 	return asItIs.refined != resampled.refined ? asItIs.refined > resampled.refined : isMuchShorter;
 }
 
-/// Of the time, for the first way to the skeleton: it is seldom that another one is needed.
+/// The part of the progress bar for the first attempt: a second one is seldom needed.
 constexpr double once = 0.97;
 
-/// Another way to the skeleton: its stages reach the observer only if it is taken.
+/// A second attempt: its stages are kept, and reach the observer only if its result is taken.
 class Alternative
 {
 public:
 	explicit Alternative(const Observer& observer) : observer(observer) {}
 
-	/// Of the other run.
+	/// The observer to give to the second attempt.
 	Observer listener()
 	{
 		Observer result;
@@ -313,6 +315,7 @@ public:
 		return result;
 	}
 
+	/// Hands the stages over.
 	void take()
 	{
 		if (observer.onStartOver)
@@ -326,10 +329,10 @@ private:
 	std::vector<Stage> stages;
 };
 
-/// The surface as it is is contracted only where it has no more vertices.
+/// The second attempt, without resampling, is made on surfaces of at most this many vertices.
 constexpr int maxVerticesAsItIs = 100000;
 
-/// The components of the contracted surface whose curve is not refined, or not whole, ascending.
+/// The components of the contracted surface whose curve is not refined or was cut, ascending.
 inline std::vector<int> doubtfulComponents(const Skeletonization& result)
 {
 	std::vector<int> doubtful = result.cut.which;
@@ -340,9 +343,10 @@ inline std::vector<int> doubtfulComponents(const Skeletonization& result)
 	return doubtful;
 }
 
-/// One component of a surface alone, and what its vertices are called there.
+/// One component of a surface as a mesh of its own.
 struct SingleComponent
 {
+	/// For each vertex of `mesh` its id in the surface.
 	std::vector<int> ids;
 	std::shared_ptr<const SurfaceMesh> mesh;
 };
@@ -366,7 +370,8 @@ inline SingleComponent singleComponent(
 	return own;
 }
 
-/// A component's curve, and how much of it is outside, as isBetter() asks for it.
+/// What isBetter() needs of one component: its curve, and how many of its nodes are outside.
+/// @param ofCurve for each node of the curve its component.
 inline Skeletonization partOfComponent(
 	const Skeletonization& result, const std::vector<int>& ofCurve, int c)
 {
@@ -382,9 +387,14 @@ inline Skeletonization partOfComponent(
 }
 
 /**
- * Of a surface of several components, contracts those as they are whose curve could not be refined, and takes the
- * curves that are better so, see isBetter(). The stages, the poles and the surface stay those of the resampling.
- * @return whether the components could be told; if not, nothing is changed. @throws Cancelled
+ * Of a surface of several components, contracts again, without resampling, those whose curve could
+ * not be refined, and takes the curves that are better, see isBetter(). The stages, the poles and
+ * the surface stay those of the resampling.
+ * @param asItIs    the parameters, without resampling.
+ * @param doubtful  components of the resampled surface, see doubtfulComponents().
+ * @param component of each vertex of the resampled surface; there are `components`.
+ * @return whether the components of both surfaces pair off; if not, nothing is changed.
+ * @throws Cancelled
  */
 inline bool replaceThinCurves(Skeletonization& result, const SurfaceInput& input,
 	const Parameters& asItIs, const std::vector<int>& doubtful, const std::vector<int>& component,
@@ -404,7 +414,7 @@ inline bool replaceThinCurves(Skeletonization& result, const SurfaceInput& input
 	struct Replacement
 	{
 		int component;
-		std::vector<int> ids; ///< of the input's vertices
+		std::vector<int> ids; ///< of its vertices in the input
 		Skeletonization other;
 	};
 	std::vector<Replacement> taken;
@@ -475,7 +485,7 @@ inline bool replaceThinCurves(Skeletonization& result, const SurfaceInput& input
 	return true;
 }
 
-/// skeletonize(), on the surface as the parameters say or, where it is too thin for that, as it is.
+/// skeletonize() with the second attempt for what is too thin for its resampled surface.
 inline Skeletonization skeletonizeThin(const SurfaceInput& input, const Parameters& given,
 	const Progress& progress, const Observer& observer, const RefineParameters& refinement)
 {
@@ -522,9 +532,10 @@ inline Skeletonization skeletonizeThin(const SurfaceInput& input, const Paramete
 }
 
 /**
- * A skeleton with sheets, or without them where they would leave a thicket of curves: where no sheet could be kept, and
- * where the curves are clearly longer than those of the shape contracted without sheets: sheets stand for curves.
- * Complexity: as skeletonize(), twice where that is in doubt.
+ * A skeleton with sheets, or without where they would leave a thicket of curves: where no sheet
+ * could be kept, or where the curves beside the sheets are longer than 1.25 times those of the
+ * shape contracted without sheets, since sheets are to replace curves. Complexity: as
+ * skeletonize(), twice where the curves are long.
  */
 inline Skeletonization skeletonizeWithSheets(const SurfaceInput& input, const Parameters& given,
 	const Progress& progress, const Observer& observer, const RefineParameters& refinement)
@@ -569,16 +580,18 @@ inline Skeletonization skeletonizeWithSheets(const SurfaceInput& input, const Pa
 /**
  * Computes the skeleton of a checked surface.
  *
- * A surface that is thinner than the edges of its resampling is cut off, or crosses itself, when it is resampled.
- * That shows in the end: its curve cannot be refined, since that would leave the surface. Then the surface is
- * contracted as it is as well, and the better curve is taken, see detail::isBetter(), which is said. Of several
- * components only those are whose curve cannot be refined, unless that is true of all. Sheets that would leave a
- * thicket are given up, see detail::skeletonizeWithSheets().
+ * Where a shape is thinner than the edges of its resampling, the resampled surface loses parts or
+ * crosses itself, and its curve cannot be refined, since that would leave the surface. Then the
+ * input is contracted as well, without resampling, and the better curve is taken, see
+ * detail::isBetter(), with a note. Of several components only those are contracted again whose
+ * curve could not be refined, unless that is true of all. Sheets that would leave a thicket of
+ * curves are given up, see detail::skeletonizeWithSheets().
  *
- * @param parameters all of them are read; the default epsilon is larger for more than 50 components, see
- *                   sharedAmong(). What is too thin for a resampled surface to follow, see
- *                   fieldOfResampling(), is not contracted and refined adaptively either.
- * @param refinement the knobs of refine(), where parameters.refine is set.
+ * @param parameters all of them are read; the default epsilon is larger for more than 50
+ *                   components, see sharedAmong(). A shape that is too thin to resample adaptively,
+ *                   see fieldOfResampling(), is not contracted and refined adaptively either.
+ * @param refinement of refine(), where parameters.refine is set; `relativeLength` and `detail` are
+ *                   those of `parameters`, and `adaptive` holds only if it is set in both.
  * @throws InvalidParameter, InvalidInput, SolverError, Cancelled.
  * Complexity: O(V log V) and some 10 to 40 steps of the flow; twice that for what is too thin.
  */
@@ -631,9 +644,9 @@ inline Skeletonization skeletonize(const SurfaceInput& input, const Parameters& 
 }
 
 /**
- * Computes the skeleton of any triangle mesh: checks it as checkedSurface() does, in single precision
- * where that is enough, see SurfaceRounding, and makes it solid as parameters.repair says, see
- * solidSurface(); then as above.
+ * Computes the skeleton of any triangle mesh: checks it as checkedSurface() does, in single
+ * precision where that is enough, see SurfaceRounding, and repairs it as parameters.repair says,
+ * see solidSurface(); then as above.
  * @param points    vertices, mesh units.
  * @param triangles corners as indices into `points`.
  * @throws as above; InvalidInput if they do not bound a solid.

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief From any triangles to the surface of a solid: solidSurface(), and what it is made of.
+/// @brief Public: from any triangles to the surface of a solid: solidSurface() and its parts.
 
 #ifndef VCG_MCF_SOLID_H
 #define VCG_MCF_SOLID_H

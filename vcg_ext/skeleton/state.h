@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Public: the data that pass from one step of the pipeline to the next: poles, the stage of the flow, curves, sheets.
+/// @brief Public: what passes from step to step: poles, stages of the flow, curves, sheets.
 
 #ifndef VCG_MCF_STATE_H
 #define VCG_MCF_STATE_H

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Public: what a host needs to run the library: errors, parameters, progress, loops that report and that run on several threads.
+/// @brief Public: what a host needs: errors, parameters, progress, notes, parallel loops.
 
 #ifndef VCG_MCF_SUPPORT_H
 #define VCG_MCF_SUPPORT_H

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Public: closed surfaces: the mesh, the input check, closest points, and what is carried from one surface to another.
+/// @brief Public: closed surfaces: mesh, input check, closest points, transferred nodes.
 
 #ifndef VCG_MCF_SURFACE_H
 #define VCG_MCF_SURFACE_H

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Between the meshes of VCG, of any type, and the arrays and lean meshes of this library.
+/// @brief Conversion between VCG meshes of any type and the arrays and meshes of this library.
 
 #ifndef VCG_MCF_TRIMESH_H
 #define VCG_MCF_TRIMESH_H
@@ -21,12 +21,12 @@
 
 namespace vcg::tri::mcf {
 
-/// The vertices and triangles of a VCG mesh without what is deleted in it.
+/// The vertices and triangles of a VCG mesh, deleted elements left out.
 struct TriangleSoup
 {
 	std::vector<Point3d> points;
 	std::vector<Triangle> triangles;
-	/// For each vertex slot of the mesh the point that it is, -1 for deleted vertices.
+	/// For each vertex slot of the mesh the index of its point, -1 for deleted vertices.
 	std::vector<int> pointOfSlot;
 };
 
@@ -64,7 +64,7 @@ TriangleSoup readTriangles(const MeshType& mesh, const Progress& progress = Prog
 }
 
 /**
- * Checks that a mesh can have a per-vertex attribute of its own scalar type under a name.
+ * Checks that a mesh can have a per-vertex attribute of this name, of the mesh's scalar type.
  * @throws InvalidInput if it has one of another type: VCG would take its memory for scalars.
  */
 template <class MeshType>
@@ -91,7 +91,7 @@ void writeScalarAttribute(MeshType& mesh, const char* name, const ValueOf& value
 }
 
 /// Replaces the contents of a VCG mesh by points, edges and faces. Complexity: O(V + E + F).
-/// @pre the mesh type has edges where there are some, and faces likewise.
+/// @pre the mesh type has edges unless `edges` is empty, and faces unless `faces` is.
 template <class MeshType>
 void fillMesh(MeshType& mesh, const std::vector<Point3d>& points,
 	const std::vector<std::array<int, 2>>& edges, const std::vector<Triangle>& faces)
@@ -114,7 +114,7 @@ void fillMesh(MeshType& mesh, const std::vector<Point3d>& points,
 			mesh.face[f].V(k) = &mesh.vert[size_t(faces[f][size_t(k)])];
 }
 
-/// Replaces the contents of a VCG mesh by a surface. @pre the surface is compact. Complexity: O(V + F).
+/// Replaces the contents of a VCG mesh by a surface. @pre it is compact. Complexity: O(V + F).
 template <class MeshType>
 void fillMesh(MeshType& mesh, const SurfaceMesh& surface)
 {

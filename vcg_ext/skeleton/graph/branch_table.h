@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief What is worth knowing of each branch of a skeleton: length, thickness, ends.
+/// @brief A table of the branches of a skeleton: length, thickness, ends.
 
 #ifndef VCG_MCF_BRANCH_TABLE_H
 #define VCG_MCF_BRANCH_TABLE_H
@@ -26,15 +26,15 @@ enum class BranchEnd {
 struct BranchRecord
 {
 	double length = 0;
-	/// Over the length; radii change linearly along an edge.
+	/// Mean over the length; radii are linear along an edge.
 	double meanRadius = 0;
 	double minRadius = 0, greatestRadius = 0;
 	BranchEnd first = BranchEnd::Tip, last = BranchEnd::Tip;
-	/// The minimum of its nodes', see CurveSkeleton; 1 where it is not known.
+	/// The minimum over its nodes, see CurveSkeleton; 1 where it is not known.
 	double significance = 1;
 };
 
-/// The records of `branches`, in their order. Complexity: O(V + E).
+/// The records of `branches`, in their order. @pre the radius is set. Complexity: O(V + E).
 inline std::vector<BranchRecord> branchTable(
 	const CurveSkeleton& skeleton, const std::vector<Branch>& branches)
 {

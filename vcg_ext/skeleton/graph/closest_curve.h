@@ -26,13 +26,13 @@ struct CurveSamples
 	std::vector<Point3d> position;
 	/// Mesh units. 0 for the nodes, which are samples too, so that no extreme is missed.
 	std::vector<double> weight;
-	/// The edge that each is on, and how far along it, in [0, 1]; nodes: -1 and 0.
+	/// The edge that each is on, and the fraction of its length, in [0, 1]; -1 and 0 for the nodes.
 	std::vector<int> edge;
 	std::vector<double> part;
 };
 
 /**
- * The middles of the pieces of a skeleton cut so that none is longer than `spacing`, then its nodes.
+ * The middles of the pieces of a skeleton's edges cut to at most `spacing`, then the nodes.
  * @pre spacing > 0. Complexity: O(length / spacing + V + E).
  */
 inline CurveSamples curveSamples(const CurveSkeleton& skeleton, double spacing)
@@ -59,7 +59,7 @@ inline CurveSamples curveSamples(const CurveSkeleton& skeleton, double spacing)
 	return samples;
 }
 
-/// Answers which point of a skeleton is closest. Exact, however long the edges are.
+/// Finds the closest point of a skeleton, exactly, however long the edges are.
 class ClosestCurve
 {
 public:

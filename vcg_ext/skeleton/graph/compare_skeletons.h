@@ -24,7 +24,7 @@ namespace vcg::tri::mcf {
 /// Distances from one skeleton to another, mesh units.
 struct SkeletonDistance
 {
-	/// Over the length of the skeleton, and the greatest one.
+	/// Mean over the length of the skeleton, over its nodes if it has no length; and the maximum.
 	double mean = 0, greatest = 0;
 	/// Of each node.
 	std::vector<double> ofNode;
@@ -34,9 +34,10 @@ struct SkeletonDistance
  * The asymmetric distance from one skeleton to another: of points x spread evenly over `from`,
  *     mean and maximum of min over y in `to` of |x - y|.
  *
- * @param spacing  no two neighbouring points are farther apart, mesh units, > 0; the paper takes
- *                 0.1 % of the bounding box diagonal of the shape.
- * @throws InvalidParameter; InvalidInput if one of the skeletons is empty; Cancelled.
+ * @param spacing  maximum distance of neighbouring points, mesh units, > 0; the paper takes 0.1 %
+ *                 of the bounding box diagonal of the shape.
+ * @throws InvalidParameter, also for more than 10 million points; InvalidInput if one of the
+ *         skeletons is empty; Cancelled.
  * Complexity: O((length / spacing) log V). Same bits on any number of threads.
  * Source: paper, Table 1.
  */

@@ -20,14 +20,14 @@ struct CurveSkeleton
 {
 	/// Nodes, mesh units.
 	std::vector<Point3d> position;
-	/// Local thickness at each node, mesh units: mean distance to the surface vertices merged there.
+	/// Local thickness at each node, mesh units: mean distance to its surface vertices.
 	std::vector<double> radius;
 	/// Pairs of nodes, lower id first, in ascending order.
 	std::vector<std::array<int, 2>> edges;
 	/// The correspondence: for each surface vertex the node it has merged into.
 	std::vector<int> node;
-	/// How much of the shape the branch of each node stands for, in [0, 1]: see nestedBranches(). Empty
-	/// where it is not known.
+	/// How much of the shape the branch of each node stands for, in [0, 1]: see nestedBranches();
+	/// empty if it is not known.
 	std::vector<double> significance;
 	/// 1 for the nodes in the middle of bridges, see joinPieces(); empty if pieces were not joined.
 	std::vector<char> bridge = {};
@@ -46,7 +46,7 @@ struct CurveSkeleton
 	}
 };
 
-/// What a skeleton's graph amounts to.
+/// Counts and the length of a skeleton.
 struct SkeletonStatistics
 {
 	int components = 0;
@@ -60,7 +60,7 @@ struct SkeletonStatistics
 	double length = 0;
 };
 
-/// Counts a skeleton. Complexity: O(V + E).
+/// The statistics of a skeleton. Complexity: O(V + E).
 inline SkeletonStatistics statistics(const CurveSkeleton& skeleton)
 {
 	SkeletonStatistics s;
@@ -102,7 +102,8 @@ inline SkeletonStatistics statistics(const CurveSkeleton& skeleton)
 
 /**
  * The component of the surface that each node belongs to; -1 for parts of the graph into which
- * nothing has merged.
+ * no vertex has merged.
+ * @param component of each vertex of the surface. Complexity: O(E log E + surface vertices).
  */
 inline std::vector<int> componentOfNodes(
 	const CurveSkeleton& curve, const std::vector<int>& component)

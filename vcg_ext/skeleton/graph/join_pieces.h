@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Bridges between the skeletons of pieces that one thing was torn into.
+/// @brief Bridges between the skeletons of the pieces of a surface.
 
 #ifndef VCG_MCF_JOIN_PIECES_H
 #define VCG_MCF_JOIN_PIECES_H
@@ -28,17 +28,19 @@ namespace vcg::tri::mcf {
 struct Bridges
 {
 	int count = 0;
-	double longest = 0; ///< gap between the vertices of two pieces, mesh units
+	double longest = 0; ///< gap that is bridged, between vertices of two pieces, mesh units
 };
 
 /**
- * Joins the skeletons of all components of a surface by bridges over the narrowest gaps between them: the
- * shortest set that makes them one. A bridge is two edges between the nodes to which the vertices at both sides
- * of the gap belong, and a new node in its middle, for which `bridge` is 1: an edge with such a node is one of a
- * bridge.
+ * Joins the skeletons of all components of a surface by bridges over the narrowest gaps between
+ * them: a minimum spanning tree of the components. A bridge is two edges between the nodes of the
+ * vertices on both sides of the gap, and a new node in its middle, for which `bridge` is 1: every
+ * edge with such a node is part of a bridge. `bridge` stays empty if the surface has a single
+ * component; components without nodes are left out.
  *
  * @param curve   with its correspondence to the vertices of `surface`.
- * @throws Cancelled. Complexity: O(C^2) for C components, and O(V log V) for each that is near many others.
+ * @throws Cancelled. Complexity: O(C^2 + V log V) for C components, at most O(C V log V) where all
+ *         boxes are near each other.
  */
 inline Bridges joinPieces(
 	CurveSkeleton& curve, const SurfaceMesh& surface, const Progress& progress = Progress())
@@ -78,7 +80,7 @@ inline Bridges joinPieces(
 		return std::sqrt(sum);
 	};
 
-	// One after the other joins those that are one already, always the nearest.
+	// Prim's algorithm: next comes the piece that is nearest to those already joined.
 	std::vector<Gap> gap(static_cast<size_t>(count));
 	std::vector<char> isJoined(size_t(count), 0);
 	curve.bridge.assign(curve.position.size(), 0);
@@ -117,7 +119,7 @@ inline Bridges joinPieces(
 		curve.position.push_back((curve.position[size_t(a)] + curve.position[size_t(b)]) / 2.0);
 		curve.radius.push_back((curve.radius[size_t(a)] + curve.radius[size_t(b)]) / 2);
 		curve.bridge.push_back(1);
-		if (!curve.significance.empty()) // it is of use as long as both ends are there
+		if (!curve.significance.empty()) // a bridge is of no use without both its ends
 			curve.significance.push_back(
 				std::min(curve.significance[size_t(a)], curve.significance[size_t(b)]));
 		curve.edges.push_back({a, middle});
@@ -130,9 +132,8 @@ inline Bridges joinPieces(
 }
 
 /**
- * What joinPieces() was given: the skeleton without its bridges. What belongs to the middle of a bridge goes to the
- * end with the lower number.
- * Complexity: O(V + E + surface vertices).
+ * The skeleton without its bridges, as joinPieces() got it. Surface vertices of the middle of a
+ * bridge go to the end with the lower number. Complexity: O(V + E + surface vertices).
  */
 inline CurveSkeleton withoutBridges(const CurveSkeleton& skeleton)
 {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Pruning: terminal branches that are too many, junctions that are one. Cycles stay.
+/// @brief Pruning: removes terminal branches and merges close junctions. Cycles stay.
 
 #ifndef VCG_MCF_PRUNE_H
 #define VCG_MCF_PRUNE_H
@@ -29,7 +29,7 @@ namespace vcg::tri::mcf {
 
 namespace detail {
 
-/// All nodes of a branch go into one of them, all others stay.
+/// The targets, see mergeNodes(), that merge all nodes of a branch into one of them.
 inline std::vector<int> mergingTarget(size_t nodes, const Branch& branch, int into)
 {
 	std::vector<int> target(nodes);
@@ -39,7 +39,7 @@ inline std::vector<int> mergingTarget(size_t nodes, const Branch& branch, int in
 	return target;
 }
 
-/// Whether the ends of a branch have a neighbour in common that is not on the branch: with the ends
+/// Whether the ends of a branch have a common neighbour that is not on the branch: if the ends were
 /// merged, a cycle would become a double edge.
 inline bool closesTriangle(const std::vector<std::vector<int>>& neighbours, const Branch& branch)
 {
@@ -53,7 +53,7 @@ inline bool closesTriangle(const std::vector<std::vector<int>>& neighbours, cons
 
 namespace detail {
 
-/// The terminal branches of a skeleton while one after the other is removed.
+/// The terminal branches of a skeleton while they are removed one by one.
 class TerminalBranches
 {
 public:
@@ -68,7 +68,8 @@ public:
 
 	const std::set<int>& allTips() const { return tips; }
 
-	/// From its junction to a tip; no nodes if the component is a chain. Complexity: linear in the branch.
+	/// The branch from its junction to a tip; empty if the component is a chain.
+	/// Complexity: linear in the branch.
 	Branch upTo(int tip) const
 	{
 		Branch branch = branchAlong(neighbours, tip, neighbours[tip][0]);
@@ -78,7 +79,7 @@ public:
 		return branch;
 	}
 
-	/// Removes a branch; returns the tips whose branches become longer by that, at most two.
+	/// Removes a branch. @return the tips whose branches become longer by that, at most two.
 	std::vector<int> remove(const Branch& fromJunction)
 	{
 		const int junction = fromJunction.first();
@@ -95,7 +96,7 @@ public:
 		return longer;
 	}
 
-	/// For each node the one that it has gone into, itself if it is left.
+	/// For each node the one that it has merged into, itself if it is left.
 	std::vector<int> targets() const
 	{
 		std::vector<int> into = target;
@@ -114,16 +115,15 @@ private:
 } // namespace detail
 
 /**
- * Removes the terminal branches for which measure(skeleton, branch) is below `minimum`, the smallest
- * first and one at a time, since a branch that loses its junction becomes part of a longer one. The
- * branch is handed over from its junction to its tip, with the skeleton as it was given. What had merged into it
- * goes to the junction. A measure that takes a third argument gets the tips that are left, a std::set<int>; with
- * fewer of them it must not fall.
+ * Removes the terminal branches for which measure(skeleton, branch) is below `minimum`, the
+ * smallest first and one at a time, since a branch that loses its junction becomes part of a longer
+ * one. The measure gets the skeleton as it was given, and the branch from its junction to its tip.
+ * What had merged into a removed branch goes to the junction. A measure that takes a third argument
+ * gets the tips that are left, a std::set<int>; its value must not decrease when tips are removed.
  *
- * A component that is a single chain keeps it. No cycle is touched: every edge of a terminal branch
- * is a bridge.
- * @throws Cancelled. Complexity: O(V + E log E + surface vertices), and for each terminal branch, and again
- * where one becomes longer, its measure, its length and the logarithm of their number.
+ * A component that is a single chain keeps it. Cycles stay: no edge of a terminal branch is on one.
+ * @throws Cancelled. Complexity: O(V + E log E + surface vertices), and for each terminal branch,
+ * and again when it has become longer, its measure, its length and the logarithm of their number.
  */
 template <class Measure>
 CurveSkeleton withoutTerminalBranches(const CurveSkeleton& skeleton, double minimum,
@@ -179,9 +179,9 @@ CurveSkeleton withoutTerminalBranches(const CurveSkeleton& skeleton, double mini
 
 /**
  * Merges junctions whose connecting branch has measure(skeleton, larger, smaller, detour) below
- * `minimum`, the shortest first: `larger` is the junction with the larger radius, which stays in its
- * place, and `detour` what the branch is longer than the straight line between both. Branches that
- * close a cycle are kept.
+ * `minimum`, the smallest first: `larger` is the junction with the larger radius, which stays in
+ * its place, and `detour` the length of the branch less the distance of the junctions. A branch
+ * stays if a cycle would vanish with it.
  * @throws Cancelled. Complexity: O(merged junctions * (V + E log E + surface vertices)).
  */
 template <class Measure>
@@ -220,7 +220,7 @@ CurveSkeleton withMergedJunctions(CurveSkeleton skeleton, double minimum, const 
 	}
 }
 
-/// The prominence() of a terminal branch, seen from its junction.
+/// The prominence() of the tip of a terminal branch over its junction.
 inline double terminalProminence(const CurveSkeleton& skeleton, const Branch& fromJunction)
 {
 	return prominence(skeleton, fromJunction.last(), fromJunction.first());
@@ -229,16 +229,15 @@ inline double terminalProminence(const CurveSkeleton& skeleton, const Branch& fr
 /// What prune() removes. Lengths in mesh units.
 struct PruneParameters
 {
-	/// Terminal branches with less prominence() are spurs; in [0, 1], 0: none is.
+	/// Terminal branches with less prominence() are spurs and go; in [0, 1], 0: none.
 	double spurProminence = 0.1;
 	/// Terminal branches shorter than this go; >= 0.
 	double shortestBranch = 0;
 	/// Terminal branches whose mean radius is less than this go; >= 0.
 	double minRadius = 0;
-	/// Branches stay whose significance is at least 1 - detail, see nestedBranches(); in [0, 1], 1: all.
+	/// Branches of significance >= 1 - detail stay, see nestedBranches(); in [0, 1], 1: all.
 	double detail = 1;
-	/// Whether two junctions that are closer to each other than the larger one's radius, along their
-	/// branch, become one.
+	/// Whether two junctions become one if their branch is shorter than the larger one's radius.
 	bool mergeJunctions = true;
 
 	/// @throws InvalidParameter naming the first parameter that is out of its range.
@@ -258,7 +257,7 @@ private:
 	}
 };
 
-/// Mean radius of a terminal branch over its length, its junction left out; mesh units.
+/// Mean radius of a terminal branch over its length, without the edge at its junction; mesh units.
 inline double meanTerminalRadius(const CurveSkeleton& skeleton, const Branch& fromJunction)
 {
 	double sum = 0, length = 0;
@@ -272,14 +271,14 @@ inline double meanTerminalRadius(const CurveSkeleton& skeleton, const Branch& fr
 }
 
 /**
- * Prunes a skeleton: first the sure spurs, by prominence(), then what is below the detail, then the terminal
- * branches that are too short, then those that are too thin, at last merges junctions and looks for spurs
- * again. The number of cycles and of components never changes.
+ * Prunes a skeleton: removes spurs by prominence(), then branches of too little significance, then
+ * terminal branches that are too short, then those that are too thin; merges junctions, and removes
+ * the spurs that are left. The number of cycles and of components never changes.
  *
- * @param skeleton  its radius should be the distance to the surface; the mean distance to the surface
- *                  vertices that merged into a node does as well.
- * @return nodes of `skeleton` that are left, in their order, in their places, with their radii and their
- *         significance; `node` leads to where what was removed hung.
+ * @param skeleton  its radius should be the distance to the surface; the mean distance to the
+ *                  surface vertices that merged into a node does as well.
+ * @return the nodes of `skeleton` that are left, in their order and places, with their radii;
+ *         `significance` is measured anew; removed branches go to the node that they hung on.
  * @throws InvalidParameter, Cancelled.
  * Complexity: as withoutTerminalBranches() and withMergedJunctions().
  * Source: ours.

@@ -17,16 +17,17 @@ namespace vcg::tri::mcf {
 struct ReplacedParts
 {
 	CurveSkeleton curve;
-	/// For each node that there was its number now; -1: it is gone.
+	/// For each node of the given skeleton its new number, -1 if it is gone.
 	std::vector<int> number;
-	/// For each new part its first node; the others follow in their order.
+	/// For each added part the number of its first node; its other nodes follow in their order.
 	std::vector<int> first;
 };
 
 /**
- * Takes nodes out of a skeleton, and adds other curves. What belongs to nodes that are gone belongs to none.
- * @param isGone 1 for the nodes that go, whole connected parts.
- * @param parts  each with the significance of its nodes if the skeleton has one.
+ * Removes connected parts of a skeleton and adds other curves. Surface vertices of removed nodes
+ * get -1; `node` of the added parts and all marks of bridges are left out.
+ * @param isGone 1 for the nodes to remove, whole connected parts.
+ * @param parts  to add; each has a significance if the skeleton has one.
  * Complexity: O(V + E + surface vertices).
  */
 inline ReplacedParts withReplacedParts(const CurveSkeleton& curve, const std::vector<char>& isGone,

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Skeletons with even, short edges, and smooth ones. Ends, junctions and cycles stay.
+/// @brief Resampling a skeleton with even edges, and smoothing it. Ends, junctions and cycles stay.
 
 #ifndef VCG_MCF_RESAMPLE_SKELETON_H
 #define VCG_MCF_RESAMPLE_SKELETON_H
@@ -30,7 +30,7 @@ namespace vcg::tri::mcf {
 
 namespace detail {
 
-/// A branch on its way: points in order, with a radius each; on a cycle the last is the first again.
+/// A branch as a line of points with radii; on a cycle the last point is the first again.
 struct SampledBranch
 {
 	std::vector<Point3d> points;
@@ -48,7 +48,7 @@ struct SampledBranch
 		return sum;
 	}
 
-	/// From point k downhill to one that is nearer to p than its neighbours.
+	/// The point that is nearer to p than its neighbours, found by descent from point k.
 	int nearestFrom(int k, const Point3d& p) const
 	{
 		const auto distance = [&](int i) { return SquaredDistance(points[i], p); };
@@ -78,7 +78,7 @@ struct SampledBranch
 		return sampled;
 	}
 
-	/// The same line in `count` steps as long as each other, which cut its corners.
+	/// The same line in `count` steps of about equal length, which cut its corners.
 	SampledBranch inSteps(int count) const
 	{
 		constexpr int rounds = 10;
@@ -102,7 +102,7 @@ struct SampledBranch
 		return at(places);
 	}
 
-	/// The same with as few steps as leave none longer than `longest`, at least `minimum`.
+	/// The same with the fewest steps of which none is longer than `longest`, at least `minimum`.
 	SampledBranch evenly(double longest, int minimum) const
 	{
 		constexpr double rounding = 1e-12;
@@ -114,7 +114,7 @@ struct SampledBranch
 /**
  * Minimises, with the ends fixed,
  *     sum_i |x_i - y_i|^2 + (l / h)^4 sum_i |x_(i-1) - 2 x_i + x_(i+1)|^2,
- * the smoothing spline of the points y_i at distances h. Waves along the line of a length under
+ * the smoothing spline of the points y_i at distances h. Waves along the line that are shorter than
  * 2 pi l are flattened, longer ones stay. No point leaves the line's bounding box.
  */
 inline void smoothSpline(SampledBranch& branch, double l)
@@ -123,7 +123,7 @@ inline void smoothSpline(SampledBranch& branch, double l)
 	const double h = branch.along().back() / n;
 	if (!(h > 0))
 		return;
-	// Far beyond, all that is left is flat, and the system cannot be solved.
+	// Above this ratio the line is flat anyway, and the system cannot be solved.
 	constexpr double maxRatio = 1e3;
 	const double weight = std::pow(std::min(l / h, maxRatio), 4);
 	// On a free cycle all points move; else those between the ends.
@@ -161,7 +161,7 @@ inline void smoothSpline(SampledBranch& branch, double l)
 	if (factor.info() != Eigen::Success)
 		throw SolverError("The skeleton could not be smoothed: choose a smaller smoothing length.");
 	const Eigen::MatrixX3d x = factor.solve(right);
-	Box3d box; // of the line: a spline swings beyond it where the line turns sharply
+	Box3d box; // of the line: a spline overshoots it where the line turns sharply
 	for (const Point3d& p : branch.points)
 		box.Add(p);
 	for (int i = cycle ? 0 : 1; i < n; ++i)
@@ -174,15 +174,16 @@ inline void smoothSpline(SampledBranch& branch, double l)
 } // namespace detail
 
 /**
- * Samples every branch of a skeleton evenly, with edges no longer than `longestEdge`, and smooths it.
+ * Samples each branch of a skeleton evenly, with edges up to `longestEdge`, and smooths it.
  *
- * Ends and junctions keep their places, the graph keeps its branches and cycles. What had merged into a
- * node goes to the node nearest along the branch.
+ * Ends and junctions keep their places, the graph keeps its branches and cycles. What had merged
+ * into a node goes to the node nearest along the branch. New nodes have the significance of their
+ * branch, see BranchRecord; marks of bridges are lost.
  *
- * @param skeleton     radii are interpolated along the edges.
- * @param longestEdge  mesh units, > 0. The paper's Table 1 takes 0.1 % of the bounding box diagonal.
+ * @param skeleton     its radii are interpolated along the edges.
+ * @param longestEdge  mesh units, > 0; 0.1 % of the bounding box diagonal in the paper's Table 1.
  * @param smoothing    the length l of a smoothing spline, mesh units, >= 0; 0: no smoothing. Waves
- *                     shorter than 2 pi l are flattened; the shape may then no longer hold the curve.
+ *                     shorter than 2 pi l are flattened, which may move the curve out of the shape.
  * @throws InvalidParameter if a parameter is out of its range or would give more than 10 million
  *         nodes; SolverError, Cancelled.
  * Complexity: O(V + length / longestEdge).
@@ -207,7 +208,7 @@ inline CurveSkeleton resampledSkeleton(const CurveSkeleton& skeleton, double lon
 		length += branchLength(skeleton, branch);
 		++parallel[std::minmax(branch.first(), branch.last())];
 	}
-	// To be smoothed, a line needs points closer than the waves that are to go.
+	// Smoothing needs points closer to each other than the length of the waves to flatten.
 	const double spacing = smoothing > 0 ? std::min(longestEdge, smoothing) : longestEdge;
 	if (length / spacing > maxNodes)
 		throw InvalidParameter("Edges as short as this would make "
@@ -246,7 +247,7 @@ inline CurveSkeleton resampledSkeleton(const CurveSkeleton& skeleton, double lon
 		if (smoothing > 0) {
 			line = old.evenly(spacing, minimum);
 			detail::smoothSpline(line, smoothing);
-			// Only rounding makes a line longer, where the steps of coordinates are as large as it is.
+			// Only rounding makes a line longer: coordinates are as coarse as the line is long.
 			if (line.along().back() > 2 * old.along().back())
 				throw SolverError(
 					"The skeleton could not be smoothed: it is too small for its distance from the "
@@ -254,7 +255,7 @@ inline CurveSkeleton resampledSkeleton(const CurveSkeleton& skeleton, double lon
 		}
 		line = line.evenly(longestEdge, minimum);
 
-		keep(branch.first()); // of a free cycle
+		keep(branch.first()); // new only on a free cycle
 		if (freeCycle)
 			result.position[place[branch.first()]] = line.points.front();
 		std::vector<int> ids(1, place[branch.first()]);

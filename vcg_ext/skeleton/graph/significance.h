@@ -22,16 +22,17 @@
 namespace vcg::tri::mcf {
 
 /**
- * How much of the shape a terminal branch stands for: 1 - R / D, where R is the radius of the ball at its
- * root, the node that it hangs on, and D the distance from there to the farthest point that the balls on the
- * branch reach. 0: they are all within the ball at the root; 1/2: they reach one of its radii out of it;
- * near 1: a limb that is long for what it hangs on. It has no unit, and where within a round end the branch
- * ends does not matter.
+ * How much of the shape a terminal branch stands for: 1 - R / D, where R is the radius of the ball
+ * at its root, the node that it hangs on, and D the distance from there to the farthest point that
+ * the balls on the branch reach. 0: all are within the ball at the root; 1/2: they stick out of it
+ * by its radius; near 1: the limb is long compared to the ball at its root. It has no unit, and
+ * does not depend on where within a round end the branch ends.
  *
  * @param fromRoot  the nodes of the branch, its root first.
  * @pre the radius of the nodes is their distance from the surface.
- * Source: the shape tubularity 1 - R / (burn time) of Yan, Sykes, Chambers, Letscher, Ju, "Erosion Thickness
- *         on Medial Axes of 3D Shapes", ACM Trans. Graph. 35(4), 2016, measured straight from the root.
+ * Source: the shape tubularity 1 - R / (burn time) of Yan, Sykes, Chambers, Letscher, Ju, "Erosion
+ *         Thickness on Medial Axes of 3D Shapes", ACM Trans. Graph. 35(4), 2016, but measured along
+ *         the straight line from the root.
  */
 inline double branchSignificance(const CurveSkeleton& skeleton, const std::vector<int>& fromRoot)
 {
@@ -44,22 +45,23 @@ inline double branchSignificance(const CurveSkeleton& skeleton, const std::vecto
 	return reach > 0 ? 1 - radius / reach : 0;
 }
 
-/// What hangs on what in a skeleton, and what it is worth: see nestedBranches().
+/// The hierarchy of a skeleton's branches, with their significance: see nestedBranches().
 struct NestedBranches
 {
-	/// Of each node that of its branch; 1 on the trunk.
+	/// For each node that of its branch; 1 on the trunk.
 	std::vector<double> significance;
-	/// The node that the branch of each node hangs on; on the trunk the node itself.
+	/// For each node the node that its branch hangs on; on the trunk the node itself.
 	std::vector<int> root;
 };
 
 /**
- * Takes a skeleton apart into branches that hang on each other: the least significant terminal branch first,
- * since what loses its fork becomes part of a longer branch, until only the trunk is left: the cycles and the
- * ways between them, or without any one chain from tip to tip. A branch is worth at least as much as any that
- * hangs on it: whatever the threshold, what is above it is connected, and holds what is above a higher one.
+ * Takes a skeleton apart into branches that hang on each other. Terminal branches are removed, the
+ * least significant first and one at a time, since a branch that loses its junction becomes part of
+ * a longer one, until the trunk is left: the cycles and the ways between them, or in a tree one
+ * chain from tip to tip. The significance of a branch is at least that of any that hangs on it. So
+ * what is above any threshold is connected, and contains what is above a higher one.
  * @pre as for branchSignificance().
- * @throws Cancelled. Complexity: O(N log N), and O(N) for each branch that becomes part of a longer one.
+ * @throws Cancelled. Complexity: O(N log N), and O(N) for each branch that becomes longer.
  */
 inline NestedBranches nestedBranches(
 	const CurveSkeleton& skeleton, const Progress& progress = Progress())
@@ -73,10 +75,10 @@ inline NestedBranches nestedBranches(
 		degree[v] = neighbours[v].size();
 	std::vector<char> gone(count, 0);
 	std::vector<double> value(count, 0); // of tips
-	std::vector<double> worn(count, 0);  // of roots: the most that one of their branches was worth
+	std::vector<double> worn(count, 0);  // of roots: the maximum over the branches removed there
 	std::vector<std::vector<int>> tipsOf(count);
 	std::set<std::pair<double, int>> queue; // value, tip
-	/// From its root to its tip; empty if that is all there is.
+	/// From its root to its tip; empty if the rest of the component is a chain.
 	const auto branchOf = [&](int tip) {
 		std::vector<int> nodes(1, tip);
 		for (int before = -1, at = tip; at == tip || degree[at] == 2;) {
@@ -121,7 +123,7 @@ inline NestedBranches nestedBranches(
 		if (--degree[root] != 2)
 			continue;
 		for (int other : std::exchange(tipsOf[root], {}))
-			if (!gone[other]) { // it goes on to the next fork now
+			if (!gone[other]) { // it reaches to the next junction now
 				queue.erase({value[other], other});
 				push(other);
 			}
@@ -130,10 +132,10 @@ inline NestedBranches nestedBranches(
 }
 
 /**
- * The part of a skeleton whose significance is at least `minimum`, in its place. What had merged into the rest
- * goes to the node that it hung on.
- * @param nested of the skeleton.
- * @return with its significance. Complexity: O(N + E log E + surface vertices).
+ * The part of a skeleton whose significance is at least `minimum`, positions unchanged. What had
+ * merged into the rest goes to the node that it hung on.
+ * @param nested  the branches of this skeleton. @param minimum  at most 1.
+ * @return the part with its significance. Complexity: O(N + E log E + surface vertices).
  */
 inline CurveSkeleton significantPart(
 	CurveSkeleton skeleton, const NestedBranches& nested, double minimum)

@@ -26,8 +26,8 @@ struct Branch
 	bool isClosed() const { return first() == last(); }
 };
 
-/// The branch that starts with two neighbouring nodes: to the next node of degree other than 2, or back to the first.
-/// Complexity: linear in the branch.
+/// The branch that starts with two neighbouring nodes, up to the next node of degree other than 2
+/// or back to the first. Complexity: linear in the branch.
 inline Branch branchAlong(const std::vector<std::vector<int>>& neighbours, int from, int to)
 {
 	Branch branch {{from, to}};
@@ -86,7 +86,8 @@ inline double branchLength(const CurveSkeleton& skeleton, const Branch& branch)
 }
 
 /**
- * How far the ball at `end` sticks out of the ball at `root`, mesh units: |end - root| + r_end - r_root.
+ * How far the ball at `end` sticks out of the ball at `root`, mesh units:
+ *     |end - root| + r_end - r_root.
  * At most 0: the ball at the end lies inside the other and adds nothing to the shape.
  * @param skeleton its `radius` must be the distance from the nodes to the surface.
  */
@@ -108,9 +109,9 @@ inline double prominence(const CurveSkeleton& skeleton, int end, int root)
 }
 
 /**
- * Merges nodes: node v goes into node target[v], which must be a node that goes into itself. Edges
- * within a merged node vanish, double edges become one. Positions, radii, significance and what is a bridge are
- * those of the targets; the correspondence follows.
+ * Merges nodes: node v goes into node target[v], which must be its own target. Edges within a
+ * merged node vanish, double edges become one. Positions, radii, significance and marks of bridges
+ * are those of the targets; the correspondence follows.
  * Complexity: O(V + E log E + surface vertices).
  */
 inline CurveSkeleton mergeNodes(const CurveSkeleton& skeleton, const std::vector<int>& target)

@@ -14,7 +14,8 @@ namespace vcg::tri::mcf {
 
 /**
  * Fills in unknown radii (negative) from the known ones, ring by ring: each takes the mean of its
- * neighbours. What no known radius can be reached from stays negative.
+ * neighbours. A node that is not connected to any known radius stays negative.
+ * @param neighbours of each node.
  * Complexity: O(V * longest chain of unknown ones).
  */
 inline void fillUnknownRadii(

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief A skeleton as rooted trees, for formats that know nothing else.
+/// @brief A skeleton as rooted trees, for file formats without cycles.
 
 #ifndef VCG_MCF_SPANNING_FOREST_H
 #define VCG_MCF_SPANNING_FOREST_H

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief The medial axis as a surface to look at (Fig. 1b and 7): the poles, joined as their vertices are.
+/// @brief The medial axis as a surface (Fig. 1b and 7): the poles, joined as their vertices are.
 
 #ifndef VCG_MCF_MEDIAL_AXIS_H
 #define VCG_MCF_MEDIAL_AXIS_H
@@ -25,13 +25,13 @@ namespace vcg::tri::mcf {
 /// Which poles and triangles of poles count.
 struct MedialLayerParameters
 {
-	/// Least angle between two places where a pole's ball touches the surface, seen from the pole;
-	/// degrees, in [0, 180]. What noise and facets make is narrow.
+	/// Minimum angle between two places where a pole's ball touches the surface, seen from the
+	/// pole; degrees, in [0, 180]. Poles that come from noise and facets have narrow angles.
 	double minAngle = 60;
-	/// Least radius of a pole's ball, mesh units, >= 0.
+	/// Minimum radius of a pole's ball, mesh units, >= 0.
 	double minRadius = 0;
-	/// A triangle of poles no edge of which is longer than this many times the longest edge of the
-	/// triangle of their vertices; > 0. Longer ones join sheets that do not belong together.
+	/// A triangle of poles counts if its longest edge is at most this many times the longest edge
+	/// of the triangle of their vertices; > 0. Longer ones join sheets that do not belong together.
 	double maxStretch = 4;
 
 	/// @throws InvalidParameter naming the first parameter that is out of its range.
@@ -85,7 +85,7 @@ constexpr const char* measuringAngles = "Measuring the poles' angles";
 inline std::vector<double> poleAnglesOfComponent(
 	const SurfaceMesh& surface, const PoleSet& poles, const Progress& progress)
 {
-	constexpr double touching = 0.01; // of the radius: facets of a round surface differ that much
+	constexpr double touching = 0.01; // of the radius: facets of a round surface deviate that much
 	const UnitFrame frame(surface.position);
 	const PointTree tree(frame.in(surface.position));
 	std::vector<double> angle(poles.radius.size(), -1);
@@ -108,7 +108,8 @@ inline std::vector<double> poleAnglesOfComponent(
 /**
  * For each pole the widest angle, degrees, between its vertex and any other vertex that its ball
  * touches, seen from the pole; -1 where there is no pole. Other components do not count.
- * @pre surface is compact. @throws Cancelled. Complexity: O(V log V).
+ * @pre surface is compact. @throws Cancelled. Complexity: O(V log V), and O(V^2) on a sphere, where
+ * each ball touches all vertices.
  */
 inline std::vector<double> poleAngles(
 	const SurfaceMesh& surface, const PoleSet& poles, const Progress& progress = Progress())
@@ -121,9 +122,9 @@ inline std::vector<double> poleAngles(
  * count. Where the medial axis is a sheet, it appears once from each of its two sides.
  *
  * @param surface  compact.
- * @param joined   false: only the poles that count, without triangles; else only those that a
- *                 triangle uses.
- * @throws InvalidParameter, Cancelled. Complexity: O(V log V).
+ * @param poles    of all vertices.
+ * @param joined   false: all poles that count, without triangles; else those that a triangle uses.
+ * @throws InvalidParameter, Cancelled. Complexity: as poleAngles().
  * Source: paper, Sec. 4.5 and Fig. 1b, 7; the filter by angle after Amenta, Choi and Kolluri, "The
  *         power crust", 2001.
  */

@@ -13,7 +13,7 @@
 
 #include <vcg/complex/complex.h>
 
-// Branches that cannot be reached leave variables unset there.
+// There, unreachable branches leave variables unset.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
@@ -64,8 +64,8 @@ class CubeMesh : public TriMesh<std::vector<CubeVertex>, std::vector<CubeFace>>
  * @param centre, radius  mesh units; balls of radius <= 0 do not count.
  * @param voxel           edge of the cubes, mesh units, > 0: what is thinner may be missed.
  * @return closed, normals outward.
- * @throws InvalidParameter if the voxel is not positive, or so small that there were more than 30
- *         million; InvalidInput if no ball is larger than nothing; Cancelled.
+ * @throws InvalidParameter if the voxel is not positive, or so small that the grid would have more
+ *         than 30 million; InvalidInput if no radius is positive; Cancelled.
  * Complexity: O(voxels + sum of the balls' voxels).
  * Source: Lorensen and Cline, "Marching cubes", 1987, in vcg's version.
  */

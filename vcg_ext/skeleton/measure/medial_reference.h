@@ -34,12 +34,12 @@ struct TouchingBall
 {
 	Point3d point, outward;
 	double radius;
-	/// Where it touches, or nearly, a second time.
+	/// Where it touches, or nearly touches, a second time.
 	Point3d contact;
 
 	Point3d centre() const { return point - outward * radius; }
 
-	/// Between both contacts, seen from the centre, radians.
+	/// The angle between the two contacts, seen from the centre, radians.
 	double spokeAngle() const
 	{
 		const Point3d a = point - centre(), b = contact - centre();
@@ -56,8 +56,8 @@ struct TouchingBall
 /**
  * Shrinks a ball until nothing is deeper in it than a thousandth of its radius: facets of a round
  * surface are no second contact.
- * @param deepest  (centre, reach, where): whether there is a point nearer to the centre than `reach`;
- *                 then sets `where` to the nearest.
+ * @param deepest  (centre, reach, where): whether there is a point nearer to the centre than
+ *                 `reach`; then sets `where` to the nearest.
  */
 template <class Deepest>
 void shrink(TouchingBall& ball, int maxSteps, const Deepest& deepest)
@@ -109,28 +109,29 @@ struct DeepestPoint
 	}
 };
 
-/// Two places of a ball that are closer together, seen from its centre, are one.
+/// Radians. Contacts of a ball closer to each other than this, seen from its centre, count as one.
 constexpr double minSpokeAngle = M_PI / 3;
 
 } // namespace detail
 
 /**
- * Maximal inner balls of points spread evenly over a surface, and of its vertices if they are not
- * more: those whose two contacts are at least 60 degrees apart, seen from the centre.
+ * Maximal inner balls at points spread evenly over a surface, and at its vertices if these are not
+ * more: those of a radius above 1e-4 whose two contacts are at least 60 degrees apart, seen from
+ * the centre.
  *
  * @param surface  compact, with a bounding box diagonal of 1.
  * @param closest  of all of `surface`.
  * @param count    points on the surface.
  * @throws Cancelled. Complexity: O((count + V) log V). Same bits on any number of threads.
- * Source: Ma, Bae and Choi, "3D medial axis point approximation using nearest neighbors and the normal
- *         field", The Visual Computer 28, 2012.
+ * Source: Ma, Bae and Choi, "3D medial axis point approximation using nearest neighbors and the
+ *         normal field", The Visual Computer 28, 2012.
  */
 inline MedialReference medialReference(const SurfaceMesh& surface, const ClosestSurface& closest,
 	int count, const Progress& progress = Progress())
 {
 	constexpr int firstGuess = 20000;    // points that bound the balls before the surface does
 	constexpr double largest = 0.5;      // half the diagonal: no inner ball is larger
-	constexpr double margin = M_PI / 12; // that a first guess may be too narrow by
+	constexpr double margin = M_PI / 12; // radians by which a first guess may be too narrow
 	constexpr double minRadius = 1e-4;
 	const Progress begin = progress.cancelOnly();
 	std::vector<SurfaceSample> samples = surfaceSamples(surface, count, begin);
@@ -163,7 +164,7 @@ inline MedialReference medialReference(const SurfaceMesh& surface, const Closest
 				where = search.found;
 				return search.any;
 			});
-			// What near neighbours hold already only shrinks further.
+			// A ball that is held by a near neighbour can only shrink further.
 			if (ball.spokeAngle() < detail::minSpokeAngle - margin)
 				continue;
 			detail::shrinkExactly(ball, closest, samples[i].face);

@@ -35,16 +35,17 @@ struct SurfaceParts
 	/// For each face slot its branch, as skeletonBranches() numbers them; -1 on a component of the
 	/// surface that no branch belongs to.
 	std::vector<int> ofFace;
-	/// For each vertex slot the distance to its branch and those that meet it, mesh units: the local
-	/// thickness.
+	/// For each vertex slot the distance to the nearest of its branch and those that meet it, mesh
+	/// units: the local thickness. Without a branch, the distance to the skeleton.
 	std::vector<double> distance;
 };
 
 /**
- * For each vertex of a surface a node of the edge that is closest: a correspondence for a skeleton
- * that has lost its own. Where two parts of the shape nearly touch it may name the wrong one.
- * @pre the skeleton has a node.
- * @throws Cancelled. Complexity: O(V log N).
+ * For each vertex of a surface the nearer end of the closest edge: a correspondence for a skeleton
+ * that has none. Where two parts of the shape nearly touch it may be wrong.
+ * @param surface  the vertices. @pre the skeleton has a node.
+ * @throws Cancelled. Complexity: O(V log N), and O(N) for each vertex that is closest to an
+ *         isolated node.
  */
 inline std::vector<int> closestNodes(const std::vector<Point3d>& surface,
 	const CurveSkeleton& skeleton, const Progress& progress = Progress())
@@ -81,7 +82,7 @@ inline std::vector<int> branchOfNodes(
 	return ofNode;
 }
 
-/// For each branch the edges, as pairs of nodes, of it and of all that meet it at a junction.
+/// For each branch its edges and those of the branches that meet it, as pairs of nodes.
 inline std::vector<std::vector<std::array<int, 2>>> edgesAround(
 	const CurveSkeleton& skeleton, const std::vector<Branch>& branches)
 {
@@ -108,19 +109,19 @@ inline std::vector<std::vector<std::array<int, 2>>> edgesAround(
 /**
  * Gives every face of a surface the branch of the skeleton that it belongs to.
  *
- * A vertex starts with the branch that it has merged into; one that merged into a junction takes the
- * nearest. Then the borders are shortened: indicator functions of the parts are diffused for a moment
- * and each vertex takes the largest, several times, which moves the borders by their geodesic
- * curvature, until they are smooth. Every part is connected over edges; no face has two
+ * A vertex starts with the branch that it has merged into; one that merged into a junction takes
+ * the nearest. Then the borders are shortened: indicator functions of the parts are diffused for a
+ * moment and each vertex takes the largest, several times, which moves the borders by their
+ * geodesic curvature and so makes them smooth. Every part is connected over edges; no face has two
  * neighbours of one other part.
  *
- * A branch into which no face's worth of the surface has merged, as a short one between two
+ * A branch into which less than a face of the surface has merged, as a short one between two
  * junctions, has no part.
  *
  * @param surface   compact.
  * @param skeleton  its `node` has an entry for each vertex of `surface`; -1 where it is not known.
  * @throws InvalidInput if the correspondence does not fit; Cancelled.
- * Complexity: O(V log V + V * longest branch).
+ * Complexity: O(V log V + V E), E the edges of a branch and of all that meet it.
  * Source: ours. Diffusing and comparing is due to Merriman, Bence and Osher, "Diffusion generated
  *         motion by mean curvature", 1992.
  */

@@ -21,7 +21,7 @@
 
 namespace vcg::tri::mcf::detail {
 
-/// A label in [0, labels) for each vertex of a surface, or -1: not known.
+/// A label in [0, labels) for each vertex of a surface, -1 where it is not known.
 class PartLabels
 {
 public:
@@ -39,8 +39,8 @@ public:
 	int ofVertex(int v) const { return label[v]; }
 
 	/**
-	 * Makes every part connected: it keeps its largest piece, and what is left over goes to the part
-	 * that is nearest over edges. A component of the surface without any label keeps none.
+	 * Makes every part connected: it keeps its largest piece, and the rest goes to the part that is
+	 * nearest over edges. A component of the surface without any label gets none.
 	 * @throws Cancelled
 	 */
 	void connect(const Progress& progress = Progress())
@@ -93,8 +93,8 @@ public:
 	}
 
 	/**
-	 * The part of each face: that of most of its corners, then made connected over edges and rid of
-	 * faces that two neighbours of one other part have in between.
+	 * The part of each face: that of most of its corners, then made connected over edges; a face
+	 * between two neighbours of one other part goes to that part.
 	 * @throws Cancelled
 	 */
 	std::vector<int> ofFaces(const Progress& progress = Progress()) const
@@ -131,7 +131,7 @@ public:
 				}
 			});
 		}
-		// Such a face hangs on its own part by one edge: without it that stays connected.
+		// Such a face shares one edge with its own part, which stays connected without it.
 		std::vector<int> stack = numberedArray(count, progress);
 		std::reverse(stack.begin(), stack.end());
 		Ticker ticker(progress.part(0.8, 1), finding, int(count));
@@ -155,7 +155,7 @@ public:
 	}
 
 private:
-	/// How much of which part there is at a vertex.
+	/// Parts and their amounts at a vertex.
 	using Mixture = std::vector<std::pair<int, double>>;
 
 	static constexpr char finding[] = "Finding the parts", smoothing[] = "Smoothing the borders";
@@ -164,10 +164,10 @@ private:
 	std::vector<int> label;
 	int labels;
 	std::vector<double> vertexArea;
-	/// Empty but in the band, where the labels are being diffused.
+	/// Empty except in the band where the labels are being diffused.
 	std::vector<Mixture> mixture;
 
-	/// Takes the label from all elements but those of the largest connected piece of each label.
+	/// Sets all elements to -1 except those of the largest connected piece of each label.
 	template <class ForEachNeighbour>
 	void keepLargest(std::vector<int>& of, const std::vector<double>& area,
 		const ForEachNeighbour& forEachNeighbour, const Progress& progress) const
@@ -241,7 +241,7 @@ private:
 		return rings;
 	}
 
-	/// Of each part a vertex that is as far from its borders as any; -1 if the part has none.
+	/// For each part a vertex as many rings from its borders as any; -1 if the part has no vertex.
 	std::vector<int> innermostVertices(const Progress& progress) const
 	{
 		std::vector<int> order, innermost(size_t(labels), -1);
@@ -266,7 +266,7 @@ private:
 		return band;
 	}
 
-	/// A mixture being added up: an array over all labels, so that many parts at one vertex cost no search.
+	/// Adds up a mixture in an array over all labels: many parts at one vertex need no search.
 	class Sum
 	{
 	public:
@@ -279,7 +279,7 @@ private:
 			amount[part] += value;
 		}
 
-		/// What has been added, parts in the order in which they came; leaves nothing behind.
+		/// Returns the sum, parts in the order in which they were added, and resets it.
 		Mixture take()
 		{
 			Mixture mixture;
@@ -328,7 +328,7 @@ private:
 		}
 	}
 
-	/// The part of which there is most at a vertex; of equals its own, then the lowest.
+	/// The part with the largest amount at a vertex; of equals the vertex's own, then the lowest.
 	int largest(int v) const
 	{
 		int best = label[v];

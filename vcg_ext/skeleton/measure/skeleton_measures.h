@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief How good a skeleton is of its surface: inside, centred, complete.
+/// @brief How well a skeleton describes its surface: inside, centred, complete.
 
 #ifndef VCG_MCF_SKELETON_MEASURES_H
 #define VCG_MCF_SKELETON_MEASURES_H
@@ -30,10 +30,10 @@
 
 namespace vcg::tri::mcf {
 
-/// How finely skeletonMeasures() looks.
+/// How finely skeletonMeasures() samples.
 struct MeasureSampling
 {
-	/// Longest piece of the skeleton, fraction of the surface's diagonal; as for the paper's Table 1.
+	/// Longest piece of the skeleton, fraction of the surface's diagonal; as in Table 1.
 	double spacing = 0.001;
 	/// Points of the surface whose balls make up the medial axis; points of the surface, and inside
 	/// it, at which the reconstruction is measured.
@@ -44,38 +44,38 @@ struct MeasureSampling
 /// diagonal.
 struct SkeletonMeasures
 {
-	/// Part of the skeleton's length that is inside; how far outside the worst point is.
+	/// Fraction of the skeleton's length that is inside; the maximum distance outside.
 	double insideFraction = 0, outDepthMax = 0;
-	/// Distance to the medial axis: mean over the length, what 95 % of it are below, greatest.
+	/// Distance to the medial axis: mean over the length, 95th percentile, maximum.
 	double medialMean = 0, medialP95 = 0, medialMax = 0;
-	/// Mean of 1 - d / R, d the distance to the surface, negative outside, and R the radius of the
-	/// largest ball there: 0 centred, 1 on the surface.
+	/// Mean of 1 - d / R, clamped to [0, 2], d the distance to the surface, negative outside, and R
+	/// the radius of the nearest medial ball: 0 centred, 1 on the surface.
 	double offCentreMean = 0;
-	/// Distance from the surface to the skeleton.
+	/// Distance from the surface to the skeleton, mean and maximum.
 	double coverMean = 0, coverMax = 0;
 	/// Distance from the surface to the union of the balls around the skeleton that touch the
 	/// surface from inside: what the skeleton does not describe.
 	double reconMean = 0, reconP95 = 0, reconMax = 0;
-	/// Part of the volume that these balls fill.
+	/// Fraction of the volume that these balls fill.
 	double volumeFraction = 0;
 	/// Terminal branches that describe no feature: see prominence().
 	int spurs = 0;
-	/// Of each node, mesh units: the distance to the surface, negative outside, and to the medial axis.
+	/// Of each node, mesh units: distance to the surface, negative outside, and to the medial axis.
 	std::vector<double> nodeClearance, nodeMedialDistance;
 };
 
 namespace detail {
 
-/// Distance to the medial axis and radius of the largest ball there.
+/// Distance to the medial axis, and the radius of the ball there.
 struct MedialPlace
 {
 	double distance, radius;
 };
 
 /**
- * Where the medial axis is nearest to a point: among the balls of the reference, and the one that
- * touches the surface where the surface is closest to the point, so that the reference's density
- * does not matter on the way to the surface.
+ * The place of the medial axis that is nearest to a point: among the balls of the reference, and
+ * the ball that touches the surface at the point's closest point, so that the density of the
+ * reference does not matter for points between the medial axis and the surface.
  */
 inline MedialPlace nearestMedial(const Point3d& x, const ClosestSurface::Hit& hit, bool inside,
 	const MedialReference& reference, const PointTree& centres, const ClosestSurface& surface)
@@ -107,7 +107,7 @@ inline double distanceToBalls(
 	return best;
 }
 
-/// The value that a part of the samples, by weight, is at most.
+/// The smallest value that a fraction `part` of the weight does not exceed.
 inline double quantile(
 	const std::vector<double>& value, const std::vector<double>& weight, double part)
 {
@@ -148,7 +148,7 @@ inline int countSpurs(const CurveSkeleton& skeleton, const std::vector<double>& 
 	return spurs;
 }
 
-/// Points inside a surface, evenly spread; fewer than `count` if the surface fills little of its box.
+/// Points spread evenly inside a surface; fewer than `count` if it fills less than 2 % of its box.
 /// @throws Cancelled
 inline std::vector<Point3d> interiorPoints(
 	const SurfaceMesh& surface, const ClosestSurface& closest, int count, const Progress& progress)
@@ -180,15 +180,15 @@ inline std::vector<Point3d> interiorPoints(
 } // namespace detail
 
 /**
- * Measures a skeleton against the surface that it is of.
+ * Measures a skeleton against its surface.
  *
  * @param skeleton  mesh units; radius and correspondence are not used.
  * @param surface   closed, compact, positive volume.
  * @param sampling  all counts > 0, the spacing >= 1e-4.
- * @throws InvalidInput if the skeleton has no edge of positive length, or is so long that it cannot be
- *         that surface's; Cancelled.
- * Complexity: O(S log V + 20000 S) for S samples of the skeleton. Same bits on any number of threads.
- * Source: ours.
+ * @throws InvalidInput if the skeleton has no edge of positive length, or is so long that it cannot
+ *         be that surface's; Cancelled.
+ * Complexity: O(S (log V + surfacePoints + innerPoints) + medialPoints log V) for S samples of the
+ * skeleton. Same bits on any number of threads. Source: ours.
  */
 inline SkeletonMeasures skeletonMeasures(const CurveSkeleton& skeleton, const SurfaceMesh& surface,
 	const MeasureSampling& sampling = MeasureSampling(), const Progress& progress = Progress())

@@ -3,7 +3,7 @@
 
 /**
  * @file
- * @brief A skeleton as closed tubes: to be printed, and for programs that draw no lines.
+ * @brief A skeleton as closed tubes, for printing and for programs that draw no lines.
  */
 
 #ifndef VCG_MCF_SKELETON_TUBES_H
@@ -27,20 +27,20 @@ struct SkeletonTubes
 	std::vector<Triangle> triangles;
 	/// For each point the node of the skeleton that it lies around.
 	std::vector<int> node;
-	/// How many closed tubes and balls there are.
+	/// Number of closed tubes and balls.
 	int pieces = 0;
 };
 
 namespace detail {
 
-/// A point's circle: centre, and two radii at right angles, the second one a quarter turn after the first.
+/// A circle of a tube: centre and two perpendicular radii, the second a quarter turn on.
 struct TubeRing
 {
 	Point3d centre, first, second;
 	int node;
 };
 
-/// Any unit vector at a right angle to a unit vector.
+/// A unit vector perpendicular to a unit vector.
 inline Point3d anyPerpendicular(const Point3d& direction)
 {
 	int axis = 0;
@@ -53,7 +53,7 @@ inline Point3d anyPerpendicular(const Point3d& direction)
 	return result.Normalize();
 }
 
-/// Adds rings joined one after the other; ends closed by an apex each, or the last joined to the first.
+/// Adds rings, each joined to the last one; then an apex at each end, or the last to the first.
 class TubeBuilder
 {
 public:
@@ -110,7 +110,7 @@ private:
 	int rings = 0, first = 0, last = 0;
 };
 
-/// The unit tangent at each point of a chain; where it turns back, that of the segment before.
+/// The unit tangent at each point of a chain; where that turns back, the last segment's.
 inline std::vector<Point3d> chainTangents(const std::vector<Point3d>& points, bool closed)
 {
 	const size_t n = points.size();
@@ -126,7 +126,7 @@ inline std::vector<Point3d> chainTangents(const std::vector<Point3d>& points, bo
 	return tangent;
 }
 
-/// First radii (unit) along a chain without needless twist; on a closed one what is left is spread evenly.
+/// First radii (unit) along a chain, without twist; a closed chain's total twist is spread evenly.
 inline std::vector<Point3d> chainNormals(const std::vector<Point3d>& tangent, bool closed)
 {
 	const auto carried = [](const Point3d& normal, const Point3d& along) {
@@ -151,12 +151,12 @@ inline std::vector<Point3d> chainNormals(const std::vector<Point3d>& tangent, bo
 } // namespace detail
 
 /**
- * A tube around each branch, with round ends, and a ball around each node without edges. Each is a closed
- * two-manifold of its own, oriented outwards; at junctions they overlap, as programs for printing accept. Where
- * a curve bends within its own radius a tube passes through itself.
+ * A tube around each branch, with round ends, and a ball around each node without edges. Each is a
+ * closed two-manifold, oriented outwards; at junctions they overlap, which programs for printing
+ * accept. Where a curve bends within its own radius a tube passes through itself.
  * @param radius one for each node, mesh units, above 0.
  * @param sides  of a tube's section, at least 3.
- * Complexity: O(N * sides).
+ * Complexity: O(N * sides + pieces * sides^2).
  * @throws InvalidParameter: too few sides; InvalidInput: a radius that is missing or not above 0.
  */
 inline SkeletonTubes skeletonTubes(
@@ -173,7 +173,7 @@ inline SkeletonTubes skeletonTubes(
 				"Tubes need a radius above 0; that of node " + std::to_string(v) + " is not.");
 	SkeletonTubes tubes;
 	const int quarter = (sides + 3) / 4; // rings from the middle of a ball to its pole
-	// A chain with round ends; of a single node a ball.
+	// A chain with round ends; a ball for a single node.
 	const auto addOpen = [&](const std::vector<int>& nodes, const std::vector<Point3d>& points,
 							 const std::vector<Point3d>& tangent) {
 		const std::vector<Point3d> normal = chainNormals(tangent, false);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief The topology of curves and sheets, counted: components, loops and closed pockets.
+/// @brief Betti numbers of curves and sheets: components, loops and closed pockets.
 
 #ifndef VCG_MCF_BETTI_NUMBERS_H
 #define VCG_MCF_BETTI_NUMBERS_H
@@ -33,7 +33,7 @@ struct BettiNumbers
 	friend bool operator!=(const BettiNumbers& a, const BettiNumbers& b) { return !(a == b); }
 };
 
-/// Vertex ids in ascending order.
+/// Edges and faces as vertex ids in ascending order.
 using EdgeOfComplex = std::array<int, 2>;
 using FaceOfComplex = std::array<int, 3>;
 
@@ -58,8 +58,8 @@ inline std::vector<EdgeOfComplex> allEdges(
 }
 
 /**
- * What is left of the faces when a face with an edge that no other face has is taken away, with that
- * edge, as long as there is one (elementary collapses). Closed pockets stay, and little else.
+ * The faces that are left after elementary collapses: while a face has an edge that no other face
+ * has, both are removed. Closed pockets stay, and little else.
  * @return ids of the faces left, ascending. Complexity: O(F log F).
  */
 inline std::vector<int> facesWithoutFreeEdges(const std::vector<FaceOfComplex>& faces)
@@ -95,9 +95,9 @@ inline std::vector<int> facesWithoutFreeEdges(const std::vector<FaceOfComplex>& 
 }
 
 /**
- * The closed surfaces that faces form: reduces the boundary matrix over GF(2), column by column.
- * @return for each face whose boundary is a sum of boundaries of earlier ones, the faces of that
- *         closed surface, itself last.
+ * A basis of the closed surfaces that faces form, by reducing the boundary matrix over GF(2).
+ * @return for each face whose boundary is a sum of boundaries of earlier faces, the faces of that
+ *         closed surface, itself last. Complexity: cubic in the number of faces at most.
  */
 inline std::vector<std::vector<int>> closedSurfaces(const std::vector<FaceOfComplex>& faces)
 {
@@ -140,7 +140,7 @@ inline std::vector<std::vector<int>> closedSurfaces(const std::vector<FaceOfComp
  * The Betti numbers of a complex of vertices, edges and triangles:
  *     b2 = F - rank d2,  b1 = E - (V - b0) - rank d2.
  *
- * Elementary collapses take nearly all faces away before the matrix is reduced.
+ * Elementary collapses remove nearly all faces before the matrix is reduced.
  * @param vertices  their number; each counts, used or not.
  * @param edges     need not hold the edges of the faces; no doubles.
  * @param faces     no doubles.

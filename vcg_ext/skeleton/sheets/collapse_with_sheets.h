@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Last line of Fig. 4 where the stage itself says which of its parts are sheets.
+/// @brief Last line of Fig. 4 with the sheets that a stage has, inside the surface.
 
 #ifndef VCG_MCF_COLLAPSE_WITH_SHEETS_H
 #define VCG_MCF_COLLAPSE_WITH_SHEETS_H
@@ -23,7 +23,7 @@ namespace vcg::tri::mcf {
 
 namespace detail {
 
-/// Whether a skeleton is inside a surface: nodes, curves, the sides and the middles of the faces.
+/// Whether a skeleton is inside a surface: nodes, curves, and the edges and centroids of faces.
 /// @throws Cancelled. Complexity: about O((F + nodes) log F).
 inline bool isInside(const MesoSkeleton& skeleton, const std::vector<Point3d>& surface,
 	const std::vector<Triangle>& triangles, const Progress& progress)
@@ -44,8 +44,9 @@ inline bool isInside(const MesoSkeleton& skeleton, const std::vector<Point3d>& s
 } // namespace detail
 
 /**
- * Turns a stage into curves and sheets: collapseKeepingSheets() of its sheetVertices(). If that is not inside
- * the surface, all sheets become curves, see collapseInside(); not where vertices are held.
+ * Turns a stage into curves and sheets: collapseKeepingSheets() of its sheetVertices(). If the
+ * result is not inside the surface, all sheets become curves, see collapseInside(). That is not
+ * checked where vertices are held, or the triangles of the surface are not known.
  * @param epsilon fraction of the diagonal of each component.
  * @param onNote  receives what was kept and what could not be; may be empty.
  * @throws SolverError, Cancelled. Complexity: as collapseKeepingSheets().

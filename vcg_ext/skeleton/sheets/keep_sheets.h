@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Last line of Fig. 4 where sheets are kept: a stage becomes curves and single-walled sheets.
+/// @brief Last line of Fig. 4 with sheets: a stage becomes curves and single-walled sheets.
 
 #ifndef VCG_MCF_KEEP_SHEETS_H
 #define VCG_MCF_KEEP_SHEETS_H
@@ -30,12 +30,12 @@ namespace vcg::tri::mcf {
 struct SheetCollapse
 {
 	MesoSkeleton skeleton;
-	/// Connected sheets of the stage, and those of them that had to become curves, since with them the
+	/// Connected sheets of the stage, and those of them that had to become curves: with them the
 	/// result would not have had the topology of the shape, or would not have been inside it.
 	int sheets = 0, givenUp = 0;
 };
 
-/// A curve skeleton as one that might have had sheets.
+/// A curve skeleton as the result of a collapse that found no sheets.
 inline SheetCollapse withoutSheets(const CurveSkeleton& curve)
 {
 	SheetCollapse result;
@@ -48,8 +48,8 @@ inline SheetCollapse withoutSheets(const CurveSkeleton& curve)
 
 namespace detail {
 
-/// Collapses all that is no sheet, then joins the walls of what is. The topology is to be checked.
-/// @pre the stage has one component.
+/// Collapses what is not a sheet, then joins the walls of the sheets. The caller checks the
+/// topology and sets the radii. @pre the stage has one component.
 inline MesoSkeleton collapseAround(
 	const Stage& stage, const std::vector<char>& sheet, double epsilon, const Progress& progress)
 {
@@ -110,7 +110,7 @@ inline MesoSkeleton collapseAround(
 				curveEdges.push_back({A, B});
 	}
 	SiteComplex walls = imageComplex({}, faces, label);
-	// An edge of a wall is no curve, even if it goes when the walls are joined.
+	// An edge of a wall is not a curve, even if joining the walls removes it.
 	std::set<EdgeOfComplex> curves = imageComplex(curveEdges, {}, label).edges;
 	for (const EdgeOfComplex& e : walls.edges)
 		curves.erase(e);
@@ -131,9 +131,9 @@ inline MesoSkeleton collapseAround(
 } // namespace detail
 
 /**
- * The vertices of a stage that are sheets: those that the flow kept (see markSheets()), or if it was
- * not told to keep any, those of that kind (see vertexKinds()); parts of less than 0.5 % of the squared
- * diagonal, both walls counted, left out.
+ * The vertices of a stage that are sheets: those that the flow keeps as such (see markSheets()) or,
+ * if it keeps none, those of kind Sheet (see vertexKinds()). Parts of less than 0.5 % of the
+ * squared diagonal, both walls counted, are left out.
  * @return 1 for such vertices, else 0. @throws Cancelled
  */
 inline std::vector<char> sheetVertices(const Stage& stage, const Progress& progress = Progress())
@@ -205,7 +205,7 @@ inline SheetCollapse collapseOneKeepingSheets(
 		neighbours[b].push_back(a);
 	}
 	fillUnknownRadii(skeleton.radius, neighbours);
-	// Where walls were joined badly one of these may cut or close a loop: then it is left out.
+	// Where walls were joined badly a step may cut or close a loop: then it is left out.
 	const BettiNumbers before = skeleton.betti();
 	for (void (*tidied)(MesoSkeleton&) : {&removeFins, &openFolds, &removeWhiskers}) {
 		MesoSkeleton candidate = skeleton;
@@ -220,10 +220,10 @@ inline SheetCollapse collapseOneKeepingSheets(
 }
 
 /**
- * One component of a stage as a stage of its own.
- * @param own         its mesh, whose vertices are called `ids` in the stage's.
+ * One component of a stage as a stage of its own, without volumes and surface triangles.
+ * @param own         its mesh. @param ids for each vertex of that its id in the stage's mesh.
  * @param surfaceIds  its vertices on the surface.
- * @param newNumber   of each vertex of the stage among `ids`.
+ * @param newNumber   for each vertex of the stage its place among `ids`.
  */
 inline Stage stageOfComponent(const Stage& stage, int c, const SurfaceMesh& own,
 	const std::vector<int>& ids, const std::vector<int>& surfaceIds,
@@ -256,18 +256,18 @@ inline Stage stageOfComponent(const Stage& stage, int c, const SurfaceMesh& own,
 
 /**
  * Turns a stage into curves and sheets: collapses the shortest edges as collapseToCurve() does, but
- * none between two vertices of a sheet; then joins the two walls of each sheet on common sites, 4
+ * none between two vertices of sheets; then joins the two walls of each sheet on common sites, 4
  * epsilon apart.
  *
- * Each component is treated as if the others were not there, and its nodes stand together.
+ * Each component is treated as if it were alone, and its nodes have consecutive numbers.
  *
  * Joining walls may close or open loops, where they touch elsewhere or are not close enough. So the
- * Betti numbers over GF(2) are compared with those of the solid, (components, genus, 0). A sheet that
- * fails alone becomes curves; where they fail together, the smallest does, and so on. The result always
- * has the topology of the shape: at worst it is a curve skeleton.
+ * Betti numbers over GF(2) of each component are compared with those of its solid, (1, genus, 0). A
+ * sheet that fails alone becomes curves; while the rest fail together, so does the smallest of
+ * them. The result always has the topology of the shape: at worst it is a curve skeleton.
  *
  * @param sheet    1 for vertices of sheets, else 0, e.g. from sheetVertices().
- * @param epsilon  fraction of the diagonal.
+ * @param epsilon  fraction of the diagonal of each component.
  * @throws SolverError, Cancelled. Complexity: O(S V log V) for S sheets.
  * Source: ours.
  */

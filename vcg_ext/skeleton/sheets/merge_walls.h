@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Two walls that lie on each other become one sheet: a coarser complex on sites between them.
+/// @brief Joins two walls that lie on each other into one sheet: a coarser complex on common sites.
 
 #ifndef VCG_MCF_MERGE_WALLS_H
 #define VCG_MCF_MERGE_WALLS_H
@@ -23,19 +23,19 @@
 
 namespace vcg::tri::mcf {
 
-/// Points, spread evenly, and to which of them each of the given points belongs.
+/// Sites spread evenly over given points.
 struct Sites
 {
 	std::vector<Point3d> position;
-	/// For each given point its site.
+	/// For each given point the nearest site.
 	std::vector<int> ofPoint;
 };
 
 /**
- * Spreads sites over points: a greedy Poisson subset, in the order of the points, whose members are at
- * least `spacing` apart; then each moves to the mean of the points nearest to it, three times. Walls
- * that lie on each other share their sites.
- * @pre points is not empty, spacing > 0. Complexity: O(n log n).
+ * Spreads sites over points: a greedy Poisson subset, in the order of the points, whose members are
+ * at least `spacing` apart; then each moves to the mean of the points nearest to it, three times.
+ * Walls that lie on each other share their sites.
+ * @pre points is not empty, spacing > 0, in their units. Complexity: O(n log n).
  */
 inline Sites spreadSites(const std::vector<Point3d>& points, double spacing)
 {
@@ -87,7 +87,7 @@ inline Sites spreadSites(const std::vector<Point3d>& points, double spacing)
 struct SiteComplex
 {
 	std::set<FaceOfComplex> faces;
-	/// Those of the faces included.
+	/// The edges of the faces included.
 	std::set<EdgeOfComplex> edges;
 };
 
@@ -114,8 +114,8 @@ inline SiteComplex imageComplex(const std::vector<EdgeOfComplex>& edges,
 }
 
 /**
- * Adds the faces whose three edges are there: loops of three sites are shorter than any loop of the
- * shape that the sites can show. Edges of `curves` do not count.
+ * Adds all faces whose three edges exist: loops of three sites are shorter than any loop of the
+ * shape that the sites can resolve. Edges of `curves` do not count.
  */
 inline void fillTriangles(SiteComplex& complex, const std::set<EdgeOfComplex>& curves)
 {
@@ -134,7 +134,7 @@ inline void fillTriangles(SiteComplex& complex, const std::set<EdgeOfComplex>& c
 
 namespace detail {
 
-/// How many faces each edge has.
+/// The number of faces of each edge.
 inline std::map<EdgeOfComplex, int> faceCounts(const std::set<FaceOfComplex>& faces)
 {
 	std::map<EdgeOfComplex, int> count;
@@ -145,12 +145,12 @@ inline std::map<EdgeOfComplex, int> faceCounts(const std::set<FaceOfComplex>& fa
 }
 
 /**
- * Takes a face of a pocket away, and then the longest edge that only one face has left together with
- * that face, again and again.
- * @param inside  edges that no other face than those of the pocket had.
- * @param count   how many faces each edge has; kept up to date.
- * @param left    the number of faces of the pocket to leave.
- * @param minimum   edges shorter than this stay.
+ * Removes the face `opened` of a pocket, then repeatedly the longest edge that has one face left,
+ * with that face (elementary collapses).
+ * @param inside   edges whose faces are all in the pocket: only these are removed.
+ * @param count    the number of faces of each edge; kept up to date.
+ * @param left     stops when the pocket has this many faces left.
+ * @param minimum  edges shorter than this stay; units of `position`.
  * Complexity: O(F log F).
  */
 inline void thinPocket(SiteComplex& complex, std::set<FaceOfComplex>& pocket,
@@ -188,10 +188,12 @@ inline void thinPocket(SiteComplex& complex, std::set<FaceOfComplex>& pocket,
 } // namespace detail
 
 /**
- * Opens the closed pockets that are left between two walls where they chose other diagonals: of each,
- * one face is taken away, with it the hollow, and then faces at free edges until half of them are
- * left, a single wall. Afterwards b2 is 0, and b0 and b1 are as before.
+ * Opens the closed pockets that are left between two walls where these have different diagonals: of
+ * each, one face is removed, which opens it, and then faces at free edges until half of the faces
+ * are left, a single wall. Afterwards b2 is 0, and b0 and b1 are as before.
  * @param position  of the sites.
+ * @param longEdge  in units of `position`: of a pocket whose longest edge between two faces of its
+ *                  own is longer, all faces at free edges at least as long as this go.
  */
 inline void openPockets(SiteComplex& complex, const std::vector<Point3d>& position, double longEdge)
 {
@@ -221,10 +223,10 @@ inline void openPockets(SiteComplex& complex, const std::vector<Point3d>& positi
 			const bool fresh = std::none_of(pocket.begin(), pocket.end(),
 				[&](const FaceOfComplex& f) { return touched.count(f); });
 			if (!fresh)
-				continue; // it has changed: it will be found again
+				continue; // shares faces with one opened in this round: the next one finds it again
 			any = true;
 			touched.insert(pocket.begin(), pocket.end());
-			// Edges whose faces are all in the pocket: the longest is the one to lose.
+			// Edges whose faces are all in the pocket: a face at the longest one is opened.
 			std::map<EdgeOfComplex, int> within;
 			for (const FaceOfComplex& f : pocket)
 				for (const EdgeOfComplex& e : edgesOf(f))

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief The result with sheets: curves and single-walled sheets in one complex.
+/// @brief A skeleton with sheets: curves and single-walled sheets in one complex.
 
 #ifndef VCG_MCF_MESO_SKELETON_H
 #define VCG_MCF_MESO_SKELETON_H
@@ -31,9 +31,9 @@ struct MesoSkeleton
 {
 	/// Nodes, mesh units.
 	std::vector<Point3d> position;
-	/// Local thickness at each node, mesh units: mean distance to the surface vertices merged there.
+	/// Local thickness at each node, mesh units: mean distance to its surface vertices.
 	std::vector<double> radius;
-	/// Curve edges: those that no face has. Ascending.
+	/// Curve edges: those that belong to no face. Ascending.
 	std::vector<EdgeOfComplex> edges;
 	/// Ascending; no face occurs twice.
 	std::vector<FaceOfComplex> faces;
@@ -61,7 +61,8 @@ struct MesoSkeleton
 	}
 };
 
-/// Leaves out the nodes that have gone to another, their target; others are their own.
+/// Removes the nodes that have another one as their target, with their edges and faces; the
+/// correspondence follows. @param target of each node, itself if it stays; a target stays.
 inline void removeMergedNodes(MesoSkeleton& skeleton, const std::vector<int>& target)
 {
 	MesoSkeleton left;
@@ -85,8 +86,8 @@ inline void removeMergedNodes(MesoSkeleton& skeleton, const std::vector<int>& ta
 }
 
 /**
- * The faces of a skeleton, neighbours turned alike as far as that is possible: across edges of two
- * faces, beginning with the first face of each part. Complexity: O(F log F).
+ * The faces of a skeleton, oriented consistently across edges of two faces as far as that is
+ * possible; the first face of each part keeps its orientation. Complexity: O(F log F).
  */
 inline std::vector<std::array<int, 3>> orientedFaces(const MesoSkeleton& skeleton)
 {
@@ -94,7 +95,7 @@ inline std::vector<std::array<int, 3>> orientedFaces(const MesoSkeleton& skeleto
 	for (size_t f = 0; f < skeleton.faces.size(); ++f)
 		for (const EdgeOfComplex& e : edgesOf(skeleton.faces[f]))
 			around[e].push_back(int(f));
-	// Whether a face has a before b, going round.
+	// Whether a face has the directed edge from a to b.
 	const auto runsAlong = [](const std::array<int, 3>& face, int a, int b) {
 		for (size_t k = 0; k < 3; ++k)
 			if (face[k] == a && face[(k + 1) % 3] == b)

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief What two walls leave where they did not meet on the same sites: fins on sheets, and folded rims.
+/// @brief Removes fins and folded rims, left by walls that did not meet on the same sites.
 
 #ifndef VCG_MCF_REMOVE_FINS_H
 #define VCG_MCF_REMOVE_FINS_H
@@ -25,6 +25,7 @@ namespace detail {
 /// The faces of a skeleton around its edges and nodes.
 struct SheetFaces
 {
+	/// For each edge its faces.
 	std::map<EdgeOfComplex, std::vector<int>> around;
 	/// How many faces and curve edges each node has.
 	std::vector<int> uses;
@@ -42,7 +43,7 @@ struct SheetFaces
 				++uses[size_t(v)];
 	}
 
-	/// Edges of three faces and more are seams, those of one are the rim.
+	/// The number of faces of an edge: three and more at a seam, one at the rim.
 	size_t count(const EdgeOfComplex& e) const { return around.at(e).size(); }
 };
 
@@ -50,6 +51,7 @@ struct SheetFaces
 struct Patch
 {
 	std::vector<int> faces;
+	/// Its edges on seams, and all others.
 	std::set<EdgeOfComplex> seam, own;
 	bool hasRim = false;
 };
@@ -85,8 +87,8 @@ inline std::vector<Patch> patchesAtSeams(
 }
 
 /**
- * Whether a patch is a fin, see removeFins(). The nodes that only it has then get the nearest ones of its
- * seams as their targets.
+ * Whether a patch is a fin, see removeFins(). If so, the target of each node that no other face or
+ * curve edge has becomes the nearest node of the patch's seams.
  */
 inline bool isFin(const Patch& patch, const MesoSkeleton& skeleton, const SheetFaces& sheets,
 	std::vector<int>& target)
@@ -123,7 +125,7 @@ inline bool isFin(const Patch& patch, const MesoSkeleton& skeleton, const SheetF
 	return true;
 }
 
-/// Leaves out the faces that are marked.
+/// Removes the faces that are marked.
 inline void removeFaces(MesoSkeleton& skeleton, const std::vector<char>& marked)
 {
 	std::vector<FaceOfComplex> left;
@@ -136,14 +138,15 @@ inline void removeFaces(MesoSkeleton& skeleton, const std::vector<char>& marked)
 } // namespace detail
 
 /**
- * Takes fins off: patches between seams and rim that stick out of a seam by less than the thickness there.
- * They are left where two walls did not meet on the same sites. What merged into their nodes goes to the
- * nearest node of their seams.
+ * Removes fins: patches between seams and rim that stick out of a seam by less than the thickness
+ * there. They are left where two walls did not meet on the same sites. What merged into their nodes
+ * goes to the nearest node of their seams.
  *
- * The topology stays: a patch goes if it has a rim, and V - E + F = 0 for what it does not share with the
- * rest. Connected as it is, it then adds nothing to the homology. The smallest go first, and others that have
- * a seam with them wait, since there may be no seam any more.
- * @pre radius is set. Complexity: O(F log F) for each time that fins lie on fins.
+ * The topology stays: a patch is removed if it has a rim, and V - E + F = 0 for the nodes, edges
+ * and faces that it does not share with the rest. Being connected, it then adds nothing to the
+ * homology. The smallest go first; patches at the same seam wait for the next round, since it may
+ * be no seam any more.
+ * @pre radius is set. Complexity: O(F log F) for each round: as many as fins lie on fins.
  */
 inline void removeFins(MesoSkeleton& skeleton)
 {
@@ -170,10 +173,10 @@ inline void removeFins(MesoSkeleton& skeleton)
 }
 
 /**
- * Opens folds of rims: where two walls did not meet on the same sites, the rim may lie on the sheet along an
- * edge. Of such a seam of one edge, the smallest face that has the rim on one other side goes. A sheet that
- * really meets others does so along many edges. The topology stays, and all nodes do: of two such faces that
- * share an edge one is left.
+ * Opens folded rims: where two walls did not meet on the same sites, the rim may lie on the sheet
+ * along an edge. Of such a seam, a single edge of three faces, the smallest face that has another
+ * edge on the rim is removed. A sheet that really meets others does so along many edges. The
+ * topology and all nodes stay: of two such faces that share an edge one is left.
  * Complexity: O(F log F).
  */
 inline void openFolds(MesoSkeleton& skeleton)

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief The last touches on a skeleton with sheets: whiskers off, rims and sheets smooth.
+/// @brief Clean-up of a skeleton with sheets: removes whiskers, smooths sheets and rims.
 
 #ifndef VCG_MCF_SMOOTH_SHEETS_H
 #define VCG_MCF_SMOOTH_SHEETS_H
@@ -17,9 +17,9 @@
 namespace vcg::tri::mcf {
 
 /**
- * Takes chains of curve edges away that stick out of a sheet, or out of a curve, by less than the
- * thickness where they start, and end in nothing. What merged into their nodes goes to that start.
- * The topology stays. @pre radius is set. Complexity: O(whiskers * E).
+ * Removes whiskers: chains of curve edges from a node of a sheet to a tip that are shorter than the
+ * thickness at that node. What merged into their nodes goes to that node. The topology stays.
+ * @pre radius is set. Complexity: O(N + E + F).
  */
 inline void removeWhiskers(MesoSkeleton& skeleton)
 {
@@ -50,7 +50,7 @@ inline void removeWhiskers(MesoSkeleton& skeleton)
 			chain.push_back(w);
 			v = w;
 		} while (!hasFace[size_t(v)] && neighbours[size_t(v)].size() == 2);
-		// Only whiskers of sheets: the spurs of curves are another matter, see refine().
+		// Only whiskers of sheets: for the spurs of curves see refine().
 		if (!hasFace[size_t(v)] || length >= skeleton.radius[size_t(v)])
 			continue;
 		for (size_t i = 0; i + 1 < chain.size(); ++i) {
@@ -64,9 +64,10 @@ inline void removeWhiskers(MesoSkeleton& skeleton)
 }
 
 /**
- * Moves each node of a sheet half-way to the mean of its neighbours, as often as told: those on a rim
- * or a seam (edges of one face, or of three and more) along it, where two such edges meet, and not at
- * all where it ends or forks; nodes with curves stay. Complexity: O(rounds * F log F).
+ * Moves each node of a sheet half-way to the mean of its neighbours, `rounds` times. Nodes on a rim
+ * or a seam (edges of one face, or of three and more) move along it where two such edges meet, and
+ * stay where it ends or forks; nodes with curve edges stay too.
+ * Complexity: O(F log F + rounds * F).
  */
 inline void smoothSheets(MesoSkeleton& skeleton, int rounds)
 {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief What a meso-skeleton is at each vertex: curve, sheet, or still volume (Sec. 4.5, Fig. 7).
+/// @brief The kind of each vertex of a stage: curve, sheet, or still volume (Sec. 4.5, Fig. 7).
 
 #ifndef VCG_MCF_VERTEX_KIND_H
 #define VCG_MCF_VERTEX_KIND_H
@@ -31,11 +31,11 @@ enum class VertexKind : char {
 
 namespace detail {
 
-// What tells the kinds, in epsilon, see vertexKinds().
+// The lengths that decide between the kinds, in epsilon, see vertexKinds().
 constexpr double maxThickness = 2;
 constexpr double sheetReach = 8;
 constexpr double longestPiece = 4;
-constexpr double toldTogether = 3; // in the middle of a sheet, a ball of 4.2 has enough
+constexpr double toldTogether = 3; // leaves a ball of 5: 4.2 is enough in the middle of a sheet
 // No point of a piece is farther from the mean of its corners than 2/3 of its longest edge.
 constexpr double wallReach = maxThickness + longestPiece * 2 / 3;
 constexpr double kindCell = std::max(wallReach, (sheetReach + toldTogether) / 2);
@@ -51,7 +51,7 @@ inline double epsilonAt(const Stage& stage, int v)
 struct Piece
 {
 	Point3f middle; ///< the mean of its corners, in the coordinates of its PiecesByCell
-	float area;     ///< in these, too
+	float area;     ///< in squares of their unit
 	Point3f normal; ///< unit length, or zero
 	int face;
 };
@@ -70,8 +70,9 @@ public:
 	};
 
 	Point3d origin;
-	/// A power of two of the size of an epsilon, or of the rounding of the box where that is longer, by which lengths
-	/// are divided: their squares stay within the range of single precision, and no digit changes.
+	/// The unit of `inside()` coordinates, mesh units: a power of two of the size of an epsilon, or
+	/// of the rounding of the box where that is larger. Squares stay within the range of single
+	/// precision, and dividing by it changes no digit.
 	double unit;
 	std::vector<Piece> pieces;
 	std::vector<Cell> cells;
@@ -79,8 +80,9 @@ public:
 	Point3f inside(const Point3d& p) const { return Point3f::Construct((p - origin) / unit); }
 
 	/**
-	 * Each triangle is halved at its longest edge until none is longer than longestPiece, or 16 times;
-	 * less often where that would give millions of pieces, as with an epsilon far below the edges.
+	 * Halves each triangle at its longest edge until no edge is longer than longestPiece, at most
+	 * 16 times; less often where that would give millions of pieces, as with an epsilon far below
+	 * the edges.
 	 * @param faces    of the component.
 	 * @param box      of its vertices.
 	 * @param epsilon  mesh units.
@@ -138,12 +140,12 @@ private:
 		return size > 0 ? std::exp2(std::ilogb(size)) : 1;
 	}
 
-	/// How often a triangle may be halved: two halvings halve its longest edge.
+	/// How often a triangle may be halved. Two halvings halve its longest edge.
 	static int maxHalvings(const SurfaceMesh& mesh, const std::vector<int>& faces, double longest,
 		const Progress& progress)
 	{
 		constexpr int maximum = 16;
-		// Of all components together as of one.
+		// All components together have as many as a single one would.
 		const double maxPieces =
 			double(faces.size()) * std::max(double(1 << 22) / mesh.faceSlots(), 64.0);
 		std::array<double, maximum + 1> triangles = {}; // by the halvings that they need
@@ -257,7 +259,7 @@ public:
 	{
 		const Piece& piece = surface.pieces[size_t(i)];
 		const Point3f d = piece.middle - middle;
-		// Most are turned alike, too far, or in a plane that is: one branch, since each is unpredictable.
+		// One branch for three unpredictable tests: most are turned alike, far, or in a far plane.
 		if (int(piece.normal * normal > opposite) | int(std::abs(d * piece.normal) > height)
 			| int(d.SquaredNorm() > squaredReach))
 			return false;
@@ -297,7 +299,8 @@ private:
 	float height, squaredReach;
 };
 
-/// Whether the pieces of some cells whose middles are in a ball have an area together.
+/// Whether the pieces of some cells with middles in a ball have at least the area `enough` in all.
+/// @param radius, enough in mesh units, and their square.
 inline bool hasAreaWithin(const PiecesByCell& surface, const std::vector<int>& cells,
 	const Point3d& centre, double radius, double enough)
 {
@@ -331,8 +334,8 @@ inline bool hasAreaWithin(const PiecesByCell& surface, const std::vector<int>& c
 	return false;
 }
 
-/// Whether there is such a wall, in one of the cells or known already.
-/// @param recent  pieces of walls of vertices nearby, one of which often is this one's, too.
+/// Whether a vertex has an opposite wall, in one of the cells or among `recent`.
+/// @param recent  pieces of walls of vertices nearby, one of which is often this vertex's too.
 inline bool hasOppositeWall(
 	const OppositeWall& wall, const std::vector<int>& cells, std::array<int, 4>& recent)
 {
@@ -348,9 +351,10 @@ inline bool hasOppositeWall(
 }
 
 /**
- * Tells sheets from curves for the last of some closed vertices of a cell and for those near it that must be
- * of the same kind, and takes these off the list.
- * @param cells  the cells within two of theirs.
+ * Decides between sheet and curve for the last vertex of `closed` and for those near it that must
+ * be of the same kind, and removes these from `closed`.
+ * @param cells   the cells within two of that of the vertices.
+ * @param closed  vertices of one cell on which the surface has closed.
  */
 inline void tellSomeKinds(const Stage& stage, const PiecesByCell& surface,
 	const std::vector<int>& cells, std::vector<int>& closed, std::vector<VertexKind>& kind)
@@ -384,7 +388,7 @@ inline void tellSomeKinds(const Stage& stage, const PiecesByCell& surface,
 	closed.erase(some, closed.end());
 }
 
-/// The kind that most of a vertex and its neighbours have; its own if there is no such kind.
+/// For each vertex the kind of more than half of it and its neighbours, else its own.
 inline std::vector<VertexKind> majority(
 	const SurfaceMesh& mesh, const std::vector<VertexKind>& kind, const Progress& progress)
 {
@@ -418,23 +422,23 @@ inline std::vector<VertexKind> majority(
 /**
  * The kind of each vertex of a stage.
  *
- * Each component by itself, with its own epsilon:
- * Volume: a vertex that is not fixed by the flow and has no wall opposite, turned the other way, within
- * 2 epsilon; on which side does not matter, since walls may have passed each other. Of the others, on
- * which the surface has closed, sheets are told from curves by the area of the stage within a ball of
- * R = 8 epsilon, both walls counted: 2 pi R^2 in the middle of a sheet, half of that at its rim, and
- * for a curve, a tube no wider than epsilon, at most 2 R epsilon pi. A sheet has at least 0.27 of the
- * full area; a strip narrower than about 3.4 epsilon is a curve.
- * Three rounds of majority among neighbours take single vertices out.
+ * Each component is treated by itself, with its own epsilon.
+ * Volume: a vertex that is not fixed by the flow and has no wall opposite, turned the other way,
+ * within 2 epsilon; on which side does not matter, since walls may have passed each other. Of the
+ * others, on which the surface has closed, sheets are told from curves by the area of the stage
+ * within a ball of R = 8 epsilon, both walls counted: 2 pi R^2 in the middle of a sheet, half of
+ * that at its rim, and for a curve, a tube no wider than epsilon, at most 2 R epsilon pi. A sheet
+ * has at least 0.27 of the full area; a strip narrower than about 3.4 epsilon is a curve. Three
+ * rounds of majority among neighbours remove kinds of single vertices.
  *
- * The area is that of pieces of triangles with no edge longer than 4 epsilon. Pieces and vertices are sorted
- * into cells, wide enough that what a vertex asks for is in its own cell or next to it. The balls of
- * vertices within d of one of them all hold its ball of R - d and lie in that of R + d: if the first has
- * enough, all are sheets, if the second has not, all are curves.
+ * The area is that of pieces of triangles with no edge longer than 4 epsilon. Pieces and vertices
+ * are sorted into cells: walls are searched in the 27 cells around a vertex, areas in 125. The
+ * balls of vertices within d of one of them all hold its ball of R - d and lie in that of R + d: if
+ * the first has enough, all are sheets, if the second has not, all are curves.
  *
  * @return the kind of each vertex. @pre stage.mesh is compact. @throws Cancelled
- * Complexity: O(V) where no edge is much shorter than epsilon. Source: ours; the paper shows kinds, but does
- * not say how to tell them.
+ * Complexity: O(V) where no edge is much shorter than epsilon. Source: ours; the paper shows kinds,
+ * but does not say how to tell them.
  */
 inline std::vector<VertexKind> vertexKinds(
 	const Stage& stage, const Progress& progress = Progress())
