@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Limbs that are torn in two, joined by a tube over the gap.
+/// @brief Limbs that are torn in two, joined by a tube across the gap.
 
 #ifndef VCG_MCF_BRIDGE_GAPS_H
 #define VCG_MCF_BRIDGE_GAPS_H
@@ -27,24 +27,25 @@
 
 namespace vcg::tri::mcf {
 
-/// Which borders are taken for the two sides of one gap.
+/// Which two borders count as the two sides of a gap.
 struct GapLimits
 {
-	/// How far apart they may be, in mean radii of the two: where the gap parts two pieces, and where it is in one piece.
+	/// Largest distance of their centres, in mean radii of the two: between two pieces of surface,
+	/// and within one piece.
 	double apart = 60, inOnePiece = 3;
-	/// And in diagonals of the smaller piece.
+	/// The same in diagonals of the smaller piece.
 	double ofPiece = 3;
 	/// Largest angle between the heading of an end and the direction to the other end, degrees.
 	double aside = 60;
-	/// How much wider one may be than the other, unless a limb leads into a hole in the side of a body.
+	/// Largest ratio of their radii; a hole in a body's side that a limb leads into may be wider.
 	double wider = 3;
-	/// Corners of a border.
+	/// Largest number of corners of a border.
 	int edges = 1000;
 };
 
 namespace detail {
 
-/// Whether the axis of a limb leads into a hole in the side of a body: then the hole may be wider than the limb.
+/// Whether the axis of a limb passes through a hole in the side of a body, which may be wider.
 inline bool leadsInto(const LimbEnd& limb, const LimbEnd& hole)
 {
 	const Point3d apart = hole.centre - limb.centre;
@@ -52,14 +53,15 @@ inline bool leadsInto(const LimbEnd& limb, const LimbEnd& hole)
 		&& (apart - limb.heading * (limb.heading * apart)).Norm() < hole.radius;
 }
 
-/// Which way an end goes on to another one: as its limb was heading; or out of itself where that leads there more
-/// directly, since a hole where limbs met is the end of none of them.
+/// The direction in which an end is continued towards another one: its heading, or its normal where
+/// that leads there more directly, since a hole where limbs met is the end of no single limb.
 inline Point3d headingTo(const LimbEnd& other, const LimbEnd& end)
 {
 	return (end.out - end.heading) * (other.centre - end.centre) > 0 ? end.out : end.heading;
 }
 
-/// Pairs of ends that look at each other, the nearest ones first: how far apart, and their numbers.
+/// Pairs of ends that face each other, nearest first: distance over the cosine of the larger angle,
+/// and their numbers, a cut limb first. Complexity: O(n^2) where n ends are close along x.
 inline std::vector<std::tuple<double, int, int>> facingEnds(
 	const std::vector<LimbEnd>& ends, const GapLimits& limits)
 {
@@ -126,7 +128,7 @@ public:
 		}
 	}
 
-	/// @return how many gaps.
+	/// @return the number of gaps bridged.
 	int run(const Progress& progress)
 	{
 		const char* const what = "Bridging gaps";
@@ -177,7 +179,7 @@ private:
 			end.corner.begin(), end.corner.end(), [&](int v) { return corners.count(v) > 0; });
 	}
 
-	/// A ragged border may stick into the tube that starts at it.
+	/// Whether a face crosses given ones, except near the ends, where ragged borders may do so.
 	bool crossesElsewhere(const Triangle& t, const LimbEnd& a, const LimbEnd& b) const
 	{
 		constexpr double near = 3; // radii
@@ -188,7 +190,7 @@ private:
 		});
 	}
 
-	/// @return whether a tube from one to the other crosses nothing; it is then one of those.
+	/// Adds a tube from a to b, unless it would run into given faces. @return whether it did.
 	bool join(const LimbEnd& a, LimbEnd b)
 	{
 		b.heading = headingTo(a, b);
@@ -215,7 +217,7 @@ private:
 		return true;
 	}
 
-	/// Joins what is left over where a junction was lost: ends that look at a tube between others.
+	/// Where a junction was lost, joins the ends that are left to tubes between others.
 	void joinToTubes(const Progress& progress)
 	{
 		const double straight = std::cos(limits.aside * M_PI / 180);
@@ -230,7 +232,7 @@ private:
 					if (pieces.find(end.piece) == pieces.find(pieceOfTube[t])
 						|| end.radius > limits.wider * tubes[t].radius)
 						continue;
-					// The ring that is straight ahead.
+					// The ring in the direction closest to the end's heading.
 					double best = -1;
 					size_t ring = 0;
 					const size_t rings = tubes[t].path.size(), skipped = rings > 2 ? 1 : 0;
@@ -268,17 +270,18 @@ private:
 } // namespace detail
 
 /**
- * Joins the two sides of gaps by tubes: ends of limbs that were cut through, and the hole in the side of a body
- * that such an end looks at. Only what lies straight ahead is joined, see GapLimits, and only where the tube crosses
- * nothing. Where a junction was lost, a third limb joins the tube between two others that it looks at.
+ * Joins the two sides of gaps by tubes: two limbs that were cut through, or such a limb and a hole
+ * in the side of a body that it faces. Only ends within a cone ahead are joined, see GapLimits, and
+ * only where the tube crosses none of the given faces, except near its ends. Where a junction was
+ * lost, a third limb is joined to the tube between two others that it faces.
  *
  * @param points    get those of the tubes at their end.
  * @param triangles coherently oriented, parted by partSurface(); get the tubes at their end.
  * @param partner   as PartedSurface has it.
- * @param isSpeck   for each face whether its piece is to be dropped unless it is joined to others: these are
- *                  joined only where limbs are cut through on both sides. Empty: none is.
- * @return how many tubes. @throws Cancelled.
- * Complexity: O(F log F), and of the pairs of ends that are near each other.
+ * @param isSpeck   for each face whether its piece is to be dropped unless it is joined to others:
+ *                  such a piece is joined only if both ends are cut through. Empty: none is.
+ * @return the number of tubes. @throws Cancelled.
+ * Complexity: O(F log F + n^2) for n ends, and O(n^2) for each limb that is joined to a tube.
  */
 inline int bridgeGaps(std::vector<Point3d>& points, std::vector<Triangle>& triangles,
 	const std::vector<int>& partner, const std::vector<char>& isSpeck,

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Openings that a plane has cut, as the bottom of a scanned statue, closed by flat caps.
+/// @brief Flat caps for openings cut by a plane, such as the bottom of a scanned statue.
 
 #ifndef VCG_MCF_CAP_CUTS_H
 #define VCG_MCF_CAP_CUTS_H
@@ -27,27 +27,29 @@
 
 namespace vcg::tri::mcf {
 
-/// What counts as cut by a plane.
+/// Which openings count as cut by a plane.
 struct CutLimits
 {
-	/// How far the border may be from its plane, in mean border edges, since faces are cut away whole; and as a
-	/// part of the root of the cap's area, which is what counts where faces are large.
+	/// Largest distance of the border from its plane, the smaller of both: in mean border edges,
+	/// since whole faces are cut away; and as a fraction of the square root of the cap's area,
+	/// which decides where faces are large.
 	double edges = 2, flat = 0.1;
-	/// The surface has at least so many times the area of its caps: less would be the sheet itself, there twice.
+	/// Smallest ratio of a piece's area to that of its caps; below, caps would only double a sheet.
 	double surface = 1.1;
-	/// The part of a cap that may run into the surface: the teeth of a jagged border.
+	/// Largest part of a cap that may cross the surface: at the teeth of a jagged border.
 	double crossing = 0.01;
-	/// Smaller caps than this part of the surface are holes, and no cuts.
+	/// Caps below this part of the piece's area are holes, not cuts.
 	double minimum = 0.003;
-	/// The time grows with the square of the border's edges.
+	/// Largest number of border edges; the time grows with its square.
 	int maximum = 10000;
 };
 
 namespace detail {
 
-/// Triangles of a polygon in the plane, which turns counter-clockwise, by clipping ears, the one with the shortest
-/// new edge first. allowed(i, k): whether there may be an edge between those corners. Nothing if the polygon
-/// runs into itself. Complexity: O(n^2) for n corners.
+/// Triangulates a counter-clockwise polygon in the plane by ear clipping, the ear with the shortest
+/// new edge first. @param allowed  allowed(i, k): whether corners i and k may be joined by an edge.
+/// @return nothing if no ear is left, as in a polygon that crosses itself.
+/// Complexity: O(n^2) for n corners.
 template <class Allowed>
 std::optional<std::vector<Triangle>> clippedEars(
 	const std::vector<Point2d>& p, const Allowed& allowed)
@@ -62,7 +64,7 @@ std::optional<std::vector<Triangle>> clippedEars(
 	const auto leftTurn = [&](int a, int b, int c) {
 		return (p[size_t(b)] - p[size_t(a)]) ^ (p[size_t(c)] - p[size_t(a)]);
 	};
-	// Others in the ear, on its sides too, would be cut off.
+	// An ear contains no other corner, not even on its sides: that would be cut off.
 	int left = n;
 	const auto cost = [&](int i) {
 		const int a = before[size_t(i)], c = after[size_t(i)];
@@ -99,7 +101,7 @@ std::optional<std::vector<Triangle>> clippedEars(
 	return triangles;
 }
 
-/// Each corner moved halfway to the middle of its neighbours, so many times.
+/// A closed polygon, each corner moved halfway to the mean of its neighbours in each round.
 inline std::vector<Point2d> smoothed(std::vector<Point2d> polygon, int rounds)
 {
 	const size_t n = polygon.size();
@@ -111,7 +113,7 @@ inline std::vector<Point2d> smoothed(std::vector<Point2d> polygon, int rounds)
 	return polygon;
 }
 
-/// Whether a point is inside a polygon of the plane.
+/// Whether a point is inside a polygon in the plane.
 inline bool isInPolygon(const Point2d& q, const std::vector<Point2d>& polygon)
 {
 	bool inside = false;
@@ -124,11 +126,11 @@ inline bool isInPolygon(const Point2d& q, const std::vector<Point2d>& polygon)
 	return inside;
 }
 
-/// A border that a plane has cut, and that plane.
+/// A border that may be cut by a plane, and that plane, fitted to it. Mesh units.
 struct PlaneCut
 {
 	BorderPolygon border;
-	Point3d centre = Point3d(0, 0, 0), normal; ///< the cap's
+	Point3d centre = Point3d(0, 0, 0), normal; ///< of the cap
 	Point3d x, y;                              ///< axes of the plane
 	double area = 0, tolerance = 0;
 
@@ -165,13 +167,13 @@ struct PlaneCut
 } // namespace detail
 
 /**
- * Closes by flat caps the openings that a plane has cut: where the border lies in a plane and all of its piece of the
- * surface on one side of that. Not those that have others within them, as those of a cut wall, nor where the
- * cap would run into the surface.
+ * Closes openings cut by a plane with flat caps: those whose border lies in a plane that has all of
+ * the piece of surface on one side. An opening stays open if another border lies within it, as
+ * where a thick wall is cut, or if its cap would cross the surface.
  * @param triangles coherently oriented, parted by partSurface(); get the caps at their end.
  * @param partner   as PartedSurface has it.
- * @return how many were closed.
- * @throws Cancelled. Complexity: O(F log F + n^2) for borders of n edges, and F for each of them.
+ * @return the number of openings closed.
+ * @throws Cancelled. Complexity: O(F log F), and O(F + b n) for a border of n edges, of b in all.
  */
 inline int capCuts(const std::vector<Point3d>& points, std::vector<Triangle>& triangles,
 	const std::vector<int>& partner, const CutLimits& limits = CutLimits(),
@@ -229,7 +231,8 @@ inline int capCuts(const std::vector<Point3d>& points, std::vector<Triangle>& tr
 				|| !isInPolygon(cut.inPlane(points[size_t(v)]), polygon);
 		if (!fits)
 			continue;
-		// The teeth of a jagged border overhang where the surface is steep: seen in the plane they cross.
+		// Where the surface is steep, the teeth of a jagged border overhang: projected to the plane
+		// they cross each other, unless the polygon is smoothed.
 		std::optional<std::vector<Triangle>> ears;
 		for (int rounds : {0, 2, 8})
 			if (!ears)

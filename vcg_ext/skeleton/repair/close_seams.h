@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Seams: borders that run along each other, with vertices that nearly coincide, or only on one side.
+/// @brief Closes seams: borders side by side, with vertices that nearly match or on one side only.
 
 #ifndef VCG_MCF_CLOSE_SEAMS_H
 #define VCG_MCF_CLOSE_SEAMS_H
@@ -25,15 +25,15 @@ namespace vcg::tri::mcf {
 /// What closeSeams() has done.
 struct ClosedSeams
 {
-	/// For each point the one that stands for it.
+	/// For each point the one that stands for it: itself, unless it was merged.
 	std::vector<int> vertexOf;
-	int merged = 0;    ///< vertices that nearly coincided with another one
+	int merged = 0;    ///< vertices that nearly coincided with others
 	int junctions = 0; ///< vertices that lay on an edge of the other side: T-junctions
 };
 
 namespace detail {
 
-/// An edge of one face only, as it runs in the face.
+/// An edge of one face only, in the direction in which it runs there.
 struct BorderEdge
 {
 	int from, to, face;
@@ -58,16 +58,16 @@ inline std::vector<BorderEdge> borderEdges(
 } // namespace detail
 
 /**
- * Merges border vertices that nearly coincide, and cuts border edges on which a border vertex lies: within
- * a hundredth of the shortest edges there. What is no border stays.
- * @param triangles are changed. @throws Cancelled.
- * Complexity: O(F + B log B) for B border edges.
+ * Merges border vertices that nearly coincide, and splits border edges on which a border vertex
+ * lies: both within a hundredth of the shortest edges there. What is not on a border stays.
+ * @param points    mesh units. @param triangles are changed.
+ * @throws Cancelled. Complexity: O(F + B log B) for B border edges whose boxes hardly overlap.
  */
 inline ClosedSeams closeSeams(const std::vector<Point3d>& points, std::vector<Triangle>& triangles,
 	const Progress& progress = Progress())
 {
 	constexpr double nearness = 0.01; // of an edge
-	constexpr int maxRounds = 3;      // each cuts one edge of a face
+	constexpr int maxRounds = 3;      // each splits at most one edge of a face
 	ClosedSeams done;
 	MergeForest vertices(int(points.size()));
 	for (int round = 0; round < maxRounds; ++round) {
@@ -84,7 +84,7 @@ inline ClosedSeams closeSeams(const std::vector<Point3d>& points, std::vector<Tr
 			return Distance(
 				points[size_t(segments[size_t(e)][0])], points[size_t(segments[size_t(e)][1])]);
 		};
-		// Beside slivers what is near along the long edge may be another place: the shortest edge tells.
+		// A hundredth of a sliver's long edge may reach other vertices: the shortest edge counts.
 		std::vector<double> shortest(points.size(), std::numeric_limits<double>::infinity());
 		for (const Triangle& t : triangles)
 			for (size_t k = 0; k < 3; ++k) {

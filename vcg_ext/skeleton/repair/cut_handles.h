@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Handles that are too small to be meant, cut off.
+/// @brief Cuts handles that are so small that they are defects.
 
 #ifndef VCG_MCF_CUT_HANDLES_H
 #define VCG_MCF_CUT_HANDLES_H
@@ -26,12 +26,12 @@
 
 namespace vcg::tri::mcf {
 
-/// What counts as a handle that is not meant: all of it lies within so much of the surface.
+/// How small a handle must be to be cut: all of it lies within these distances of one vertex.
 struct HandleLimits
 {
-	/// From one vertex, along edges; 0: no handle is cut.
+	/// Along the surface, in edges; 0: no handle is cut.
 	int edges = 8;
-	/// From that vertex, straight, as a part of the diagonal of the piece of surface.
+	/// In space, as a fraction of the diagonal of the piece of surface.
 	double distance = 0.02;
 };
 
@@ -61,7 +61,7 @@ public:
 		faceAt.assign(triangles.size(), -1);
 		std::vector<char> done(points.size(), 0);
 		int cut = 0;
-		for (int v = 0; v < int(points.size()); ++v) { // there are ever more
+		for (int v = 0; v < int(points.size()); ++v) { // cuts add points
 			if (v % 256 == 0)
 				progress.report(0.1 + 0.9 * v / double(points.size()), "Looking for small handles");
 			while (!done[size_t(v)] && !cornersAt[size_t(v)].empty()
@@ -73,7 +73,7 @@ public:
 					done.resize(points.size(), 0);
 					continue;
 				}
-				// What lies around these as far as around v is all in this patch.
+				// What lies around these within half the limits is all in this patch.
 				for (size_t i = 0; i < patch.vertices.size() && 2 * patch.steps[i] <= limits.edges;
 					 ++i)
 					if (const int w = patch.vertices[i];
@@ -86,8 +86,8 @@ public:
 	}
 
 private:
-	/// A piece of surface around a vertex: its vertices from there on, with their distances in edges; and the
-	/// faces between them.
+	/// The surroundings of a vertex: vertices in breadth-first order, their distances in edges, and
+	/// the faces between them.
 	struct Patch
 	{
 		std::vector<int> vertices, steps, faces;
@@ -100,7 +100,7 @@ private:
 	std::vector<std::vector<int>> cornersAt; ///< half-edges from each vertex
 	std::vector<int> pieceOfPoint, genus;
 	std::vector<double> diagonal;
-	std::vector<int> placeOf, faceAt; ///< in the patch at work, else -1
+	std::vector<int> placeOf, faceAt; ///< number in the current patch, -1: not in it
 
 	static int next(int h) { return Fans::next(h); }
 	int origin(int h) const { return triangles[size_t(h) / 3][size_t(h) % 3]; }
@@ -125,7 +125,7 @@ private:
 				box.emplace_back();
 				euler.push_back(0);
 			}
-			--euler[size_t(p)]; // two faces: three edges
+			--euler[size_t(p)]; // twice V - E + F is 2 V - F: two faces have three edges
 			for (int v : triangles[f]) {
 				box[size_t(p)].Add(points[size_t(v)]);
 				pieceOfPoint[size_t(v)] = p;
@@ -139,7 +139,7 @@ private:
 		}
 	}
 
-	/// Cuts a handle in the smallest patch around a vertex that has one. @return false if that cannot be.
+	/// Cuts a handle in the smallest patch around a vertex that has one. @return whether it could.
 	bool cutAt(int v)
 	{
 		for (int edges = 2; edges <= limits.edges; ++edges)
@@ -180,7 +180,7 @@ private:
 		return patch;
 	}
 
-	/// Of all that the faces of a patch make, each hole of it closed.
+	/// The genus of a patch, summed over its components, each border closed by a disc.
 	int genusOf(const Patch& patch)
 	{
 		const Marked marked(*this, patch);
@@ -204,7 +204,7 @@ private:
 		return (2 * components - (vertices - edges + n) - marked.borders(fans)) / 2;
 	}
 
-	/// The faces of a patch numbered as it has them, and its borders.
+	/// The faces of a patch, numbered in its order while this object lives, and its borders.
 	class Marked
 	{
 	public:
@@ -220,14 +220,14 @@ private:
 		}
 
 		int halfEdge(int i) const { return 3 * patch.faces[size_t(i) / 3] + i % 3; }
-		/// The half-edge of the patch across the edge of the i-th one, -1: a border of the patch.
+		/// The partner of half-edge i within the patch; -1: i is on a border of the patch.
 		int partnerOf(int i) const
 		{
 			const int h = cutter.partner[size_t(halfEdge(i))];
 			const int f = cutter.faceAt[size_t(h) / 3];
 			return f < 0 ? -1 : 3 * f + h % 3;
 		}
-		/// How many closed loops the borders are; gives each half-edge on one its loop.
+		/// The number of border loops. @param loopOf  gets, for each border half-edge, its loop.
 		int borders(MergeForest& fans, std::vector<int>* loopOf = nullptr) const
 		{
 			std::map<int, int> from; // by the fan at the origin
@@ -255,8 +255,8 @@ private:
 		const Patch& patch;
 	};
 
-	/// The loops of a patch through one of its vertices. The vertices of a patch are fans: those at one point that
-	/// are not neighbours do not meet in it.
+	/// The loops of a patch that do not separate it. Its vertices are fans of its faces: where
+	/// several fans meet at one point, each is a vertex.
 	class Loops
 	{
 	public:
@@ -282,10 +282,11 @@ private:
 				}
 		}
 
-		/// The shortest one that does not separate the patch, as half-edges in order; empty if none is.
+		/// The shortest one, as half-edges of the surface in order; empty if there is none.
 		std::vector<int> shortest()
 		{
-			// Each loop that separates nothing meets one of those through any one vertex of its component.
+			// Each non-separating loop meets a basis loop through any one vertex of its component:
+			// the shortest passes through a vertex of one of these.
 			std::vector<char> seen(size_t(3 * faces), 0), isSource(size_t(3 * faces), 0);
 			for (int i = 0; i < 3 * faces; ++i)
 				if (const int fan = start(i); !seen[size_t(fan)]) {
@@ -319,12 +320,12 @@ private:
 		const Marked marked;
 		const int faces;
 		int borders = 0;
-		std::vector<int> loopOf;              ///< of a half-edge on a border: which one
+		std::vector<int> loopOf;              ///< of each border half-edge; else -1
 		std::vector<std::vector<int>> around; ///< edges from and to each fan
 		std::vector<int> fanOf;               ///< of the origin of each half-edge
 		std::vector<double> lengths;
 		std::vector<double> distance; ///< of each fan from the source
-		std::vector<int> from;        ///< the edge to each fan
+		std::vector<int> from;        ///< the edge of the tree to each fan; -1: none
 
 		int start(int i) const { return fanOf[size_t(i)]; }
 		int end(int i) const { return fanOf[size_t(next(i))]; }
@@ -334,10 +335,11 @@ private:
 		}
 
 		/**
-		 * The tree of shortest paths from a fan. @return the edges whose loops over it are a basis of those that
-		 * separate nothing, the shortest one last.
-		 * Source: Erickson and Whittlesey, "Greedy optimal homotopy and homology generators", SODA 2005: those in
-		 * neither that tree nor the tree of faces that leaves out the shortest loops.
+		 * Grows the tree of shortest paths from a fan. @return the edges that close it to a basis
+		 * of the non-separating loops, that of the shortest loop last.
+		 * Source: Erickson and Whittlesey, "Greedy optimal homotopy and homology generators", SODA
+		 * 2005: the edges neither in that tree nor crossed by the tree of faces and borders that
+		 * prefers edges with long loops.
 		 */
 		std::vector<int> growFrom(int source)
 		{
@@ -362,7 +364,7 @@ private:
 					}
 				}
 			}
-			std::vector<Entry> loops; // over the edges that are not in the tree
+			std::vector<Entry> loops; // of the edges that are not in the tree, longest first
 			for (int i = 0; i < 3 * faces; ++i)
 				if (marked.partnerOf(i) < i && distance[size_t(start(i))] < infinity
 					&& from[size_t(start(i))] != i && from[size_t(end(i))] != i)
@@ -378,8 +380,8 @@ private:
 			return left;
 		}
 
-		/// From the source to the start of an edge, over it, and back, as half-edges of the patch; ~i for the way
-		/// against i.
+		/// The loop from the source to the start of an edge, over it, and back, as half-edges of
+		/// the patch: i, or ~i for the way against i.
 		std::vector<int> wayOver(int edge) const
 		{
 			std::vector<int> way;
@@ -399,7 +401,8 @@ private:
 		}
 	};
 
-	/// Parts the surface along a loop, and closes both sides. @return false, and changes nothing, if it cannot.
+	/// Cuts the surface along a loop, and caps both sides. @return false, with nothing changed, if
+	/// the loop visits a vertex twice or no cap is possible.
 	bool cutAlong(const std::vector<int>& loop)
 	{
 		const int n = int(loop.size());
@@ -475,7 +478,8 @@ private:
 		return true;
 	}
 
-	/// Moves a border into its own side, so that the caps do not touch: a bridge has a gap then, and a tunnel a wall.
+	/// Moves a border towards its own side, so that the two caps do not touch: there is a gap where
+	/// a bridge was, or a wall where a tunnel was.
 	void drawBack(const std::vector<int>& border)
 	{
 		constexpr double part = 0.25; // of the way to the neighbours
@@ -496,7 +500,8 @@ private:
 			points[size_t(border[k])] = places[k];
 	}
 
-	/// @param sides half-edges of the surface between one corner and the next, either way.
+	/// Adds a cap and pairs its half-edges. @param corner  the vertices of the loop. @param sides
+	/// half-edges between consecutive ones, in either direction. @param turned  flips the cap.
 	void addCap(const std::vector<Triangle>& cap, const std::vector<int>& corner,
 		const std::vector<int>& sides, bool turned)
 	{
@@ -530,14 +535,16 @@ private:
 } // namespace detail
 
 /**
- * Cuts the handles of a closed surface that lie within a small piece of it, see HandleLimits: too few triangles
- * to be meant. Each is cut along the shortest loop in that piece which does not separate it, and both sides are
- * closed: so a bridge is parted, and a tunnel filled, whichever is narrower.
+ * Cuts the handles of a closed surface that lie within a small part of it, see HandleLimits: they
+ * have too few triangles to be meant. Each is cut along the shortest loop in that part which does
+ * not separate it, and both sides are capped: a bridge is parted, or a tunnel filled, whichever is
+ * narrower.
  *
- * @param points    get new ones at their end. @param triangles a closed, oriented two-manifold; are changed.
- * @return how many were cut.
- * @throws Cancelled. Complexity: O(V) if there are no handles; else O(V + h n^2 log n) for h of them and n
- *         vertices within the limits.
+ * @param points    mesh units; get new ones at their end, and those along a cut move.
+ * @param triangles a closed, oriented two-manifold; are changed.
+ * @return the number of handles cut.
+ * @throws Cancelled. Complexity: O(V) if there are no handles; else O(V + h n^2 log n) for h of
+ *         them and n vertices within the limits.
  */
 inline int cutHandles(std::vector<Point3d>& points, std::vector<Triangle>& triangles,
 	const HandleLimits& limits = HandleLimits(), const Progress& progress = Progress())

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Small holes closed by triangles between their border vertices, as smooth as these allow.
+/// @brief Fills small holes by triangles between border vertices that fold as little as possible.
 
 #ifndef VCG_MCF_FILL_HOLES_H
 #define VCG_MCF_FILL_HOLES_H
@@ -36,23 +36,25 @@ struct FilledHoles
 /// What counts as a small hole.
 struct HoleLimits
 {
-	/// Area of the filling, as a part of that of the piece of surface around it, where that is the largest piece: what
-	/// was torn off may be short. And all holes of a piece.
+	/// Largest area of a filling in the largest piece of surface, as a fraction of the piece's area
+	/// (others may be torn off and short); and of all fillings of any piece together.
 	double area = 0.2, allAreas = 0.5;
-	/// Border edges of one hole: the time grows with their cube.
+	/// Largest number of border edges of a hole; the time grows with its cube.
 	int edges = 200;
-	/// The sharpest turn of the filling against itself and the surface, degrees: 0 is straight on. Beyond, it
-	/// would lie back on the surface.
+	/// Largest angle between the normals of adjacent triangles of the filling, and against the
+	/// surface, degrees; 0: flat. Beyond, the filling would lie back on the surface.
 	double turn = 160;
-	/// A filling of no more than this part of the piece's area is taken however it turns and whatever it crosses.
+	/// A filling of at most this fraction of the piece's area may fold and cross the surface.
 	double anyhow = 0;
 };
 
 namespace detail {
 
 /**
- * The triangulation of a closed polygon in space that turns least, and has the least area of those.
- * Source: Liepa, "Filling holes in meshes", SGP 2003, Sec. 3; the recursion is due to Barequet and Sharir, 1995.
+ * The triangulation of a closed polygon in space whose largest angle between adjacent normals is
+ * minimal; of several, the one with the smallest area. Complexity: O(n^3), and O(n^2) memory.
+ * Source: Liepa, "Filling holes in meshes", SGP 2003, Sec. 3; the recursion is due to Barequet and
+ * Sharir, 1995.
  */
 class PolygonFilling
 {
@@ -70,9 +72,10 @@ public:
 	};
 
 	/**
-	 * @param polygon   corners in order; @param outside unit normal of the face at each side i, i + 1.
-	 * @param allowed   allowed(i, k): whether the filling may have the edge from corner i to corner k.
-	 * @param free      turns up to this one cost nothing: among them the area decides.
+	 * @param polygon   corners in order, at least three; kept by reference, as is `outside`.
+	 * @param outside   unit normal of the face at each side i, i + 1.
+	 * @param allowed   allowed(i, k): whether the filling may have an edge from corner i to k.
+	 * @param free      turns (1 - cos) up to this count as equal: then the area decides.
 	 */
 	template <class Allowed>
 	PolygonFilling(const std::vector<Point3d>& polygon, const std::vector<Point3d>& outside,
@@ -112,7 +115,7 @@ public:
 
 	Weight weight() const { return best[at(0, n - 1)]; }
 
-	/// The triangles, as places in the polygon.
+	/// The triangles, as indices of corners. @pre the turn of weight() is finite.
 	std::vector<Triangle> triangles() const
 	{
 		std::vector<Triangle> result;
@@ -144,10 +147,10 @@ private:
 		const double length = v.Norm();
 		return length > 0 ? v / length : Point3d(0, 0, 0);
 	}
-	/// A triangle without area turns by a right angle.
+	/// 1 - cos of the angle of two normals. A triangle without area counts as at a right angle.
 	static double between(const Point3d& a, const Point3d& b) { return 1 - a * b; }
 
-	/// Of a triangle against what lies beyond its edge from i to k.
+	/// The turn of a triangle against the triangle or face beyond its edge from i to k.
 	double turnAt(const Point3d& normal, int i, int k) const
 	{
 		if (k == i + 1)
@@ -158,10 +161,12 @@ private:
 };
 
 /**
- * The loops of half-edges around the holes of a coherently oriented surface, as they run in the faces. Where
- * several fans of faces meet at a vertex, a loop goes on at the fan across the gap, so that the gap can be
- * filled and the vertex stays whole. Where the fans face different ways, a loop stays with its fan, and is split where it
- * returns to the vertex: the open end of a wing and the slit along its trailing edge are separate holes.
+ * The loops of half-edges around the holes of a coherently oriented surface, as they run in the
+ * faces. Where several fans of faces meet at a vertex, a loop continues at the next fan across the
+ * gap, so that the gap can be filled and the vertex is not split. Where the fans face different
+ * ways, a loop stays with its fan, and is split where it returns to the vertex: the open end of a
+ * wing and the slit along its trailing edge are separate holes.
+ * Complexity: O(F log F), and O(n^2 log F) for each vertex with n fans.
  */
 inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& points,
 	const std::vector<Triangle>& triangles, const std::vector<int>& partner)
@@ -170,7 +175,7 @@ inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& point
 	const auto origin = [&](int h) { return triangles[size_t(h) / 3][size_t(h) % 3]; };
 	struct BorderFan
 	{
-		int out = -1, into = -1; ///< half-edges
+		int out = -1, into = -1; ///< border half-edges from and to the vertex
 		Point3d normal = Point3d(0, 0, 0);
 	};
 	std::map<int, BorderFan> fanOf;
@@ -199,7 +204,7 @@ inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& point
 			alike &= fanOf[fan].normal * normal > 0;
 		if (!alike)
 			splitting.insert(v);
-		// Seen from outside, each fan reaches counter-clockwise from its outgoing to its incoming border.
+		// Seen from outside, each fan extends counter-clockwise from its border `out` to `into`.
 		Point3d x, y;
 		vcg::GetUV(normal, x, y);
 		const Point3d& centre = points[size_t(v)];
@@ -254,14 +259,15 @@ inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& point
 	return loops;
 }
 
-/// The normal of a triangle with its area as length.
+/// The area vector of a triangle: its normal, with the area as length.
 inline Point3d areaVector(const std::vector<Point3d>& points, const Triangle& t)
 {
 	const Point3d& a = points[size_t(t[0])];
 	return ((points[size_t(t[1])] - a) ^ (points[size_t(t[2])] - a)) / 2.0;
 }
 
-/// The normal of a polygon in space with its area as length; of vertices in order. @param centre  of these.
+/// The area vector of a closed polygon in space. @param polygon  its vertices in order.
+/// @param centre  any point near them.
 inline Point3d areaVector(
 	const std::vector<Point3d>& points, const std::vector<int>& polygon, const Point3d& centre)
 {
@@ -272,7 +278,7 @@ inline Point3d areaVector(
 	return sum / 2.0;
 }
 
-/// For each face that is the lowest of its piece, see pieceOfFaces(), the area of the piece; else 0.
+/// For the lowest face of each piece, see pieceOfFaces(), the area of the piece; for the others 0.
 inline std::vector<double> areaOfPieces(const std::vector<Point3d>& points,
 	const std::vector<Triangle>& triangles, const std::vector<int>& piece)
 {
@@ -282,26 +288,26 @@ inline std::vector<double> areaOfPieces(const std::vector<Point3d>& points,
 	return area;
 }
 
-/// The border of a hole as its filling sees it: against the faces, so that the filling has its normals on the
-/// same side.
+/// The border of a hole in the direction of its filling: against that of the faces, so that the
+/// normals of both are on the same side.
 struct BorderPolygon
 {
 	std::vector<int> corners; ///< vertices
 	std::vector<Point3d> points;
 	std::vector<Point3d> outside; ///< unit normal of the face at each side i, i + 1
-	std::set<int> pieces;         ///< of the surface, around the hole
+	std::set<int> pieces;         ///< of surface around the hole, see pieceOfFaces()
 
-	/// Of two corners, by their vertices.
+	/// The vertices of two corners, the lower one first.
 	std::pair<int, int> edge(int a, int b) const
 	{
 		return std::minmax(corners[size_t(a)], corners[size_t(b)]);
 	}
-	/// Whether a filling may have the edge between two corners: not one that the surface has.
+	/// Whether a filling may have an edge between two corners: vertices that `edges` do not join.
 	bool mayJoin(int a, int b, const std::set<std::pair<int, int>>& edges) const
 	{
 		return corners[size_t(a)] != corners[size_t(b)] && !edges.count(edge(a, b));
 	}
-	/// Of vertices, from one of corners.
+	/// The triangle of vertices for one of corners.
 	Triangle triangle(const Triangle& t) const
 	{
 		return {corners[size_t(t[0])], corners[size_t(t[1])], corners[size_t(t[2])]};
@@ -362,7 +368,8 @@ inline std::vector<int> pieceOfFaces(const std::vector<int>& partner)
 	return lowest;
 }
 
-/// Whether a triangle runs into others with which it shares no vertex, of those that count: counts(face).
+/// Whether a triangle crosses others of `triangles` with which it shares no vertex. @param counts
+/// counts(face): whether that face is considered.
 template <class Counts>
 bool crossesOthers(const TriangleTree& tree, const std::vector<Triangle>& triangles,
 	const std::vector<Point3d>& points, const Triangle& t, const Counts& counts)
@@ -394,9 +401,9 @@ inline bool crossesOthers(const TriangleTree& tree, const std::vector<Triangle>&
 } // namespace detail
 
 /**
- * Fills the holes that are small, see HoleLimits, and whose filling crosses no other part of the surface, unless it
- * is smaller still.
- * @param triangles coherently oriented, parted by partSurface(); get the filling at their end.
+ * Fills the small holes, see HoleLimits, whose filling does not cross the surface; fillings within
+ * HoleLimits::anyhow may.
+ * @param triangles coherently oriented, parted by partSurface(); get the fillings at their end.
  * @param partner   as PartedSurface has it.
  * @throws Cancelled. Complexity: O(F log F + n^3) for holes of n edges.
  */
@@ -459,7 +466,7 @@ inline FilledHoles fillHoles(const std::vector<Point3d>& points, std::vector<Tri
 			}
 			return fits;
 		};
-		// The one that turns least; of all that turn little enough, the smallest.
+		// First the filling that turns least; then the smallest of those within the limit.
 		if (!isFilled(0) && !isFilled(maxTurn))
 			continue;
 		edges.insert(chords.begin(), chords.end());

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Borders of holes seen as the ends of limbs: where they are, how wide, and where the limb was going.
+/// @brief Borders of holes as the ends of limbs: place, radius and direction.
 
 #ifndef VCG_MCF_LIMB_ENDS_H
 #define VCG_MCF_LIMB_ENDS_H
@@ -21,34 +21,36 @@
 
 namespace vcg::tri::mcf::detail {
 
-/// The border of a hole, seen as the end of a limb.
+/// The border of a hole as the end of a limb. Mesh units.
 struct LimbEnd
 {
-	/// Against the faces, in the order of the triangles that go on there.
+	/// Border vertices, in the direction of new faces that continue the surface there.
 	std::vector<int> corner;
-	/// Of the surface, by its lowest face; the diagonal of its box.
+	/// The piece of surface, by its lowest face, and the diagonal of its box.
 	int piece = 0;
 	double pieceDiagonal = 0;
-	/// Whether that is to be dropped unless it is joined to others.
+	/// Whether that piece is to be dropped unless it is joined to others.
 	bool isOfSpeck = false;
 	Point3d centre = Point3d(0, 0, 0);
-	/// Of the tube, or of the disc that has the area of the hole.
+	/// Of the tube where it is cut through, else of the disc with the area of the hole.
 	double radius = 0;
-	/// The way the surface was going where it is cut through, else out of the hole; unit length.
+	/// The axis of the tube, out of it, where it is cut through, else `out`; unit length.
 	Point3d heading = Point3d(0, 0, 0);
-	/// Out of the hole, square to it; unit length.
+	/// The normal of the hole, on the side of the faces' normals; unit length.
 	Point3d out = Point3d(0, 0, 0);
-	/// Whether all around the surface was heading out of the hole: a limb is cut through, not the side of a body open.
+	/// Whether the surface heads out of the hole all around: a limb that is cut through, not a
+	/// hole in the side of a body.
 	bool isCutThrough = false;
 
-	/// Whether the border meets no corner twice.
+	/// Whether the border visits no vertex twice.
 	bool isOnce() const
 	{
 		return std::set<int>(corner.begin(), corner.end()).size() == corner.size();
 	}
 };
 
-/// The axis of the tube that ends at a loop of half-edges: what the normals of the last faces are square to; unit length.
+/// The axis of the tube that ends at a loop of half-edges, out of it, unit length: the direction
+/// most nearly perpendicular to the normals of the faces near that end.
 inline Point3d axisBehind(const std::vector<Point3d>& points,
 	const std::vector<Triangle>& triangles, const std::vector<int>& partner,
 	const std::vector<int>& loop, const LimbEnd& end)
@@ -81,10 +83,12 @@ inline Point3d axisBehind(const std::vector<Point3d>& points,
 	return result * end.heading < 0 ? -result : result;
 }
 
+/// The end at a hole. @param loop  half-edges, as holeLoops() has them. The fields on the piece of
+/// surface are left to the caller.
 inline LimbEnd limbEnd(const std::vector<Point3d>& points, const std::vector<Triangle>& triangles,
 	const std::vector<int>& partner, const std::vector<int>& loop)
 {
-	constexpr double likeATube = 0.7;
+	constexpr double likeATube = 0.7; // part of the perimeter of a disc with the hole's area
 	LimbEnd end;
 	for (auto h = loop.rbegin(); h != loop.rend(); ++h) {
 		end.corner.push_back(triangles[size_t(*h) / 3][size_t(Fans::next(*h)) % 3]);
@@ -93,7 +97,8 @@ inline LimbEnd limbEnd(const std::vector<Point3d>& points, const std::vector<Tri
 	end.centre /= double(end.corner.size());
 	const Point3d area = areaVector(points, end.corner, end.centre);
 	end.radius = std::sqrt(area.Norm() / M_PI);
-	// Of a tube, however it is cut, this is its axis times its perimeter; around a flat hole nothing is left.
+	// The integral of the outward conormal along the border: its component along a tube's axis is
+	// the perimeter, however the tube is cut; around a hole in a flat face it is 0.
 	Point3d onwards(0, 0, 0);
 	for (int h : loop) {
 		const Triangle& t = triangles[size_t(h) / 3];
@@ -116,7 +121,7 @@ inline LimbEnd limbEnd(const std::vector<Point3d>& points, const std::vector<Tri
 	return end;
 }
 
-/// Whether a piece of surface, all by itself, ends like a limb that was cut through.
+/// Whether a piece of surface, given alone, has an end where a limb is cut through.
 inline bool isTornLimb(const std::vector<Point3d>& points, const std::vector<Triangle>& triangles,
 	const std::vector<int>& partner)
 {

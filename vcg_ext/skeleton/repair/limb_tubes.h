@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Tubes between the ends of limbs, and the holes in their walls where a third limb joins them.
+/// @brief Tubes between the ends of limbs, and holes in their walls where a third limb joins.
 
 #ifndef VCG_MCF_LIMB_TUBES_H
 #define VCG_MCF_LIMB_TUBES_H
@@ -20,16 +20,17 @@
 
 namespace vcg::tri::mcf::detail {
 
-/// What joins two ends.
+/// A tube between two ends. Mesh units.
 struct LimbTube
 {
 	std::vector<Triangle> faces;
-	/// The middles of its rings; none of a band between ends that are near each other.
+	/// The centres of its rings; empty for a band between ends that are near each other.
 	std::vector<Point3d> path;
 	double radius = 0;
 };
 
-/// The band between two ends, whose corners run against each other: always over the shorter diagonal.
+/// The band of triangles between two ends whose corners run in opposite directions. Each step takes
+/// the shorter of the two possible new edges.
 inline std::vector<Triangle> bandBetween(
 	const std::vector<Point3d>& points, const LimbEnd& a, const LimbEnd& b)
 {
@@ -47,7 +48,7 @@ inline std::vector<Triangle> bandBetween(
 			start = j;
 	std::vector<Triangle> band;
 	for (int i = 0, j = 0; i < n || j < m;) {
-		// Neither side may run a quarter of its round ahead of the other: ragged ones would be wound up.
+		// Neither side may be a quarter of a round ahead: bands of ragged borders would twist.
 		const double ahead = double(i) / n - double(j) / m;
 		const bool stepOnA = j == m || ahead < -0.25
 			|| (i < n && ahead <= 0.25 && distance(i + 1, start - j) <= distance(i, start - j - 1));
@@ -64,13 +65,14 @@ inline std::vector<Triangle> bandBetween(
 }
 
 /**
- * A tube from one end to the other, along the cubic that sets out as the one is heading and arrives against the heading
- * of the other; a band where they are near each other. New points are added.
+ * A tube from one end to the other along a cubic curve that leaves in the heading of `a` and
+ * arrives against that of `b`; a band where they are near each other.
+ * @param points  get the new ones at their end.
  */
 inline LimbTube tubeBetween(std::vector<Point3d>& points, const LimbEnd& a, const LimbEnd& b)
 {
 	constexpr int sides = 12;
-	// Beyond all of a ragged border.
+	// A point ahead of the whole border, which may be ragged.
 	const auto beyond = [&](const LimbEnd& end) {
 		double farthest = 0;
 		for (int v : end.corner)
@@ -82,7 +84,7 @@ inline LimbTube tubeBetween(std::vector<Point3d>& points, const LimbEnd& a, cons
 	if (gap < radius || (to - from) * (b.centre - a.centre) <= 0)
 		return {bandBetween(points, a, b), {}, std::min(a.radius, b.radius)};
 	const int rings = int(std::ceil(gap / radius)) + 1;
-	// A hole in a side may be wider than the limb that goes out there.
+	// A hole in the side of a body may be wider than the limb there.
 	const double narrower = std::min(a.radius, b.radius);
 	Point3d side, other;
 	Point3d along = a.heading;
@@ -123,15 +125,16 @@ inline LimbTube tubeBetween(std::vector<Point3d>& points, const LimbEnd& a, cons
 }
 
 /**
- * A hole in the wall of a tube, where a limb joins it whose end is at `from`: as wide as that limb is, or as one side of the
- * tube.
- * @param ring  of the tube, nearest to which the hole is. @param faces  of the tube, become those around the hole.
- * @return the hole as an end; without corners where no wall faces that limb.
+ * A hole in the wall of a tube, where a limb with the end `from` is to join it: about as wide as
+ * the narrower of both.
+ * @param ring   number of the ring at which the hole is.
+ * @param faces  become those of the tube without the hole.
+ * @return the hole as an end; without corners, and `faces` unchanged, if no wall faces that limb.
  */
 inline LimbEnd holeInWall(const std::vector<Point3d>& points, const LimbTube& tube, size_t ring,
 	const LimbEnd& from, std::vector<Triangle>& faces)
 {
-	constexpr double facing = 0.3; // cosine of the angle between the wall and the limb
+	constexpr double facing = 0.3; // min cosine between a wall's normal and the way to the limb
 	Point3d towards = from.centre - tube.path[ring];
 	const Point3d along =
 		tube.path[std::min(ring + 1, tube.path.size() - 1)] - tube.path[ring > 0 ? ring - 1 : 0];
@@ -142,7 +145,7 @@ inline LimbEnd holeInWall(const std::vector<Point3d>& points, const LimbTube& tu
 	const auto centreOf = [&](const Triangle& t) {
 		return (points[size_t(t[0])] + points[size_t(t[1])] + points[size_t(t[2])]) / 3.0;
 	};
-	// A disc of faces that grows from the nearest one.
+	// A disc of faces, grown from the face nearest to the limb.
 	std::vector<std::pair<double, size_t>> byDistance;
 	for (size_t f = 0; f < tube.faces.size(); ++f) {
 		const Triangle& t = tube.faces[f];
@@ -153,7 +156,7 @@ inline LimbEnd holeInWall(const std::vector<Point3d>& points, const LimbTube& tu
 	std::sort(byDistance.begin(), byDistance.end());
 	const double reach = std::min(from.radius, tube.radius);
 	std::vector<char> cut(tube.faces.size(), 0);
-	std::map<int, int> following; // its border, as it runs in its faces
+	std::map<int, int> following; // the next vertex along the disc's border, as in its faces
 	const auto isSide = [&](int v, int w) {
 		const auto side = following.find(v);
 		return side != following.end() && side->second == w;

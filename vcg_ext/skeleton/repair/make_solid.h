@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief From any triangles to the closed surface of the solid that they mean, as gently as that goes.
+/// @brief The closed surface of the solid that triangles describe, with few changes if possible.
 
 #ifndef VCG_MCF_MAKE_SOLID_H
 #define VCG_MCF_MAKE_SOLID_H
@@ -51,23 +51,24 @@ struct SolidReport
 	MendReport mended;
 	/// Pieces of the wrap that were left out as specks.
 	int piecesDropped = 0;
-	/// Those that were cut, see cutHandles().
+	/// Handles that were cut, see cutHandles().
 	int handles = 0;
-	/// Triangles that cross others, and the part of the volume that is enclosed more than once or turned inside
-	/// out; counted where there is such a part.
+	/// Triangles that cross others, counted only if `overlap` is at least smallestOverlap; and the
+	/// part of the volume enclosed more than once or inside out, see WindingVolumes::wrongPart().
 	int selfIntersections = 0;
 	double overlap = 0;
-	/// What a skeleton is not asked of.
+	/// Pieces that get no skeleton, see keepSolidPieces(), and the cavities of a wrap.
 	LeftOutPieces leftOut;
-	/// Distance between the vertices of the result and the input, both ways.
+	/// Distances of the result's vertices from the input and of the input's from the result: the
+	/// larger mean, and the maximum.
 	double distanceMean = 0, distanceMax = 0;
 	/// Edge length of the wrap; 0 if there is none.
 	double spacing = 0;
 
-	/// Whether the surface is another one than checkedSurface() has.
+	/// Whether the surface differs from that of checkedSurface().
 	bool isChanged() const { return outcome != Sound || leftOut.any(); }
 
-	/// One sentence for the log; empty if nothing was done.
+	/// One sentence for the log; empty for a sound surface, even if pieces are left out.
 	std::string text() const
 	{
 		if (outcome == Sound)
@@ -106,12 +107,13 @@ struct SolidReport
 struct SolidChoices
 {
 	Repair repair;
-	/// Pieces with a smaller part of the largest one's volume are left out; 0: none are.
+	/// Pieces with less than this fraction of the largest one's volume are left out; 0: none are.
 	double minComponent;
-	/// Cavities are left out: there is no skeleton in them. Where `repair` is Off they stay, and a note says so.
+	/// Cavities are left out: there is no skeleton in them. Where `repair` is Off they stay, and a
+	/// note says so. A wrap leaves them out in any case.
 	bool withoutCavities;
 
-	// NOLINTNEXTLINE(google-explicit-constructor): the choices are written in braces where they are made.
+	// NOLINTNEXTLINE(google-explicit-constructor): callers write the choices in braces.
 	SolidChoices(
 		Repair repair = Repair::Auto, double minComponent = 0, bool withoutCavities = false) :
 			repair(repair),
@@ -123,27 +125,30 @@ struct SolidChoices
 /// A surface that bounds a solid, and what was done to it.
 struct SolidSurface
 {
-	/// `vertexOfInput` names, for an input vertex that is none of the solid's, the closest one that is.
+	/// Where mending or wrapping lost an input vertex, `vertexOfInput` is the closest vertex of the
+	/// solid; -1 for a vertex without faces, or of a piece that is left out.
 	CheckedSurface surface;
 	SolidReport report;
 };
 
 namespace detail {
 
-/// More of the volume enclosed more than once than this is wrapped; less than the other is that of crossings
-/// that only rounding makes.
+/// Bounds of SolidReport::overlap: from the first on, the surface is wrapped; below the second, its
+/// crossings are due to rounding.
 constexpr double noticeableOverlap = 0.002, smallestOverlap = 1e-5;
 
-/// Bodies that share more of the area than this as walls between them are wrapped into one.
+/// Bodies that share walls of more than this part of the area are wrapped into one.
 constexpr double noticeableWalls = 0.002;
 
 /// Layers of an open surface that are no farther apart than this part of the diagonal count as one.
 constexpr double layersApart = 0.01;
 
-/// The lattice of a wrap has a spacing between those of which this many squares have the surface's area.
+/// Bounds of the spacing s of a wrap's lattice: the surface has the area of this many squares of
+/// side s.
 constexpr double usualSquares = 30000, maxSquares = 150000;
 
-/// Triangles that cross others with which they share no vertex. Complexity: O(F log F) on even surfaces.
+/// The number of triangles that cross others with which they share no vertex.
+/// Complexity: O(F log F) on evenly sampled surfaces.
 inline int selfIntersections(const std::vector<Point3d>& points,
 	const std::vector<Triangle>& triangles, const TriangleTree& tree, const Progress& progress)
 {
@@ -162,7 +167,8 @@ struct SurfacePlace
 	Point3d point, normal;
 };
 
-/// Centroids of triangles, `count` of them, spread evenly over the area.
+/// About `count` places, spread evenly over the area: centroids of triangles, and further points of
+/// large ones.
 inline std::vector<SurfacePlace> placesByArea(
 	const std::vector<Point3d>& points, const std::vector<Triangle>& triangles, int count)
 {
@@ -175,7 +181,7 @@ inline std::vector<SurfacePlace> placesByArea(
 		const Point3d n = areaVector(points, t);
 		const double area = n.Norm();
 		upto += area;
-		// A large triangle is as many places, each somewhere else on it.
+		// A large triangle gets several places, at different points.
 		for (int k = 0; area > 0 && double(places.size()) + 0.5 < upto / whole * count; ++k) {
 			const double golden = 0.6180339887498949, s0 = std::fmod(0.5 + k * golden, 1.0);
 			const double t0 = std::fmod(0.5 + k * golden * golden, 1.0);
@@ -190,7 +196,7 @@ inline std::vector<SurfacePlace> placesByArea(
 	return places;
 }
 
-/// Turns closed pieces that are inside out, each for itself.
+/// Flips each closed piece that is inside out.
 inline void turnOutward(
 	const std::vector<Point3d>& points, std::vector<Triangle>& triangles, const Progress& progress)
 {
@@ -212,7 +218,7 @@ inline void turnOutward(
 			std::swap(triangles[f][1], triangles[f][2]);
 }
 
-/// How a surface encloses: what the winding number is just inside of it.
+/// Whether a surface encloses a solid, by the winding number just inside of it.
 struct Enclosure
 {
 	double outward =
@@ -257,7 +263,8 @@ inline std::vector<char> isOfOpenPiece(const std::vector<Point3d>& points,
 	return open;
 }
 
-/// The part of a closed surface's area with the solid on both sides, enclosed once: where bodies share a wall.
+/// The part of a closed surface's area where the winding number is 1 on both sides: bodies share a
+/// wall there.
 inline double sharedWalls(const std::vector<Point3d>& points,
 	const std::vector<Triangle>& triangles, const TriangleTree& tree, const Progress& progress)
 {
@@ -279,7 +286,8 @@ inline double sharedWalls(const std::vector<Point3d>& points,
 	return double(std::count(shared.begin(), shared.end(), 1)) / double(places.size());
 }
 
-/// The thickness below which a part of the surface's area is, measured against the normals; at most `maximum`.
+/// The thickness below which the fraction `part` of the area lies, measured inwards along the
+/// normals; at most `maximum`. Mesh units.
 inline double smallThickness(const std::vector<SurfacePlace>& places, const TriangleTree& tree,
 	double part, double maximum, const Progress& progress)
 {
@@ -310,7 +318,8 @@ struct Distances
 	double mean = 0, greatest = 0;
 };
 
-/// @param from  those that are not on the triangles, of `all` points; at most 20000, evenly chosen, are measured.
+/// @param from  those of `all` points that are not on the triangles. Of 40000 and more, 20000 to
+/// 30000 are measured, evenly chosen.
 inline Distances distances(const std::vector<Point3d>& from, size_t all,
 	const std::vector<Point3d>& points, const std::vector<Triangle>& triangles,
 	const Progress& progress)
@@ -335,8 +344,8 @@ inline Distances distances(const std::vector<Point3d>& from, size_t all,
 }
 
 /**
- * Whether a wrap has cut bodies that make up a tenth of the surface: two of its pieces have a tenth of such a body's area
- * each. A piece's area is that of the bodies that it is closest to.
+ * Whether a wrap has cut bodies that make up more than a tenth of the surface's area. A body is cut
+ * if at least two pieces of the wrap each have more than a tenth of its area closest to it.
  * @throws Cancelled. Complexity: O(F log F).
  */
 inline bool isCutInWrap(const SurfaceMesh& mesh, const ClosedPieces& bodies,
@@ -378,8 +387,8 @@ inline bool isCutInWrap(const SurfaceMesh& mesh, const ClosedPieces& bodies,
 	return cut > noticeable * all;
 }
 
-/// Leaves out what is no larger than the lattice can tell from nothing, and then cavities.
-/// @return how many are small; the cavities, and the surface with them.
+/// Leaves out cavities, and pieces with less volume than two lattice cubes, except the largest.
+/// @return the number of small pieces; the cavities, and the surface with them.
 inline std::pair<int, LeftOutPieces> dropSmallPieces(
 	WrappedSurface& surface, double spacing, const Progress& progress)
 {
@@ -439,7 +448,7 @@ public:
 		MendedSurface mended = mend(points, triangles, HoleLimits(), progress.part(0.3, 0.5));
 		solid.report.mended = mended.report;
 		if (mended.closed) {
-			// The wrap makes its own.
+			// On a copy: a wrap cuts handles of its own result.
 			MendedSurface whole = mended;
 			solid.report.handles =
 				cutHandles(whole.points, whole.triangles, HandleLimits(), progress.part(0.5, 0.55));
@@ -459,7 +468,7 @@ private:
 	const std::vector<Triangle>& triangles;
 	SolidSurface solid;
 
-	/// Whether a defect is one of those that are mended or wrapped.
+	/// Whether surfaces with this defect are mended or wrapped.
 	static bool isMended(Defect defect)
 	{
 		switch (defect) {
@@ -478,14 +487,14 @@ private:
 		return false;
 	}
 
-	/// The wrap of a sound surface, unless that cuts bodies, see isCutInWrap(), or joins none where nothing is enclosed
-	/// more than once.
+	/// Wraps a sound surface. Keeps it, with a note, if the wrap cuts bodies, see isCutInWrap(), or
+	/// joins none where no noticeable part of the volume is enclosed more than once.
 	void wrapSound(const Progress& progress)
 	{
 		SolidSurface asItIs = std::exchange(solid, {});
 		const SurfaceMesh& mesh = asItIs.surface.mesh;
 		solid.report = asItIs.report;
-		// The wrap is that of all pieces turned outward.
+		// All pieces are turned outward: the wrap fills these cavities.
 		LeftOutPieces& leftOut = solid.report.leftOut;
 		if (std::optional<SurfaceMesh> hollow = withCavitiesInward(
 				mesh, asItIs.surface.turned, leftOut.cavities, progress.cancelOnly()))
@@ -507,8 +516,9 @@ private:
 				: "Bodies touch each other. The surface is left as it is: a wrap would not join them.");
 	}
 
-	/// Whether a noticeable part of the volume is enclosed more than once because the surface crosses itself, and
-	/// the shape is not too thin to be wrapped. What is left as it is is said.
+	/// Whether bodies share walls, or the surface crosses itself and a noticeable part of the solid
+	/// is enclosed more than once; and it is not too thin to be wrapped. Adds a note if a surface
+	/// that crosses itself is kept.
 	bool isToBeWrapped(
 		const SurfaceMesh& mesh, std::vector<std::string>& notes, const Progress& progress)
 	{
@@ -548,7 +558,7 @@ private:
 		const TriangleTree& tree, const Progress& progress)
 	{
 		constexpr int samples = 4000;
-		constexpr double part = 0.1, cells = 2.5; // of the area is thinner than so many
+		constexpr double part = 0.1, cells = 2.5; // of the area; a thickness in lattice spacings
 		double area = 0;
 		for (const Triangle& t : faces)
 			area += areaVector(points, t).Norm();
@@ -581,7 +591,7 @@ private:
 		return true;
 	}
 
-	/// The part of the area that encloses, with the closed pieces, and then all of it, turned outward.
+	/// Enclosure::enclosing with closed pieces, and then the whole surface, turned outward.
 	static double enclosingPart(
 		const std::vector<Point3d>& given, std::vector<Triangle> faces, const Progress& progress)
 	{
@@ -604,8 +614,8 @@ private:
 		return enclosure(progress.part(0.8, 1)).enclosing;
 	}
 
-	/// Where scans overlap, seams between layers turn what faced outward: the sides of the faces may be better as
-	/// they were given.
+	/// Takes the faces as they were given, if more of the area encloses then: where scans overlap,
+	/// seams between layers may have made mend() turn faces inward that faced outward.
 	void takeSidesAsGiven(MendedSurface& mended, const Progress& progress)
 	{
 		constexpr double better = 0.02; // of the area
@@ -629,7 +639,7 @@ private:
 		}
 	}
 
-	/// @param error  of the check, for what has no volume at all.
+	/// @param error  of checkedSurface(); none for a sound surface. Thrown if there is no volume.
 	void wrapIt(const std::vector<Point3d>& given, std::vector<Triangle> faces,
 		const std::optional<InvalidInput>& error, const Progress& progress)
 	{
@@ -722,7 +732,8 @@ private:
 			Defect::OpenSheet);
 	}
 
-	/// Takes the mesh, gives each input vertex that has a face a vertex of it, and measures the distances.
+	/// Takes over the mesh, gives input vertices with faces that lost their vertex the closest one,
+	/// and measures the distances.
 	void finish(SurfaceMesh mesh, std::vector<int> vertexOfInput, const Progress& progress)
 	{
 		const auto isFinite = [&](const Point3d& p) {
@@ -758,7 +769,7 @@ private:
 		for (size_t i = 0; i < lost.size(); ++i)
 			vertexOfInput[whose[i]] = nearest[i];
 
-		// What kept its place is on both surfaces.
+		// Vertices that kept their place lie on both surfaces, at distance 0.
 		std::vector<char> kept(mesh.position.size(), 0);
 		std::vector<Point3d> left, made;
 		size_t all = 0;
@@ -792,19 +803,23 @@ private:
 } // namespace detail
 
 /**
- * The closed, oriented, two-manifold surface of the solid that triangles mean.
+ * The closed, oriented, two-manifold surface of the solid that triangles describe.
  *
- * A surface that checkedSurface() takes stays as that leaves it, to the last bit, unless it crosses itself
- * so that a noticeable part of its volume is enclosed more than once, or its bodies share walls. Then it is wrapped by its
- * winding numbers, see wrap(), unless a noticeable part of it is too thin for that, or the wrap cuts bodies or joins none.
- * What checkedSurface() refuses is mended where its defects are small, see mend(), else wrapped.
+ * A surface that checkedSurface() accepts stays bit for bit as that returns it, unless it crosses
+ * itself so that a noticeable part of its volume is enclosed more than once, or its bodies share
+ * walls. Then it is wrapped by its winding number, see wrap(), unless a noticeable part of it is
+ * too thin, or the wrap cuts bodies, or joins none where no volume is enclosed more than once. A
+ * surface that checkedSurface() refuses is mended if its defects are small, see mend(), else
+ * wrapped.
  *
  * @param points    mesh units. @param triangles corners as indices into `points`.
- * @param choices   repair: Auto: as above; Mend: no wrap; Off: checkedSurface() alone. What is left out of
- *                  the surface: see keepSolidPieces().
- * @throws InvalidInput if there is no solid: no faces, no volume, an open sheet; what checkedSurface()
- *         throws where more is not allowed. SolverError, Cancelled.
- * Complexity: as checkedSurface() where it is sound; else as mend() and wrap().
+ * @param choices   repair: Auto: as above; Mend: no wrap; Off: checkedSurface() alone. For pieces
+ *                  that are left out see keepSolidPieces().
+ * @throws InvalidInput if there is no solid: no faces, no volume, an open sheet; the error of
+ *         checkedSurface() if `repair` allows no cure. SolverError if a wrap needs too many lattice
+ *         nodes; Cancelled.
+ * Complexity: for a sound surface as checkedSurface(), with `repair` Auto also as windingVolumes()
+ * and selfIntersections(); else as mend() and wrap().
  */
 inline SolidSurface solidSurface(const std::vector<Point3d>& points,
 	const std::vector<Triangle>& triangles, const SolidChoices& choices = SolidChoices(),
