@@ -28,9 +28,8 @@ Results skeletonTubes(FilterRun& run)
 		for (size_t v = 0; v < radius.size(); ++v)
 			radius[v] = std::max(thinnest, curve.skeleton.radius[v]);
 	const char* const what = "Making tubes";
-	run.progress.report(0.1, what);
-	const mcf::SkeletonTubes tubes =
-		mcf::skeletonTubes(curve.skeleton, radius, run.parameters.integer("sides"));
+	const mcf::SkeletonTubes tubes = mcf::skeletonTubes(
+		curve.skeleton, radius, run.parameters.integer("sides"), run.progress.part(0.1, 0.5));
 	std::vector<double> thickness;
 	for (int node : tubes.node)
 		thickness.push_back(curve.skeleton.radius[size_t(node)]);
@@ -73,8 +72,9 @@ FilterSpec skeletonTubesFilter()
 			{ParameterKind::Boolean, "local_radius", 0, "Local radius",
 				"The tubes are as thick as the shape, by <i>mcfskel_radius</i>. They fill much of it, and "
 				"where the curve bends within its radius they pass through themselves."},
-			ParameterSpec {
-				ParameterKind::Integer, "sides", 12, "Sides", "Of a tube's section, at least 3."}
+			ParameterSpec {ParameterKind::Integer, "sides", 12, "Sides",
+				"Of a tube's section, at least 3; so many that there would be more than 10 million "
+				"points are refused."}
 				.asAdvanced()},
 		skeletonTubes};
 }

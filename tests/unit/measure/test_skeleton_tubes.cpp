@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
 
 using namespace vcg::tri::mcf;
 using vcg::Point3d;
@@ -110,6 +111,48 @@ TEST(SkeletonTubes, DoubleBackAndCoincidentNodesAreClosedToo)
 	const Solid solid(tubesOf(chain({{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0.5, 0, 0}}), 0.1));
 	EXPECT_EQ(solid.euler, 2);
 	EXPECT_EQ(Solid(tubesOf(chain({{1, 1, 1}, {1, 1, 1}}), 0.1)).euler, 2);
+}
+
+TEST(SkeletonTubes, TooManyPointsAreRefusedBeforeAnyIsMade)
+{
+	const CurveSkeleton open = chain({{0, 0, 0}, {1, 0, 0}});
+	for (int tooMany : {4473, 100000, std::numeric_limits<int>::max()})
+		EXPECT_THROW(skeletonTubes(open, {1, 1}, tooMany), InvalidParameter) << tooMany;
+	const CurveSkeleton ring = chain({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, true);
+	EXPECT_EQ(skeletonTubes(ring, {0.1, 0.1, 0.1, 0.1}, 10000).points.size(), 40000)
+		<< "a ring has no ends";
+	EXPECT_THROW(skeletonTubes(ring, {0.1, 0.1, 0.1, 0.1}, 2500001), InvalidParameter);
+	try {
+		skeletonTubes(open, {1, 1}, 100000);
+	}
+	catch (const InvalidParameter& error) {
+		EXPECT_NE(std::string(error.what()).find("5000000002 points"), std::string::npos)
+			<< error.what();
+	}
+}
+
+TEST(SkeletonTubes, AreCountedBeforehand)
+{
+	for (int n : {3, 4, 5, 12, 33})
+		for (const bool closed : {false, true}) {
+			const CurveSkeleton s = chain({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, closed);
+			const std::vector<int> branch =
+				closed ? std::vector<int> {0, 1, 2, 3, 0} : std::vector<int> {0, 1, 2, 3};
+			EXPECT_EQ(double(skeletonTubes(s, {0.1, 0.1, 0.1, 0.1}, n).points.size()),
+				detail::countTubePoints({detail::tubeChain(s, branch)}, n));
+		}
+}
+
+TEST(SkeletonTubes, CanBeCancelledWithinATube)
+{
+	int reports = 0;
+	const Progress progress([&](int percent, const char*) {
+		++reports;
+		return percent < 50;
+	});
+	const CurveSkeleton s = chain({{0, 0, 0}, {1, 0, 0}});
+	EXPECT_THROW(skeletonTubes(s, {1, 1}, 1000, progress), Cancelled);
+	EXPECT_GT(reports, 5);
 }
 
 TEST(SkeletonTubes, WhatCannotBeIsRefused)

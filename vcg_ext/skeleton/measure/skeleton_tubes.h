@@ -10,6 +10,8 @@
 #define VCG_MCF_SKELETON_TUBES_H
 
 #include <skeleton/core/errors.h>
+#include <skeleton/core/progress.h>
+#include <skeleton/core/ticker.h>
 #include <skeleton/graph/curve_skeleton.h>
 #include <skeleton/graph/skeleton_branches.h>
 #include <skeleton/mesh/surface_mesh.h>
@@ -57,7 +59,11 @@ inline Point3d anyPerpendicular(const Point3d& direction)
 class TubeBuilder
 {
 public:
-	TubeBuilder(SkeletonTubes& tubes, int sides) : tubes(tubes), sides(sides) {}
+	/// @param ticker counts the points.
+	TubeBuilder(SkeletonTubes& tubes, int sides, Ticker& ticker) :
+			tubes(tubes), sides(sides), ticker(ticker)
+	{
+	}
 
 	void ring(const TubeRing& ring)
 	{
@@ -93,6 +99,7 @@ private:
 	{
 		tubes.points.push_back(point);
 		tubes.node.push_back(node);
+		ticker.tick();
 		return int(tubes.points.size()) - 1;
 	}
 
@@ -107,6 +114,7 @@ private:
 
 	SkeletonTubes& tubes;
 	int sides;
+	Ticker& ticker;
 	int rings = 0, first = 0, last = 0;
 };
 
@@ -148,6 +156,53 @@ inline std::vector<Point3d> chainNormals(const std::vector<Point3d>& tangent, bo
 	return normal;
 }
 
+/// What a tube is made around: the nodes of a branch without those that coincide with the one
+/// before, or a single node.
+struct TubeChain
+{
+	std::vector<int> nodes;
+	std::vector<Point3d> points;
+	bool isClosed = false;
+};
+
+inline TubeChain tubeChain(const CurveSkeleton& skeleton, const std::vector<int>& branch)
+{
+	TubeChain chain;
+	chain.isClosed = branch.size() > 3 && branch.front() == branch.back();
+	const size_t count = branch.size() - (chain.isClosed ? 1 : 0);
+	for (size_t i = 0; i < count; ++i) {
+		const Point3d& p = skeleton.position[size_t(branch[i])];
+		if (!chain.points.empty() && !((p - chain.points.back()).Norm() > 0))
+			continue; // no direction from here to there
+		chain.nodes.push_back(branch[i]);
+		chain.points.push_back(p);
+	}
+	while (chain.isClosed && chain.points.size() > 1
+		&& !((chain.points.back() - chain.points.front()).Norm() > 0)) {
+		chain.points.pop_back();
+		chain.nodes.pop_back();
+	}
+	chain.isClosed = chain.isClosed && chain.points.size() >= 3;
+	return chain;
+}
+
+/// Rings from the middle of a tube's round end to its pole, which is not counted.
+inline int ringsOfQuarter(int sides)
+{
+	return sides / 4 + (sides % 4 > 0);
+}
+
+/// How many points the tubes have; in doubles, since there may be more than an int holds.
+inline double countTubePoints(const std::vector<TubeChain>& chains, int sides)
+{
+	double count = 0;
+	for (const TubeChain& chain : chains) {
+		const int ends = chain.isClosed ? 0 : 2;
+		count += (double(chain.nodes.size()) + ends * (ringsOfQuarter(sides) - 1.0)) * sides + ends;
+	}
+	return count;
+}
+
 } // namespace detail
 
 /**
@@ -157,12 +212,14 @@ inline std::vector<Point3d> chainNormals(const std::vector<Point3d>& tangent, bo
  * @param radius one for each node, mesh units, above 0.
  * @param sides  of a tube's section, at least 3.
  * Complexity: O(N * sides + pieces * sides^2).
- * @throws InvalidParameter: too few sides; InvalidInput: a radius that is missing or not above 0.
+ * @throws InvalidParameter: too few sides, or so many that there would be more than 10 million
+ *         points; InvalidInput: a radius that is missing or not above 0; Cancelled.
  */
-inline SkeletonTubes skeletonTubes(
-	const CurveSkeleton& skeleton, const std::vector<double>& radius, int sides = 12)
+inline SkeletonTubes skeletonTubes(const CurveSkeleton& skeleton, const std::vector<double>& radius,
+	int sides = 12, const Progress& progress = Progress())
 {
 	using namespace detail;
+	constexpr double maxPoints = 1e7;
 	if (sides < 3)
 		throw InvalidParameter("Parameter sides must be at least 3.");
 	if (radius.size() != skeleton.position.size())
@@ -171,13 +228,28 @@ inline SkeletonTubes skeletonTubes(
 		if (!(radius[v] > 0) || !std::isfinite(radius[v]))
 			throw InvalidInput(
 				"Tubes need a radius above 0; that of node " + std::to_string(v) + " is not.");
+	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
+	std::vector<TubeChain> chains;
+	for (size_t v = 0; v < neighbours.size(); ++v)
+		if (neighbours[v].empty())
+			chains.push_back(tubeChain(skeleton, {int(v)}));
+	for (const Branch& branch : skeletonBranches(skeleton))
+		chains.push_back(tubeChain(skeleton, branch.nodes));
+	const double count = countTubePoints(chains, sides);
+	if (count > maxPoints)
+		throw InvalidParameter("Tubes of " + std::to_string(sides) + " sides would have "
+			+ std::to_string(std::llround(count)) + " points, more than "
+			+ std::to_string(std::llround(maxPoints))
+			+ ": choose fewer sides, or a skeleton with fewer nodes.");
+
 	SkeletonTubes tubes;
-	const int quarter = (sides + 3) / 4; // rings from the middle of a ball to its pole
+	Ticker ticker(progress, "Making tubes", count);
+	const int quarter = ringsOfQuarter(sides);
 	// A chain with round ends; a ball for a single node.
 	const auto addOpen = [&](const std::vector<int>& nodes, const std::vector<Point3d>& points,
 							 const std::vector<Point3d>& tangent) {
 		const std::vector<Point3d> normal = chainNormals(tangent, false);
-		TubeBuilder tube(tubes, sides);
+		TubeBuilder tube(tubes, sides, ticker);
 		const auto ring = [&](size_t i, double latitude) {
 			const double r = radius[size_t(nodes[i])];
 			const Point3d first = normal[i] * (r * std::cos(latitude));
@@ -198,7 +270,7 @@ inline SkeletonTubes skeletonTubes(
 	const auto addClosed = [&](const std::vector<int>& nodes, const std::vector<Point3d>& points) {
 		const std::vector<Point3d> tangent = chainTangents(points, true);
 		const std::vector<Point3d> normal = chainNormals(tangent, true);
-		TubeBuilder tube(tubes, sides);
+		TubeBuilder tube(tubes, sides, ticker);
 		for (size_t i = 0; i < nodes.size(); ++i) {
 			const Point3d first = normal[i] * radius[size_t(nodes[i])];
 			tube.ring({points[i], first, tangent[i] ^ first, nodes[i]});
@@ -206,37 +278,13 @@ inline SkeletonTubes skeletonTubes(
 		tube.closeRing();
 	};
 
-	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
-	std::vector<std::vector<int>> chains;
-	for (size_t v = 0; v < neighbours.size(); ++v)
-		if (neighbours[v].empty())
-			chains.push_back({int(v)});
-	for (const Branch& branch : skeletonBranches(skeleton))
-		chains.push_back(branch.nodes);
-	for (std::vector<int>& chain : chains) {
-		bool closed = chain.size() > 3 && chain.front() == chain.back();
-		if (closed)
-			chain.pop_back();
-		std::vector<int> nodes;
-		std::vector<Point3d> points;
-		for (int v : chain) {
-			const Point3d& p = skeleton.position[size_t(v)];
-			if (!points.empty() && !((p - points.back()).Norm() > 0))
-				continue; // no direction from here to there
-			nodes.push_back(v);
-			points.push_back(p);
-		}
-		while (closed && points.size() > 1 && !((points.back() - points.front()).Norm() > 0)) {
-			points.pop_back();
-			nodes.pop_back();
-		}
-		closed = closed && points.size() >= 3;
-		if (closed)
-			addClosed(nodes, points);
+	for (const TubeChain& chain : chains) {
+		if (chain.isClosed)
+			addClosed(chain.nodes, chain.points);
 		else
-			addOpen(nodes, points,
-				points.size() > 1 ? chainTangents(points, false)
-								  : std::vector<Point3d> {Point3d(0, 0, 1)});
+			addOpen(chain.nodes, chain.points,
+				chain.points.size() > 1 ? chainTangents(chain.points, false)
+										: std::vector<Point3d> {Point3d(0, 0, 1)});
 		++tubes.pieces;
 	}
 	return tubes;
