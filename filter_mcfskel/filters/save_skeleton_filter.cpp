@@ -96,8 +96,8 @@ FilterSpec saveSkeletonFilter()
 			"cuts), .cg, .graphml, .json, .vtp (VTK, ParaView, 3D Slicer, VMTK), .ply (with edges) and "
 			".glb (the surface with an armature and skin weights, to be posed in Blender and "
 			"elsewhere). GraphML, JSON and .vtp keep the radius and the surface vertices of each node. "
-			"All but .glb and .ply are also found under File > Export (in MeshLab 2020.09 without "
-			".json)."),
+			".swc, .cg, .graphml and .vtp are also found under File > Export; the .json and .ply that are "
+			"found there are MeshLab's own, which lose the edges."),
 		FilterCategory::Remeshing, MeshModel::MM_NONE,
 		{{ParameterKind::FileToSave, "file", 0, "File",
 			 "Name of the file to write; it ends with .swc, .cg, .graphml, .json, .vtp, .glb or .ply.",
