@@ -15,29 +15,28 @@ namespace mcfskel {
 
 namespace {
 
-/// One number for each element of `elements` that is not deleted.
-template <class Container, class ValueOf>
-std::vector<double> valuesOfLive(const Container& elements, const ValueOf& valueOf)
+/// One number for each of the given indices.
+template <class Indices, class ValueOf>
+std::vector<double> valuesAt(const Indices& indices, const ValueOf& valueOf)
 {
 	std::vector<double> values;
-	values.reserve(elements.size());
-	for (size_t i = 0; i < elements.size(); ++i)
-		if (!elements[i].IsD())
-			values.push_back(double(valueOf(i)));
+	values.reserve(indices.size());
+	for (auto index : indices)
+		values.push_back(double(valueOf(size_t(index))));
 	return values;
 }
 
-template <class Container>
-void addColours(mcf::PlyElement& element, const Container& elements)
+template <class Container, class Indices>
+void addColours(mcf::PlyElement& element, const Container& elements, const Indices& indices)
 {
 	const char* const names[] = {"red", "green", "blue", "alpha"};
 	for (int k = 0; k < 4; ++k)
 		element.add(names[k], mcf::PlyType::UInt8,
-			valuesOfLive(elements, [&](size_t i) { return int(elements[i].cC()[k]); }));
+			valuesAt(indices, [&](size_t i) { return int(elements[i].cC()[k]); }));
 }
 
 /// The columns of the attributes mcfskel_*.
-void addAttributes(mcf::PlyElement& vertex, const CMeshO& mesh)
+void addAttributes(mcf::PlyElement& vertex, const CMeshO& mesh, const std::vector<int>& indices)
 {
 	for (const vcg::PointerToAttribute& attribute : mesh.vert_attr) {
 		if (attribute._name.rfind("mcfskel_", 0) != 0)
@@ -45,13 +44,13 @@ void addAttributes(mcf::PlyElement& vertex, const CMeshO& mesh)
 		if (isOfType<Scalarm>(attribute)) {
 			const Scalarm* values = valuesOf<Scalarm>(attribute);
 			vertex.add(attribute._name, mcf::PlyType::Double,
-				valuesOfLive(mesh.vert, [&](size_t i) { return values[i]; }));
+				valuesAt(indices, [&](size_t i) { return values[i]; }));
 		}
 		else if (isOfType<Point3m>(attribute)) {
 			const Point3m* values = valuesOf<Point3m>(attribute);
 			for (int k = 0; k < 3; ++k)
 				vertex.add(attribute._name + "_" + "xyz"[k], mcf::PlyType::Double,
-					valuesOfLive(mesh.vert, [&](size_t i) { return values[i][k]; }));
+					valuesAt(indices, [&](size_t i) { return values[i][k]; }));
 		}
 	}
 }
@@ -59,44 +58,58 @@ void addAttributes(mcf::PlyElement& vertex, const CMeshO& mesh)
 mcf::PlyElement vertexTable(const MeshModel& layer)
 {
 	const auto& vertices = layer.cm.vert;
-	mcf::PlyElement table {"vertex", size_t(layer.cm.vn), {}};
+	const std::vector<int> live = liveSlots(layer.cm);
+	mcf::PlyElement table {"vertex", live.size(), {}};
 	for (int k = 0; k < 3; ++k)
 		table.add(std::string(1, "xyz"[k]), mcf::PlyType::Double,
-			valuesOfLive(vertices, [&](size_t i) { return vertices[i].cP()[k]; }));
+			valuesAt(live, [&](size_t i) { return vertices[i].cP()[k]; }));
 	if (layer.hasDataMask(MeshModel::MM_VERTQUALITY))
 		table.add("quality", mcf::PlyType::Double,
-			valuesOfLive(vertices, [&](size_t i) { return vertices[i].cQ(); }));
+			valuesAt(live, [&](size_t i) { return vertices[i].cQ(); }));
 	if (layer.hasDataMask(MeshModel::MM_VERTCOLOR))
-		addColours(table, vertices);
-	addAttributes(table, layer.cm);
+		addColours(table, vertices, live);
+	addAttributes(table, layer.cm, live);
 	return table;
+}
+
+/// The indices of faces or edges that are not deleted and have all their vertices.
+template <class Container>
+std::vector<size_t> wholeSlots(const CMeshO& mesh, const Container& elements)
+{
+	std::vector<size_t> indices;
+	indices.reserve(elements.size());
+	for (size_t i = 0; i < elements.size(); ++i)
+		if (!elements[i].IsD() && hasVertices(mesh, elements[i]))
+			indices.push_back(i);
+	return indices;
 }
 
 mcf::PlyElement faceTable(const MeshModel& layer, const std::vector<int>& numberOfSlot)
 {
 	const auto& faces = layer.cm.face;
-	mcf::PlyElement table {"face", size_t(layer.cm.fn), {}};
+	const std::vector<size_t> whole = wholeSlots(layer.cm, faces);
+	mcf::PlyElement table {"face", whole.size(), {}};
 	mcf::PlyColumn corners {"vertex_indices", mcf::PlyType::Int32, 3, {}};
-	for (const CFaceO& face : faces)
-		for (int k = 0; k < 3 && !face.IsD(); ++k)
-			corners.values.push_back(numberOfSlot[vcg::tri::Index(layer.cm, face.cV(k))]);
+	for (size_t i : whole)
+		for (int k = 0; k < 3; ++k)
+			corners.values.push_back(numberOfSlot[vcg::tri::Index(layer.cm, faces[i].cV(k))]);
 	table.columns.push_back(std::move(corners));
 	if (layer.hasDataMask(MeshModel::MM_FACEQUALITY))
 		table.add("quality", mcf::PlyType::Double,
-			valuesOfLive(faces, [&](size_t i) { return faces[i].cQ(); }));
+			valuesAt(whole, [&](size_t i) { return faces[i].cQ(); }));
 	if (layer.hasDataMask(MeshModel::MM_FACECOLOR))
-		addColours(table, faces);
+		addColours(table, faces, whole);
 	return table;
 }
 
 mcf::PlyElement edgeTable(const CMeshO& mesh, const std::vector<int>& numberOfSlot)
 {
-	mcf::PlyElement table {"edge", size_t(mesh.en), {}};
+	const std::vector<size_t> whole = wholeSlots(mesh, mesh.edge);
+	mcf::PlyElement table {"edge", whole.size(), {}};
 	for (int end = 0; end < 2; ++end)
-		table.add(end ? "vertex2" : "vertex1", mcf::PlyType::Int32,
-			valuesOfLive(mesh.edge, [&](size_t i) {
-				return numberOfSlot[vcg::tri::Index(mesh, mesh.edge[i].cV(end))];
-			}));
+		table.add(end ? "vertex2" : "vertex1", mcf::PlyType::Int32, valuesAt(whole, [&](size_t i) {
+			return numberOfSlot[vcg::tri::Index(mesh, mesh.edge[i].cV(end))];
+		}));
 	return table;
 }
 
@@ -109,7 +122,7 @@ void writeStageFile(const QString& file, const MeshModel& layer, const StageLaye
 		mcf::stagePly({*stage.stage, stage.surface.fingerprint, *stage.surface.vertexOfSlot},
 			progress.part(0, 0.3));
 	if (layer.hasDataMask(MeshModel::MM_VERTCOLOR))
-		addColours(ply.elements.front(), layer.cm.vert);
+		addColours(ply.elements.front(), layer.cm.vert, liveSlots(layer.cm));
 	writeFile(
 		file, [&](std::ostream& out) { mcf::writeBinaryPly(out, ply, progress.part(0.3, 1)); });
 }
@@ -121,7 +134,7 @@ void writeCurveFile(const QString& file, const MeshModel& layer, const CurveLaye
 	mcf::PlyFile ply =
 		mcf::skeletonPly(skeleton, curve.surface.fingerprint, referenceDiagonal(layer));
 	if (layer.hasDataMask(MeshModel::MM_VERTCOLOR))
-		addColours(ply.elements.front(), layer.cm.vert);
+		addColours(ply.elements.front(), layer.cm.vert, liveSlots(layer.cm));
 	writeFile(file, [&](std::ostream& out) { mcf::writeBinaryPly(out, ply); });
 }
 

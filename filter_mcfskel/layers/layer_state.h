@@ -19,6 +19,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <type_traits>
 #include <typeindex>
 #include <vector>
 
@@ -164,6 +165,19 @@ inline StatePointer validState(const MeshModel& layer)
 	return state && state->fingerprint == fingerprint(layer.cm) ? state : nullptr;
 }
 
+/// @throws InvalidInput if a node of a skeleton is nowhere.
+inline void requireUsablePlaces(const MeshModel& layer, const std::vector<vcg::Point3d>& nodes)
+{
+	const auto unusable = std::count_if(
+		nodes.begin(), nodes.end(), [](const vcg::Point3d& p) { return !mcf::isUsablePlace(p); });
+	if (unusable > 0)
+		throw mcf::InvalidInput("The skeleton '" + layer.label().toStdString() + "' has "
+			+ std::to_string(unusable)
+			+ (unusable == 1 ? " node whose coordinates are" : " nodes whose coordinates are")
+			+ " not finite, or too large: delete " + (unusable == 1 ? "it" : "them")
+			+ ", or make the skeleton again.");
+}
+
 /// A state for a layer as it is now.
 inline StatePointer newState(const MeshModel& layer, LayerState state)
 {
@@ -201,6 +215,21 @@ inline vcg::Box3d liveBounds(const CMeshO& mesh)
 		if (!v.IsD())
 			box.Add(toDouble(v.cP()));
 	return box;
+}
+
+/// Whether each corner of a face, or end of an edge, is a vertex that is not deleted. MeshLab's own
+/// filters delete vertices without their edges, and then point these before the first vertex; files
+/// may name vertices that are not there.
+template <class Element>
+bool hasVertices(const CMeshO& mesh, const Element& element)
+{
+	constexpr int corners = std::is_same_v<Element, CEdgeO> ? 2 : 3;
+	for (int k = 0; k < corners; ++k) {
+		const size_t slot = vcg::tri::Index(mesh, element.cV(k));
+		if (slot >= mesh.vert.size() || mesh.vert[slot].IsD())
+			return false;
+	}
+	return true;
 }
 
 /// The vertex slots of a layer that are not deleted, ascending.

@@ -149,8 +149,9 @@ QString lostState(const MeshModel& layer);
 
 /**
  * Reads a skeleton from a layer of edges, of any origin. A single node without edges counts if a
- * filter made it.
- * @throws InvalidInput if the layer has faces, no edges, or an edge from a vertex to itself.
+ * filter made it. Edges without a vertex at an end are left out: see hasVertices().
+ * @throws InvalidInput if the layer has faces, no edges, an edge from a vertex to itself, or nodes
+ *         that isUsablePlace() refuses.
  */
 CurveLayer readCurve(const MeshModel& layer);
 

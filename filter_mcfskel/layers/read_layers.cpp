@@ -255,7 +255,9 @@ CurveLayer readCurve(const MeshModel& layer)
 		throw mcf::InvalidInput("The layer " + label + " has " + std::to_string(mesh.vn)
 			+ " nodes of a skeleton but no edges any more: MeshLab's own PLY holds none. Make the skeleton "
 			  "again, or open what 'Save Skeleton', 'Save Stage' or 'Save Project' wrote.");
-	if (mesh.en == 0 && !(mesh.vn == 1 && radius))
+	const bool isNode = mesh.vn == 1 && radius;
+	const auto isEdge = [&](const CEdgeO& e) { return !e.IsD() && hasVertices(mesh, e); };
+	if (!isNode && std::none_of(mesh.edge.begin(), mesh.edge.end(), isEdge))
 		throw mcf::InvalidInput("The layer " + label
 			+ " has no edges, it is no curve skeleton: make a layer of nodes and edges current.");
 
@@ -277,7 +279,7 @@ CurveLayer readCurve(const MeshModel& layer)
 		shown.clear(); // somebody else's
 	auto& edges = curve.skeleton.edges;
 	for (const CEdgeO& e : mesh.edge) {
-		if (e.IsD())
+		if (!isEdge(e))
 			continue;
 		const auto ends = std::minmax(
 			nodeOfSlot[vcg::tri::Index(mesh, e.cV(0))], nodeOfSlot[vcg::tri::Index(mesh, e.cV(1))]);
@@ -287,6 +289,7 @@ CurveLayer readCurve(const MeshModel& layer)
 	}
 	std::sort(edges.begin(), edges.end());
 	edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+	requireUsablePlaces(layer, curve.skeleton.position);
 	return curve;
 }
 

@@ -238,6 +238,7 @@ CurveLayer readCurve(const MeshModel& layer, const StateSources& sources)
 		for (size_t v = 0; v < skeleton.position.size(); ++v)
 			if (layer.cm.vert[v].cP() != toHost(skeleton.position[v]))
 				skeleton.position[v] = toDouble(layer.cm.vert[v].cP());
+		requireUsablePlaces(layer, skeleton.position);
 		edits << QString("%1 positions (by up to %2)")
 					 .arg(moved.count)
 					 .arg(moved.farthest, 0, 'g', 3);

@@ -11,8 +11,8 @@ import numpy as np
 import pymeshlab
 import pytest
 
-from conftest import (FULL, MESHES, POLES, ROOT, area, components, diagonal, euler, fingerprint,
-                      layer, opened, points, scalars, volume)
+from conftest import (FULL, MESHES, POLES, REFINE, ROOT, area, components, diagonal, euler, failing,
+                      fingerprint, layer, opened, points, scalars, volume)
 
 PARTS = "compute_skeleton_parts_mcf"
 PRUNE = "generate_pruned_skeleton_mcf"
@@ -585,3 +585,82 @@ class TestDocs:
         run = subprocess.run([sys.executable, "-c", script.replace('"PLUGIN"', repr(str(plugin)))],
                              cwd=ROOT, capture_output=True, text=True, timeout=900)
         assert run.returncode == 0, run.stderr
+
+
+class TestEditedByMeshLab:
+    """What MeshLab's own filters leave of a skeleton layer."""
+
+    @pytest.fixture
+    def cut(self) -> pymeshlab.MeshSet:
+        """A skeleton whose first nodes were deleted: MeshLab leaves their edges, which end nowhere."""
+        layers = pymeshlab.MeshSet()
+        add_curve(layers, [[x, 0, 0] for x in range(10)], [[i, i + 1] for i in range(9)], np.full(10, 0.5), "line")
+        layers.compute_selection_by_condition_per_vertex(condselect="x < 2.5")
+        layers.meshing_remove_selected_vertices()
+        mesh = layers.current_mesh()
+        assert (mesh.vertex_number(), mesh.edge_number()) == (7, 9)
+        return layers
+
+    @pytest.mark.parametrize("name, parameters, edges", [
+        (PRUNE, {"spur_prominence": 0.0, "detail": 1.0}, 6),
+        (RESAMPLE_SKELETON, {"longest_edge": percent(100), "smoothing": percent(0)}, 1)])
+    def test_edges_of_deleted_nodes_go_with_them(self, cut, name, parameters, edges):
+        results = cut.apply_filter(name, **parameters)
+        assert (results["skeleton_edges"], results["components"], results["terminals"]) == (edges, 1, 2)
+        assert results["skeleton_length"] == pytest.approx(6)
+
+    def test_balls_tubes_and_comparing(self, cut):
+        x = cut.mesh(0).vertex_matrix()[:, 0]
+        assert (x.min(), x.max()) == (3, 9)
+        assert cut.apply_filter(TUBES, radius=percent(5))["tubes"] == 1
+        assert cut.current_mesh().vertex_matrix()[:, 0].min() > 2
+        cut.set_current_mesh(0)
+        cut.apply_filter(BALLS, voxel=percent(2))
+        assert cut.current_mesh().vertex_matrix()[:, 0].min() > 2
+        add_curve(cut, [[3, 0, 0], [9, 0, 0]], [[0, 1]], [0.5, 0.5], "same")
+        assert cut.apply_filter(COMPARE, other=0)["distance_max_back"] == pytest.approx(0, abs=1e-6)
+
+    def test_of_a_surface(self):
+        layers = opened("capsule")
+        layers.apply_filter(FULL, target_length=percent(2.5))
+        count = layers.current_mesh().edge_number()
+        layers.compute_selection_by_condition_per_vertex(condselect="vi < 3")
+        layers.meshing_remove_selected_vertices()
+        curve = layers.current_mesh_id()
+        surface = layer(layers, "capsule_resampled").id()
+        for name in [REFINE, PRUNE, MEASURE, PARTS]:
+            layers.set_current_mesh(curve)
+            results = layers.apply_filter(name, surface=surface)
+            assert results.get("components", 1) == 1, name
+        assert results["branches"] == 1
+        layers.set_current_mesh(curve)
+        assert layers.apply_filter(RESAMPLE_SKELETON)["components"] == 1
+        assert layers.mesh(curve).edge_number() == count
+
+    @pytest.mark.parametrize("ending", ["swc", "cg", "json", "vtp", "ply"])
+    def test_saved(self, cut, tmp_path, ending):
+        file = tmp_path / f"line.{ending}"
+        assert cut.apply_filter("save_skeleton_mcf", file=str(file))["skeleton_edges"] == 6
+        if ending in ("swc", "cg", "vtp"):
+            cut.save_current_mesh(str(tmp_path / f"exported.{ending}"))
+            assert (tmp_path / f"exported.{ending}").read_bytes() == file.read_bytes()
+        if ending == "ply":
+            cut.apply_filter("load_stage_mcf", file=str(file))
+            assert sorted(map(sorted, cut.current_mesh().edge_matrix())) == [[i, i + 1] for i in range(6)]
+
+    @pytest.mark.parametrize("made", [True, False])
+    def test_nodes_that_are_no_places_are_refused(self, made):
+        layers = opened("capsule")
+        if made:
+            layers.apply_filter(FULL, **COARSE)
+        else:
+            add_curve(layers, [[0, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 1], [1, 2]], [1, 1, 1], "line")
+        layers.compute_coord_by_function(x="vi < 2 ? sqrt(0-1) : x")
+        before = fingerprint(layers)
+        for name in ALL + [REFINE, "save_skeleton_mcf", "save_stage_mcf"]:
+            parameters = {"file": "/nowhere/s.ply"} if name.startswith("save") else {}
+            if name == COMPARE:
+                parameters = {"other": 0}
+            text = failing(layers, name, **parameters)
+            assert "2 nodes" in text and "not finite" in text, name
+        assert fingerprint(layers) == before

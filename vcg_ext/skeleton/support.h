@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Public: what a host needs: errors, parameters, progress, notes, parallel loops.
+/// @brief Public: what a host needs: errors, parameters, limits, progress, notes, parallel loops.
 
 #ifndef VCG_MCF_SUPPORT_H
 #define VCG_MCF_SUPPORT_H
@@ -12,6 +12,7 @@
 #include <skeleton/core/parallel.h>
 #include <skeleton/core/parameters.h>
 #include <skeleton/core/progress.h>
+#include <skeleton/core/shape_limits.h>
 #include <skeleton/core/large_arrays.h>
 #include <skeleton/core/ticker.h>
 
