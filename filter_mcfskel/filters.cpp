@@ -18,6 +18,7 @@
 #include <exception>
 #include <memory>
 #include <new>
+#include <optional>
 
 namespace mcfskel {
 
@@ -192,7 +193,9 @@ Outcome runFilter(const FilterSpec& filter, MeshDocument& document,
 		if (filter.needsLayer && !document.mm())
 			throw vcg::tri::mcf::InvalidInput(
 				"There is no layer: open a closed triangle mesh first.");
-		FilterRun run {document, parameters, log, hostProgress(callback)};
+		FilterRun run {document, parameters, log, hostProgress(callback), std::nullopt};
+		if (document.mm())
+			run.current.emplace(*document.mm());
 		const MeshModel* const before = document.mm();
 		outcome.results = filter.run(run);
 		try {

@@ -10,6 +10,7 @@
 #define MCFSKEL_FILTERS_H
 
 #include "host/host_api.h"
+#include "layers/layer_as_read.h"
 
 #include <skeleton/support.h>
 
@@ -19,6 +20,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -100,9 +102,12 @@ struct FilterRun
 	/// Writes one line into the host's log.
 	std::function<void(const QString&)> log;
 	vcg::tri::mcf::Progress progress;
+	/// The layer that was current when the filter began, if there was one.
+	std::optional<LayerAsRead> current;
 
-	/// The current layer. @pre There is one: runFilter() checks it where FilterSpec::needsLayer.
-	MeshModel& layer() const { return *document.mm(); }
+	/// That layer, whichever is current by now. @throws InvalidInput: see LayerAsRead::in()
+	/// @pre There is one: runFilter() checks it where FilterSpec::needsLayer.
+	MeshModel& layer() const { return current->in(document); }
 };
 
 enum class FilterCategory { Remeshing, Quality };

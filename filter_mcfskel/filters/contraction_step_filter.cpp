@@ -104,22 +104,21 @@ Results contractionStep(FilterRun& run)
 					.arg(steps));
 
 	DocumentEdit edit(run.document);
-	MeshModel& source = run.layer();
 	SurfaceLink link = start.link;
-	MeshModel* surface = &source;
+	MeshModel* made = nullptr;
 	SurfaceLayer contracted = start.surface.surface;
 	if (start.isRepaired()) {
-		surface = &edit.addSurface(
-			source, baseName(source) + "_solid", *contracted.mesh, run.progress.cancelOnly());
-		edit.writeNodes(source, *contracted.vertexOfSlot, last->node);
+		made = &edit.addSurface(run.layer(), baseName(run.layer()) + "_solid", *contracted.mesh,
+			run.progress.cancelOnly());
+		edit.writeNodes(run.layer(), *contracted.vertexOfSlot, last->node);
 		contracted = compactSurface(contracted.mesh, contracted.hollow);
-		link = linkTo(*surface, contracted);
+		link = linkTo(*made, contracted);
 	}
-	addStages(edit, source, stages, link, run.progress.part(0.95, 1));
+	addStages(edit, run, stages, link, run.progress.part(0.95, 1));
 	if (start.surface.computed)
-		edit.writePoles(*surface, contracted, start.surface.poles);
-	if (start.isRepaired())
-		edit.writeNodes(*surface, *contracted.vertexOfSlot, last->node);
+		edit.writePoles(made ? *made : run.layer(), contracted, start.surface.poles);
+	if (made)
+		edit.writeNodes(*made, *contracted.vertexOfSlot, last->node);
 	else
 		edit.writeNodes(link, last->node);
 	Results results = stageResults(*last);

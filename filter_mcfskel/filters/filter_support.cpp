@@ -312,16 +312,16 @@ QString stageLabel(const QString& name, const mcf::Stage& stage)
 	return QString("%1_meso_%2").arg(name).arg(stage.iteration);
 }
 
-void addStages(DocumentEdit& edit, const MeshModel& source, KeptStages& stages,
+void addStages(DocumentEdit& edit, const FilterRun& run, KeptStages& stages,
 	const SurfaceLink& surface, const mcf::Progress& progress)
 {
-	const QString name = baseName(source);
+	const QString name = baseName(run.layer());
 	const double count = double(stages.size());
 	for (size_t i = 0; i < stages.size(); ++i) {
 		const mcf::Progress part = progress.part(double(i) / count, double(i + 1) / count);
 		const StageFields fields = stages.takeFields(i, part.part(0, 0.5));
-		edit.addStage(source, stageLabel(name, *stages.stage(i)), stages.stage(i), fields, surface,
-			part.part(0.5, 1));
+		edit.addStage(run.layer(), stageLabel(name, *stages.stage(i)), stages.stage(i), fields,
+			surface, part.part(0.5, 1));
 	}
 }
 

@@ -105,8 +105,8 @@ PoledSurface surfaceWithPoles(FilterRun& run, vcg::tri::mcf::PoleMethod method,
 /// NAME_meso_K.
 QString stageLabel(const QString& name, const vcg::tri::mcf::Stage& stage);
 
-/// Adds a layer NAME_meso_K for each stage of a run, in the frame of `source`. @throws Cancelled
-void addStages(DocumentEdit& edit, const MeshModel& source, KeptStages& stages,
+/// Adds a layer NAME_meso_K for each stage of a run, in the frame of its layer. @throws Cancelled
+void addStages(DocumentEdit& edit, const FilterRun& run, KeptStages& stages,
 	const SurfaceLink& surface, const vcg::tri::mcf::Progress& progress);
 
 } // namespace mcfskel

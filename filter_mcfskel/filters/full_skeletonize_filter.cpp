@@ -102,29 +102,30 @@ Results fullSkeletonize(FilterRun& run)
 		kept->add(result.stage);
 
 	DocumentEdit edit(run.document);
-	MeshModel& input = run.layer();
-	const QString name = baseName(input);
-	MeshModel* surface = &input;
+	const QString name = baseName(run.layer());
+	MeshModel* made = nullptr;
 	SurfaceLayer contracted = read;
 	// Where the shape is too thin for its resampled surface, the input itself was contracted.
 	const bool isResampled = result.surface != surfaceInput.mesh;
 	const bool isInput = !isResampled && !solid.isRepaired();
 	if (!isInput) {
-		surface = &edit.addSurface(input, name + (isResampled ? "_resampled" : "_solid"),
+		made = &edit.addSurface(run.layer(), name + (isResampled ? "_resampled" : "_solid"),
 			*result.surface, run.progress.cancelOnly());
 		contracted = compactSurface(result.surface, read.hollow);
 	}
-	const SurfaceLink link = linkTo(*surface, contracted);
-	addStages(edit, input, *kept, link, run.progress.part(0.99, 1));
+	const SurfaceLink link = linkTo(made ? *made : run.layer(), contracted);
+	addStages(edit, run, *kept, link, run.progress.part(0.99, 1));
+	MeshModel& input = run.layer();
+	MeshModel& surface = made ? *made : input;
 #if MCFSKEL_SHEETS
 	if (result.sheets)
 		edit.addMesoSkeleton(input, name + "_skeleton", result.sheets->skeleton);
 	else
 #endif
-		edit.addCurve(input, name + "_skeleton", {result.curve, link, surface->label()});
+		edit.addCurve(input, name + "_skeleton", {result.curve, link, surface.label()});
 	if (!surfaceInput.poles)
-		edit.writePoles(*surface, contracted, result.poles);
-	edit.writeNodes(*surface, *contracted.vertexOfSlot, result.nodeOfSurface());
+		edit.writePoles(surface, contracted, result.poles);
+	edit.writeNodes(surface, *contracted.vertexOfSlot, result.nodeOfSurface());
 	if (!isInput)
 		edit.writeNodes(input, *read.vertexOfSlot, result.node);
 	Results results = resultsOf(result, parameters.keepSheets);

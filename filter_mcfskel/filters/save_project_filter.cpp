@@ -28,7 +28,7 @@ namespace {
 /// A layer, what is known of it, and where it goes.
 struct SavedLayer
 {
-	MeshModel* layer;
+	LayerAsRead layer;
 	StageLayer stage;
 	std::shared_ptr<const CurveLayer> curve;
 	QString path; ///< from the project's folder
@@ -55,8 +55,8 @@ std::vector<SavedLayer> layersToSave(const FilterRun& run, const QString& folder
 	std::vector<SavedLayer> saved;
 	QSet<QString> taken;
 	for (const MeshModel* found : host::layersOf(run.document)) {
-		MeshModel& layer = *run.document.getMesh(int(found->id()));
-		SavedLayer item {&layer, {}, nullptr, folder + "/" + fileName(layer, taken)};
+		const MeshModel& layer = *found;
+		SavedLayer item {LayerAsRead(layer), {}, nullptr, folder + "/" + fileName(layer, taken)};
 		if (layer.cm.fn > 0)
 			item.stage = readStage(layer, sourcesOf(run));
 		else if (layer.cm.en > 0)
@@ -71,19 +71,21 @@ std::vector<SavedLayer> layersToSave(const FilterRun& run, const QString& folder
 	return saved;
 }
 
-void writeLayer(const SavedLayer& saved, const QDir& place, const mcf::Progress& progress)
+void writeLayer(MeshDocument& document, const SavedLayer& saved, const QDir& place,
+	const mcf::Progress& progress)
 {
+	const MeshModel& layer = saved.layer.in(document);
 	const QString file = place.filePath(saved.path);
 	if (saved.stage)
-		writeStageFile(file, *saved.layer, saved.stage, progress);
+		writeStageFile(file, layer, saved.stage, progress);
 	else if (saved.curve)
-		writeCurveFile(file, *saved.layer, *saved.curve);
+		writeCurveFile(file, layer, *saved.curve);
 	else
-		writeMeshFile(file, *saved.layer, progress);
+		writeMeshFile(file, layer, progress);
 }
 
 /// The project as MeshLab writes it, without what it says of the camera.
-QByteArray projectText(const MeshDocument& document, const std::vector<SavedLayer>& layers)
+QByteArray projectText(MeshDocument& document, const std::vector<SavedLayer>& layers)
 {
 	QByteArray text;
 	QXmlStreamWriter xml(&text);
@@ -94,20 +96,21 @@ QByteArray projectText(const MeshDocument& document, const std::vector<SavedLaye
 	xml.writeStartElement("MeshGroup");
 	std::vector<std::optional<host::ProjectLook>> looks;
 	for (const SavedLayer& saved : layers)
-		looks.push_back(host::projectLook(document, *saved.layer));
+		looks.push_back(host::projectLook(document, saved.layer.in(document)));
 	// MeshLab uses them only if all layers have them.
 	const bool all = std::all_of(looks.begin(), looks.end(), [](const auto& look) { return look; });
 	auto look = looks.begin();
 	for (const SavedLayer& saved : layers) {
+		const MeshModel& layer = saved.layer.in(document);
 		xml.writeStartElement("MLMesh");
-		xml.writeAttribute("label", saved.layer->label());
+		xml.writeAttribute("label", layer.label());
 		xml.writeAttribute("filename", saved.path);
-		xml.writeAttribute("visible", saved.layer->isVisible() ? "1" : "0");
+		xml.writeAttribute("visible", layer.isVisible() ? "1" : "0");
 		xml.writeAttribute("idInFile", "-1");
 		QString matrix = "\n";
 		for (int row = 0; row < 4; ++row) {
 			for (int column = 0; column < 4; ++column)
-				matrix += QString::number(saved.layer->cm.Tr.ElementAt(row, column), 'g', 17) + " ";
+				matrix += QString::number(layer.cm.Tr.ElementAt(row, column), 'g', 17) + " ";
 			matrix += "\n";
 		}
 		xml.writeTextElement("MLMatrix44", matrix);
@@ -148,7 +151,7 @@ Results saveProject(FilterRun& run)
 		// No cancelling once the first file is replaced: an existing project would be left with a
 		// mixture of old and new layers.
 		try {
-			writeLayer(layers[i], place, i == 0 ? part : part.showOnly());
+			writeLayer(run.document, layers[i], place, i == 0 ? part : part.showOnly());
 		}
 		catch (...) {
 			if (isNew && i == 0)
@@ -158,9 +161,10 @@ Results saveProject(FilterRun& run)
 	}
 	writeFile(project, [&](std::ostream& out) { out.write(text.constData(), text.size()); });
 	for (const SavedLayer& saved : layers) {
-		const QString label = saved.layer->label();
-		saved.layer->setFileName(place.filePath(saved.path));
-		saved.layer->setLabel(label);
+		MeshModel& layer = saved.layer.in(run.document);
+		const QString label = layer.label();
+		layer.setFileName(place.filePath(saved.path));
+		layer.setLabel(label);
 	}
 	run.log(QString("Wrote '%1' and the folder '%2'.").arg(project, folder));
 	return {{"layers", int(layers.size())}};

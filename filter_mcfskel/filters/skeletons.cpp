@@ -29,14 +29,16 @@ MeshModel* rememberedLayer(const FilterRun& run, const CurveLayer& curve)
 }
 
 /// The attribute mcfskel_node, if all of it fits a skeleton of that many nodes; else empty.
-std::vector<int> nodesFromAttribute(const SkeletonSurface& surface, size_t nodes)
+std::vector<int> nodesFromAttribute(
+	const FilterRun& run, const SkeletonSurface& surface, size_t nodes)
 {
-	const std::vector<int> shown = readNodes(*surface.layer);
+	const MeshModel& layer = surface.layer.in(run.document);
+	const std::vector<int> shown = readNodes(layer);
 	std::vector<int> result(size_t(surface.surface.mesh->vertexSlots()), -1);
 	size_t next = 0;
 	bool any = false;
-	for (size_t slot = 0; slot < surface.layer->cm.vert.size(); ++slot) {
-		if (surface.layer->cm.vert[slot].IsD() || next >= shown.size())
+	for (size_t slot = 0; slot < layer.cm.vert.size(); ++slot) {
+		if (layer.cm.vert[slot].IsD() || next >= shown.size())
 			continue;
 		const int node = shown[next++];
 		const int v = (*surface.surface.vertexOfSlot)[slot];
@@ -47,6 +49,25 @@ std::vector<int> nodesFromAttribute(const SkeletonSurface& surface, size_t nodes
 			result[size_t(v)] = node;
 	}
 	return any ? result : std::vector<int>();
+}
+
+/// A layer's vertices that are to get nodes.
+struct NodeBearers
+{
+	LayerAsRead layer;
+	std::vector<vcg::Point3d> position;
+	/// For each vertex slot of the layer its number in `position`, or -1.
+	std::vector<int> ofSlot;
+};
+
+/// Those of a surface layer.
+NodeBearers nodeBearers(const MeshModel& layer, const mcf::Progress& progress)
+{
+	NodeBearers result {LayerAsRead(layer), {}, {}};
+	const SurfaceLayer surface = readSurface(layer, progress);
+	result.position = surface.mesh->position;
+	result.ofSlot = *surface.vertexOfSlot;
+	return result;
 }
 
 } // namespace
@@ -76,12 +97,11 @@ std::optional<SkeletonSurface> findSurface(
 {
 	progress.report(0, reading);
 	const int id = run.parameters.integer("surface");
-	MeshModel* layer =
-		id == int(run.layer().id()) ? rememberedLayer(run, curve) : run.document.getMesh(id);
+	const MeshModel* layer =
+		id == run.current->id() ? rememberedLayer(run, curve) : run.document.getMesh(id);
 	if (!layer)
 		return std::nullopt;
-	progress.report(0, reading);
-	return SkeletonSurface {layer, readSurface(*layer, progress)};
+	return SkeletonSurface {LayerAsRead(*layer), readSurface(*layer, progress)};
 }
 
 SkeletonSurface requireSurface(
@@ -101,15 +121,15 @@ std::vector<int> nodesOnSurface(const FilterRun& run, const CurveLayer& curve,
 {
 	progress.report(0, reading);
 	const std::vector<int>& node = curve.skeleton.node;
-	if (MeshModel* remembered = node.empty() ? nullptr : rememberedLayer(run, curve)) {
-		progress.report(0, reading);
+	if (const MeshModel* remembered = node.empty() ? nullptr : rememberedLayer(run, curve)) {
+		const bool isSurface = int(remembered->id()) == surface.layer.id();
 		const SurfaceLayer own = readSurface(*remembered, progress.part(0, 0.5));
 		if (own.mesh->position.size() == node.size())
-			return remembered == surface.layer ? node
-											   : mcf::transferredNodes(*own.mesh, node,
-												   *surface.surface.mesh, progress.part(0.5, 1));
+			return isSurface ? node
+							 : mcf::transferredNodes(
+								 *own.mesh, node, *surface.surface.mesh, progress.part(0.5, 1));
 	}
-	return nodesFromAttribute(surface, curve.skeleton.position.size());
+	return nodesFromAttribute(run, surface, curve.skeleton.position.size());
 }
 
 CurveLayer skeletonOf(const FilterRun& run, CurveLayer curve, const SkeletonSurface& surface,
@@ -127,8 +147,9 @@ CurveLayer skeletonOf(const FilterRun& run, CurveLayer curve, const SkeletonSurf
 	}
 	curve.skeleton.node = std::move(node);
 	progress.report(1, reading);
-	curve.surface = linkTo(*surface.layer, surface.surface);
-	curve.surfaceName = surface.layer->label();
+	const MeshModel& layer = surface.layer.in(run.document);
+	curve.surface = linkTo(layer, surface.surface);
+	curve.surfaceName = layer.label();
 	return curve;
 }
 
@@ -161,10 +182,12 @@ void addDerivedSkeleton(FilterRun& run, const CurveLayer& curve, mcf::CurveSkele
 	const char* suffix, bool measureRadius, const mcf::Progress& progress)
 {
 	progress.report(0, reading);
-	MeshModel* remembered = skeleton.node.empty() ? nullptr : rememberedLayer(run, curve);
+	std::optional<LayerAsRead> remembered;
 	SurfaceLayer own;
-	if (remembered)
-		own = readSurface(*remembered, progress.part(0, 0.3));
+	if (const MeshModel* layer = skeleton.node.empty() ? nullptr : rememberedLayer(run, curve)) {
+		remembered.emplace(*layer);
+		own = readSurface(*layer, progress.part(0, 0.3));
+	}
 	const bool fits = remembered && own.mesh->position.size() == skeleton.node.size();
 	if (fits && measureRadius) {
 		const std::vector<double> before = skeleton.radius;
@@ -176,22 +199,23 @@ void addDerivedSkeleton(FilterRun& run, const CurveLayer& curve, mcf::CurveSkele
 				skeleton.radius[v] = before[v];
 	}
 	// Surfaces of the same name got their correspondence from the one that was contracted.
-	struct Other
-	{
-		MeshModel* layer;
-		SurfaceLayer surface;
-		std::vector<int> node;
-	};
-	std::vector<Other> others;
-	if (fits)
+	std::vector<int> kin;
+	if (fits) {
+		const QString name = baseName(remembered->in(run.document));
 		for (const MeshModel* layer : host::layersOf(run.document))
-			if (layer != remembered && layer->cm.fn > 0 && lostState(*layer).isEmpty()
-				&& !readNodes(*layer).empty() && baseName(*layer) == baseName(*remembered))
-				others.push_back({run.document.getMesh(int(layer->id())),
-					readSurface(*layer, progress.part(0.5, 0.7)), {}});
-	for (Other& other : others)
-		other.node = mcf::transferredNodes(
-			*own.mesh, skeleton.node, *other.surface.mesh, progress.part(0.7, 1));
+			if (int(layer->id()) != remembered->id() && layer->cm.fn > 0
+				&& lostState(*layer).isEmpty() && !readNodes(*layer).empty()
+				&& baseName(*layer) == name)
+				kin.push_back(int(layer->id()));
+	}
+	std::vector<std::pair<NodeBearers, std::vector<int>>> others;
+	for (int id : kin)
+		if (const MeshModel* layer = run.document.getMesh(id)) {
+			NodeBearers other = nodeBearers(*layer, progress.part(0.5, 0.7));
+			std::vector<int> node = mcf::transferredNodes(
+				*own.mesh, skeleton.node, other.position, progress.part(0.7, 1));
+			others.emplace_back(std::move(other), std::move(node));
+		}
 
 	MeshModel& source = run.layer();
 	CurveLayer derived = curve;
@@ -199,9 +223,9 @@ void addDerivedSkeleton(FilterRun& run, const CurveLayer& curve, mcf::CurveSkele
 	DocumentEdit edit(run.document);
 	edit.addCurve(source, baseName(source) + "_" + suffix, derived);
 	if (fits) {
-		edit.writeNodes(*remembered, *own.vertexOfSlot, derived.skeleton.node);
-		for (const Other& other : others)
-			edit.writeNodes(*other.layer, *other.surface.vertexOfSlot, other.node);
+		edit.writeNodes(remembered->in(run.document), *own.vertexOfSlot, derived.skeleton.node);
+		for (const auto& [other, node] : others)
+			edit.writeNodes(other.layer.in(run.document), other.ofSlot, node);
 	}
 	edit.commit();
 }

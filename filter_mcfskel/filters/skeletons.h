@@ -28,7 +28,7 @@ ParameterSpec surfaceParameter(const QString& whatFor);
 /// A surface that goes with a skeleton.
 struct SkeletonSurface
 {
-	MeshModel* layer;
+	LayerAsRead layer;
 	SurfaceLayer surface;
 };
 

@@ -50,8 +50,8 @@ Results surfaceParts(FilterRun& run)
 			if (const int part = parts.ofFace[size_t(f)]; part >= 0)
 				area[size_t(part)] += mesh.areaVector(f).Norm() / 2;
 		});
-	const std::vector<int> ofSlot =
-		facePartsOfSlots(*target.layer, target.surface, parts.ofFace, run.progress.part(0.9, 1));
+	const std::vector<int> ofSlot = facePartsOfSlots(
+		target.layer.in(run.document), target.surface, parts.ofFace, run.progress.part(0.9, 1));
 
 	const size_t n = branches.size();
 	Results results = {
@@ -66,8 +66,9 @@ Results surfaceParts(FilterRun& run)
 		{"branch_first_kind", column(n, [&](size_t i) { return int(branches[i].first); })},
 		{"branch_last_kind", column(n, [&](size_t i) { return int(branches[i].last); })},
 	};
-	setFaceParts(*target.layer, ofSlot);
-	setVertexQuality(*target.layer, target.surface, parts.distance);
+	MeshModel& layer = target.layer.in(run.document);
+	setFaceParts(layer, ofSlot);
+	setVertexQuality(layer, target.surface, parts.distance);
 	return results;
 }
 

@@ -22,10 +22,12 @@ DocumentEdit::~DocumentEdit()
 	if (committed)
 		return;
 	for (const NewAttribute& attribute : newAttributes)
-		removeAttribute(attribute.layer->cm.vert_attr, attribute.name);
+		if (MeshModel* layer = document.getMesh(attribute.layer))
+			removeAttribute(layer->cm.vert_attr, attribute.name);
 	for (int id : added)
-		host::removeLayer(document, id);
-	if (previousLayer >= 0)
+		if (document.getMesh(id))
+			host::removeLayer(document, id);
+	if (previousLayer >= 0 && document.getMesh(previousLayer))
 		document.setCurrentMesh(previousLayer);
 }
 
@@ -143,7 +145,7 @@ MeshModel& DocumentEdit::addStage(const QString& label, std::shared_ptr<const mc
 void DocumentEdit::noteNew(MeshModel& layer, const char* attribute)
 {
 	if (!findAttribute(layer.cm.vert_attr, attribute))
-		newAttributes.push_back({&layer, attribute});
+		newAttributes.push_back({int(layer.id()), attribute});
 }
 
 void DocumentEdit::changeState(
@@ -156,6 +158,7 @@ void DocumentEdit::changeState(
 	noteNew(layer, stateAttribute);
 	StateAttribute& attribute = stateOf(layer);
 	StatePointer after = newState(layer, std::move(state));
+	written.emplace_back(layer);
 	changes.push_back([&attribute, after = std::move(after)] { attribute.content = after; });
 }
 
@@ -193,6 +196,7 @@ void DocumentEdit::writeNodes(
 	values.reserve(vertexOfSlot.size());
 	for (int v : vertexOfSlot)
 		values.push_back(v < 0 ? Scalarm(-1) : Scalarm(node[size_t(v)]));
+	written.emplace_back(layer);
 	changes.push_back([attribute, values = std::move(values)]() mutable {
 		for (size_t slot = 0; slot < values.size(); ++slot)
 			attribute[slot] = values[slot];
@@ -207,6 +211,8 @@ void DocumentEdit::writeNodes(const SurfaceLink& surface, const std::vector<int>
 
 void DocumentEdit::commit()
 {
+	for (const LayerAsRead& layer : written)
+		layer.in(document);
 	for (const std::function<void()>& change : changes)
 		change();
 	committed = true;

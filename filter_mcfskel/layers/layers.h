@@ -15,6 +15,7 @@
 #define MCFSKEL_LAYERS_H
 
 #include "../host/host_api.h"
+#include "layer_as_read.h"
 #include "stage_fields.h"
 
 #include <skeleton/solid.h>
@@ -175,7 +176,8 @@ std::shared_ptr<const vcg::tri::mcf::PoleSet> readPoles(
 /**
  * Changes to a document, all or none. Until commit() only layers and attributes are added, and they
  * are removed again if it is not reached; existing values change in commit() alone.
- * @pre existing layers that are written on have gone through readSurface() or readStage().
+ * @pre existing layers that are written on have gone through readSurface() or readStage(), and have
+ *      as many vertices as then: see LayerAsRead.
  */
 class DocumentEdit
 {
@@ -242,6 +244,8 @@ public:
 	 * and points are coloured by their quality, not shaded, within the outline of their surface.
 	 * Without a window nothing of this is done: scripts use visibility to say which layers a filter
 	 * works on, and colours would be saved with the layer.
+	 * @throws InvalidInput if a layer that is written on was deleted or changed meanwhile; nothing
+	 *         is changed then.
 	 */
 	void commit();
 
@@ -249,7 +253,7 @@ private:
 	/// An attribute that a layer did not have.
 	struct NewAttribute
 	{
-		MeshModel* layer;
+		int layer;
 		const char* name;
 	};
 
@@ -269,6 +273,8 @@ private:
 	int previousLayer;
 	std::vector<int> added;
 	std::vector<NewAttribute> newAttributes;
+	/// The layers that `changes` write on.
+	std::vector<LayerAsRead> written;
 	/// What commit() does to existing layers. It cannot fail: all memory is allocated before.
 	std::vector<std::function<void()>> changes;
 	/// The layers that the added ones were made from.

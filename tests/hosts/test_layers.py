@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """State and layers: branching off, deleting, renaming, several meshes, frames, selections, leftovers."""
 
+import threading
 from collections.abc import Callable
 
 import numpy as np
@@ -329,3 +330,59 @@ class TestForeignAttributes:
         mesh = layers.current_mesh()
         mesh.add_vertex_custom_scalar_attribute(np.ones(mesh.vertex_number()), "mcfskel_fixed")
         assert "its state is gone" in failing(layers, COLLAPSE)
+
+
+class TestMeanwhile:
+    """MeshLab stays awake while a filter runs: the user may click another layer, or delete one."""
+
+    @staticmethod
+    def run(layers: pymeshlab.MeshSet, name: str, then: Callable[[], None], **parameters) -> None:
+        """Applies a filter, and does something as soon as it computes."""
+        ended, failed = threading.Event(), []
+
+        def act() -> None:
+            if ended.wait(0.1):
+                failed.append("the filter was faster")
+            else:
+                then()
+
+        thread = threading.Thread(target=act)
+        thread.start()
+        try:
+            layers.apply_filter(name, **parameters)
+        finally:
+            ended.set()
+            thread.join()
+            assert not failed
+
+    @pytest.fixture
+    def layers(self) -> pymeshlab.MeshSet:
+        """A surface, which is current, and one with other vertices."""
+        layers = document(arrays("hand"), arrays("box8"))
+        layers.set_current_mesh(0)
+        layers.meshing_surface_subdivision_midpoint(iterations=1)
+        return layers
+
+    @pytest.mark.parametrize("parameters", [{"target_length": pymeshlab.PercentageValue(0.9)}, {"resample": False}])
+    def test_another_layer_is_made_current(self, layers, parameters):
+        self.run(layers, FULL, lambda: layers.set_current_mesh(1), **parameters)
+        surface, other = layers.mesh(0), layers.mesh(1)
+        assert layers.current_mesh().label() == "mesh_0_skeleton"
+        assert not attributes(other), "the layer that was clicked is none of the filter's"
+        node = scalars(surface, "mcfskel_node")
+        assert node.min() >= 0 and node.max() < layers.current_mesh().vertex_number()
+
+    def test_the_layer_is_deleted(self, layers):
+        with pytest.raises(pymeshlab.PyMeshLabException, match="was deleted or changed"):
+            self.run(layers, FULL, lambda: delete(layers, "mesh_0"), resample=False)
+        assert labels(layers) == ["mesh_1"] and not attributes(layers.mesh(1))
+
+    def test_vertices_are_deleted(self, layers):
+        def edit() -> None:
+            layers.set_selection_all()
+            layers.meshing_remove_selected_vertices()
+
+        with pytest.raises(pymeshlab.PyMeshLabException, match="was deleted or changed"):
+            self.run(layers, FULL, edit, resample=False)
+        assert labels(layers) == ["mesh_0", "mesh_1"] and not attributes(layers.mesh(1))
+        assert layers.mesh(0).vertex_number() == 0

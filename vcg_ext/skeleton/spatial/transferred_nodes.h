@@ -31,19 +31,26 @@ inline double meanEdgeLength(const SurfaceMesh& mesh)
 }
 
 /**
- * For each vertex of a surface the node that the nearest vertex of another surface has.
+ * For each of some places the node that the nearest vertex of a surface has.
  * @param node of each vertex of `from`.
- * @pre both meshes are compact, `from` is not empty.
+ * @param to   finite.
+ * @pre `from` is compact and not empty.
  * @throws Cancelled. Complexity: as nearestPoints().
  */
 inline std::vector<int> transferredNodes(const SurfaceMesh& from, const std::vector<int>& node,
-	const SurfaceMesh& to, const Progress& progress = Progress())
+	const std::vector<Point3d>& to, const Progress& progress = Progress())
 {
-	std::vector<int> result =
-		nearestPoints(from.position, to.position, meanEdgeLength(from), progress);
+	std::vector<int> result = nearestPoints(from.position, to, meanEdgeLength(from), progress);
 	for (int& v : result)
 		v = node[size_t(v)];
 	return result;
+}
+
+/// The same for the vertices of another surface, which is compact as well.
+inline std::vector<int> transferredNodes(const SurfaceMesh& from, const std::vector<int>& node,
+	const SurfaceMesh& to, const Progress& progress = Progress())
+{
+	return transferredNodes(from, node, to.position, progress);
 }
 
 } // namespace vcg::tri::mcf
