@@ -60,13 +60,28 @@ struct NodeBearers
 	std::vector<int> ofSlot;
 };
 
-/// Those of a surface layer.
+/// Those of a layer with mcfskel_node: all of a surface; of what is none by itself, such as a mesh
+/// with holes that was repaired, the vertices that have a node.
 NodeBearers nodeBearers(const MeshModel& layer, const mcf::Progress& progress)
 {
 	NodeBearers result {LayerAsRead(layer), {}, {}};
-	const SurfaceLayer surface = readSurface(layer, progress);
-	result.position = surface.mesh->position;
-	result.ofSlot = *surface.vertexOfSlot;
+	try {
+		const SurfaceLayer surface = readSurface(layer, progress);
+		result.position = surface.mesh->position;
+		result.ofSlot = *surface.vertexOfSlot;
+	}
+	catch (const mcf::InvalidInput&) {
+		const std::vector<int> shown = readNodes(layer);
+		size_t next = 0;
+		for (const CVertexO& v : layer.cm.vert) {
+			const vcg::Point3d place(v.cP()[0], v.cP()[1], v.cP()[2]);
+			const bool bears =
+				!v.IsD() && next < shown.size() && shown[next++] >= 0 && mcf::isUsablePlace(place);
+			result.ofSlot.push_back(bears ? int(result.position.size()) : -1);
+			if (bears)
+				result.position.push_back(place);
+		}
+	}
 	return result;
 }
 

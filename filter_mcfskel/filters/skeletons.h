@@ -64,9 +64,11 @@ std::vector<double> clearances(const std::vector<vcg::Point3d>& nodes,
 /**
  * Adds a layer NAME_suffix with a skeleton made from that of the current layer, and writes its
  * correspondence on the surface that this one remembers and on all surfaces NAME with mcfskel_node.
+ * Such a surface that had to be repaired, and cannot be read as it is, gets the nodes of the nearest
+ * vertices of the former where it had nodes.
  * The radius is measured anew if the correspondence is known and `measureRadius` is set.
  * @param curve  the skeleton of the current layer.
- * @throws InvalidInput as readSurface(), for any of these surfaces; Cancelled
+ * @throws InvalidInput as readSurface(), for the surface that is remembered; Cancelled
  */
 void addDerivedSkeleton(FilterRun& run, const CurveLayer& curve,
 	vcg::tri::mcf::CurveSkeleton skeleton, const char* suffix, bool measureRadius,

@@ -7,7 +7,7 @@ import pymeshlab
 import pytest
 
 from conftest import FULL, RESAMPLE, STEP, arrays, diagonal, document, failing, fingerprint, labels
-from filter_names import SOLID
+from filter_names import PRUNE, REFINE, SMOOTH, SOLID
 from hostile.primitives import genus, is_two_manifold, signed_volume
 
 Mesh = tuple[np.ndarray, np.ndarray]
@@ -104,6 +104,24 @@ def test_full_skeletonize_repairs_by_itself():
     assert (np.delete(node, used) == -1).all() and (node[used] >= 0).all()
     away = np.linalg.norm(nodes[node[used].astype(int)] - vertices[used], axis=1)
     assert away.max() < 0.3 * diagonal(vertices)
+
+
+@pytest.mark.parametrize("mesh", [lambda: missing(0.03), cut_off])
+@pytest.mark.parametrize("name", [PRUNE, REFINE, SMOOTH])
+def test_a_skeleton_of_what_was_repaired_goes_on(mesh, name):
+    """And the mesh, which is no surface by itself, keeps a node for each vertex that had one."""
+    layers = document(mesh())
+    layers.apply_filter(FULL, target_length=pymeshlab.PercentageValue(2.5))
+    before = layers.mesh(0).vertex_custom_scalar_attribute_array("mcfskel_node")
+    layers.apply_filter(name)
+    nodes = layers.current_mesh().vertex_matrix()
+    broken, contracted = layers.mesh(0), layers.mesh(1)
+    assert labels(layers)[1] == "mesh_0_resampled"
+    node = broken.vertex_custom_scalar_attribute_array("mcfskel_node").astype(int)
+    assert ((node >= 0) == (before >= 0)).all() and node.max() < len(nodes)
+    distance = np.linalg.norm(broken.vertex_matrix()[:, None] - contracted.vertex_matrix()[None], axis=2)
+    expected = contracted.vertex_custom_scalar_attribute_array("mcfskel_node")[distance.argmin(axis=1)]
+    assert (node == expected)[before >= 0].all(), "that of the nearest vertex of the surface"
 
 
 def test_full_skeletonize_wraps_by_itself():
