@@ -7,6 +7,7 @@
 #include "all_filters.h"
 #include "filter_support.h"
 
+#include <skeleton/skeleton_files.h>
 #include <skeleton/support.h>
 
 #include <QDir>
@@ -49,6 +50,28 @@ QString fileName(const MeshModel& layer, QSet<QString>& taken)
 	return unique + ".ply";
 }
 
+/// Reads what is known of a layer, and says so if nothing is any more. One that is no valid stage or
+/// skeleton is an ordinary mesh, so that all the others can be saved.
+void takeState(const FilterRun& run, const MeshModel& layer, SavedLayer& item)
+{
+	try {
+		if (layer.cm.fn > 0)
+			item.stage = readStage(layer, sourcesOf(run));
+		else if (layer.cm.en > 0) {
+			auto curve = std::make_shared<const CurveLayer>(readCurve(layer, sourcesOf(run)));
+			mcf::requireWritable(curve->skeleton);
+			item.curve = std::move(curve);
+		}
+		if (!item.stage && !item.curve)
+			if (const QString lost = lostState(layer); !lost.isEmpty())
+				run.log(lost);
+	}
+	catch (const mcf::Error& error) {
+		run.log("The layer '" + layer.label()
+			+ "' is saved as a mesh, without what the filters know of it. " + error.what());
+	}
+}
+
 /// The layers, all read before any file is written: it may hold the state of another layer.
 std::vector<SavedLayer> layersToSave(const FilterRun& run, const QString& folder)
 {
@@ -57,13 +80,7 @@ std::vector<SavedLayer> layersToSave(const FilterRun& run, const QString& folder
 	for (const MeshModel* found : host::layersOf(run.document)) {
 		const MeshModel& layer = *found;
 		SavedLayer item {LayerAsRead(layer), {}, nullptr, folder + "/" + fileName(layer, taken)};
-		if (layer.cm.fn > 0)
-			item.stage = readStage(layer, sourcesOf(run));
-		else if (layer.cm.en > 0)
-			item.curve = std::make_shared<const CurveLayer>(readCurve(layer, sourcesOf(run)));
-		if (!item.stage && !item.curve)
-			if (const QString lost = lostState(layer); !lost.isEmpty())
-				run.log(lost);
+		takeState(run, layer, item);
 		if (!layer.cm.textures.empty())
 			run.log("The textures of '" + layer.label() + "' are not saved.");
 		saved.push_back(std::move(item));

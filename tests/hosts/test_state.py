@@ -333,6 +333,34 @@ class TestProjects:
         assert (tmp_path / "capsule.ply").read_bytes() == before
         assert [p.name for p in source.iterdir()] == ["capsule.ply"]
 
+    def test_odd_layers_are_saved_as_meshes(self, tmp_path, log):
+        """One layer that is no valid skeleton or stage does not keep the others from being saved."""
+        layers = staged()
+        edit(layers, "mcfskel_fixed", "vi < 1 ? sqrt(0-1) : 0")
+        for name, edges in [("loop", [[0, 0], [0, 1]]), ("nan", [[0, 1]]), ("thin", [[0, 1]])]:
+            layers.add_mesh(pymeshlab.Mesh(vertex_matrix=np.array([[0.0, 0, 0], [1, 0, 0]]),
+                                           edge_matrix=np.array(edges, np.int32)), name)
+        edit(layers, "mcfskel_radius", "0-1")
+        layers.set_current_mesh(layer(layers, "nan").id())
+        layers.compute_coord_by_function(x="vi < 1 ? sqrt(0-1) : x")
+        log()
+        file = tmp_path / "odd.mlp"
+        assert layers.apply_filter(SAVE_PROJECT, file=str(file))["layers"] == layers.mesh_number()
+        said = log()
+        for name in ["capsule_meso_3", "loop", "nan", "thin"]:
+            assert f"'{name}' is saved as a mesh" in said
+        assert "were changed" not in said and "is lost" not in said, "each is told about once"
+        again = pymeshlab.MeshSet()
+        again.load_project(str(file))
+        assert labels(again) == labels(layers)
+        for mesh, saved in zip(layers, again):
+            if mesh.label() == "nan":  # MeshLab leaves out what is no number
+                continue
+            assert np.array_equal(mesh.vertex_matrix(), saved.vertex_matrix()), mesh.label()
+            assert np.array_equal(mesh.face_matrix(), saved.face_matrix())
+        again.set_current_mesh(layer(again, "capsule_meso_2").id())
+        assert again.apply_filter(STEP)["iterations"] == 3, "the others are what they were"
+
     def test_where_nothing_can_be_written(self, tmp_path):
         layers = document(arrays("capsule"))
         assert "folder" in failing(layers, SAVE_PROJECT, file=str(tmp_path / "none" / "p.mlp"))
