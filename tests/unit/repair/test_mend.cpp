@@ -144,6 +144,50 @@ TEST(Mend, AHoleWhoseFillingThatTurnsLeastCrossesTheSurfaceGetsTheSmallest)
 	EXPECT_NEAR(enclosedVolume(surface), wingSpan * wingSection, 0.2 * wingSpan * wingSection);
 }
 
+/// So many triangles around a vertex, which have nothing else in common. @param turned  every other
+/// one is turned over.
+shapes::Soup wheel(int count, bool turned)
+{
+	shapes::Soup soup = {{{0, 0, 0}}, {}};
+	for (int i = 0; i < count; ++i) {
+		for (double side : {0.25, 0.75}) {
+			const double angle = 2 * M_PI * (i + side) / count;
+			soup.points.emplace_back(std::cos(angle), std::sin(angle), 0.1 * std::cos(7 * angle));
+		}
+		soup.triangles.push_back({0, 2 * i + 1, 2 * i + 2});
+		if (turned && i % 2)
+			std::swap(soup.triangles.back()[1], soup.triangles.back()[2]);
+	}
+	return soup;
+}
+
+TEST(Mend, FindsTheHolesBetweenThousandsOfFansAtAVertex)
+{
+	constexpr int count = 20000;
+	for (bool turned : {false, true}) {
+		const shapes::Soup soup = wheel(count, turned);
+		int asked = 0;
+		const auto loops = detail::holeLoops(soup.points, soup.triangles,
+			std::vector<int>(3 * soup.triangles.size(), -1), Progress([&](int, const char*) {
+				++asked;
+				return true;
+			}));
+		// Faces alike have one hole around all of them; else each has one of its own.
+		EXPECT_EQ(loops.size(), size_t(turned ? count : 1));
+		EXPECT_EQ(loops.front().size(), size_t(turned ? 3 : 3 * count));
+		EXPECT_GT(asked, 1);
+		EXPECT_LT(asked, 20); // once in some 30,000 comparisons
+	}
+}
+
+TEST(Mend, AsksToCancelWhileItFindsHoles)
+{
+	const shapes::Soup soup = wheel(3, false);
+	EXPECT_THROW(detail::holeLoops(soup.points, soup.triangles, std::vector<int>(9, -1),
+					 Progress([](int, const char*) { return false; })),
+		Cancelled);
+}
+
 TEST(Mend, LeavesALargeHole)
 {
 	shapes::Soup soup = shapes::sphere(3);

@@ -11,6 +11,8 @@
 
 #include <skeleton/core/disjoint_sets.h>
 #include <skeleton/core/progress.h>
+#include <skeleton/core/ticker.h>
+#include <skeleton/input/soup_repair.h>
 #include <skeleton/mesh/surface_mesh.h>
 #include <skeleton/spatial/triangle_tree.h>
 
@@ -160,17 +162,56 @@ private:
 	}
 };
 
+/// For each of the angles `from`, the number of the angle `to` that is next counter-clockwise, a
+/// whole turn ahead if it is the same; the lowest of several. @param ticker  counts comparisons.
+/// Complexity: O(n log n).
+inline std::vector<size_t> nextAngles(
+	const std::vector<double>& from, const std::vector<double>& to, Ticker& ticker)
+{
+	std::vector<std::pair<double, size_t>> sorted;
+	for (double angle : to)
+		sorted.emplace_back(angle, sorted.size());
+	std::sort(sorted.begin(), sorted.end());
+	sorted.erase(std::unique(sorted.begin(), sorted.end(),
+					 [](const auto& a, const auto& b) { return a.first == b.first; }),
+		sorted.end());
+	std::vector<size_t> next;
+	for (double angle : from) {
+		std::pair<double, size_t> nearest(std::numeric_limits<double>::infinity(), 0);
+		// Rounding may make angles that differ equally far.
+		const auto look = [&](auto at, auto end) {
+			for (; at != end; ++at) {
+				ticker.tick();
+				double turn = at->first - angle;
+				if (turn <= 0)
+					turn += 2 * M_PI;
+				if (turn > nearest.first)
+					return;
+				nearest = std::min(nearest, {turn, at->second});
+			}
+		};
+		const auto beyond = std::upper_bound(
+			sorted.begin(), sorted.end(), std::pair(angle, std::numeric_limits<size_t>::max()));
+		look(beyond, sorted.end());
+		look(sorted.begin(), beyond);
+		next.push_back(nearest.second);
+	}
+	return next;
+}
+
 /**
  * The loops of half-edges around the holes of a coherently oriented surface, as they run in the
  * faces. Where several fans of faces meet at a vertex, a loop continues at the next fan across the
  * gap, so that the gap can be filled and the vertex is not split. Where the fans face different
  * ways, a loop stays with its fan, and is split where it returns to the vertex: the open end of a
  * wing and the slit along its trailing edge are separate holes.
- * Complexity: O(F log F), and O(n^2 log F) for each vertex with n fans.
+ * @throws Cancelled. Complexity: O(F log F).
  */
 inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& points,
-	const std::vector<Triangle>& triangles, const std::vector<int>& partner)
+	const std::vector<Triangle>& triangles, const std::vector<int>& partner,
+	const Progress& progress = Progress())
 {
+	Ticker ticker(progress.cancelOnly(), repairing, double(partner.size()));
 	const Fans fans(triangles, partner);
 	const auto origin = [&](int h) { return triangles[size_t(h) / 3][size_t(h) % 3]; };
 	struct BorderFan
@@ -212,25 +253,17 @@ inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& point
 			const Point3d d = points[size_t(to)] - centre;
 			return std::atan2(d * y, d * x);
 		};
-		std::map<int, int> next;
-		std::set<int> reached;
+		std::vector<double> from, to;
 		for (int fan : around) {
-			const double from = angle(origin(fanOf[fan].into));
-			double nearest = std::numeric_limits<double>::infinity();
-			for (int other : around) {
-				double turn = angle(origin(Fans::next(fanOf[other].out))) - from;
-				if (turn <= 0)
-					turn += 2 * M_PI;
-				if (turn < nearest) {
-					nearest = turn;
-					next[fan] = other;
-				}
-			}
-			reached.insert(next[fan]);
+			ticker.tick();
+			from.push_back(angle(origin(fanOf[fan].into)));
+			to.push_back(angle(origin(Fans::next(fanOf[fan].out))));
 		}
-		for (int fan : around)
-			following[fanOf[fan].into] =
-				fanOf[alike && reached.size() == around.size() ? next[fan] : fan].out;
+		const std::vector<size_t> next = nextAngles(from, to, ticker);
+		const bool isRound =
+			alike && std::set<size_t>(next.begin(), next.end()).size() == around.size();
+		for (size_t i = 0; i < around.size(); ++i)
+			following[fanOf[around[i]].into] = fanOf[around[isRound ? next[i] : i]].out;
 	}
 	std::vector<std::vector<int>> loops;
 	std::vector<char> done(partner.size(), 0);
@@ -413,7 +446,8 @@ inline FilledHoles fillHoles(const std::vector<Point3d>& points, std::vector<Tri
 {
 	const char* const what = "Filling holes";
 	FilledHoles done;
-	const std::vector<std::vector<int>> loops = detail::holeLoops(points, triangles, partner);
+	const std::vector<std::vector<int>> loops =
+		detail::holeLoops(points, triangles, partner, progress.cancelOnly());
 	if (loops.empty())
 		return done;
 	const std::vector<int> piece = detail::pieceOfFaces(partner);
