@@ -418,6 +418,82 @@ TEST(Mend, MergesVerticesThatNearlyCoincide)
 	EXPECT_EQ(int(soup.triangles.size()), int(surface.triangles.size()));
 }
 
+TEST(Mend, ClosesSeamsBesideFacesThatAreTurned)
+{
+	// Both border edges run into the vertex on the seam.
+	shapes::Soup soup = shapes::sphere(2);
+	const Triangle t = soup.triangles[7];
+	const int middle = int(soup.points.size());
+	soup.points.push_back((soup.points[size_t(t[0])] + soup.points[size_t(t[1])]) / 2.0);
+	soup.triangles[7] = {t[0], middle, t[2]};
+	soup.triangles.push_back({t[1], middle, t[2]});
+	const MendedSurface junction = mendedOf(soup);
+	expectMended(junction, soup);
+	EXPECT_EQ(junction.report.junctionsClosed, 1);
+	EXPECT_EQ(junction.report.holesClosed, 0);
+
+	soup = shapes::sphere(2);
+	const int copy = int(soup.points.size());
+	const auto vertexOf = [&](size_t f) {
+		return std::find(soup.triangles[f].begin(), soup.triangles[f].end(), 0);
+	};
+	std::vector<size_t> around;
+	for (size_t f = 0; f < soup.triangles.size(); ++f)
+		if (vertexOf(f) != soup.triangles[f].end())
+			around.push_back(f);
+	const auto after = [&](size_t f, int steps) {
+		return soup.triangles[f][size_t(vertexOf(f) - soup.triangles[f].begin() + steps) % 3];
+	};
+	const size_t first = around[0];
+	const size_t second = *std::find_if(
+		around.begin(), around.end(), [&](size_t f) { return after(f, 1) == after(first, 2); });
+	soup.triangles[first] = {copy, after(first, 2), after(first, 1)};
+	soup.triangles[second] = {copy, after(second, 1), after(second, 2)};
+	soup.points.push_back(soup.points[0] * (1 + 1e-6));
+	const MendedSurface merged = mendedOf(soup);
+	expectMended(merged, soup);
+	EXPECT_EQ(merged.report.verticesMerged, 1);
+	EXPECT_EQ(merged.report.holesClosed, 0);
+}
+
+TEST(Mend, ClosesATJunctionOfSeveralFansOnce)
+{
+	const shapes::Soup soup = {{{0, 0, 0}, {2, 0, 0}, {1, -1, 0}, {1, 0, 0}, {2, 1, 0}, {1.5, 1, 0},
+								   {0.5, 1, 0}, {0, 1, 0}},
+		{{1, 0, 2}, {3, 4, 5}, {3, 6, 7}}};
+	std::vector<Triangle> faces = soup.triangles;
+	const ClosedSeams seams = closeSeams(soup.points, faces);
+	EXPECT_EQ(seams.junctions, 1);
+	EXPECT_EQ(seams.merged, 0);
+	EXPECT_EQ(faces.size(), 4u);
+}
+
+TEST(Mend, AsksToCancelOftenWhereBordersOverlap)
+{
+	std::mt19937 random(1);
+	shapes::Soup soup;
+	for (int i = 0; i < 1000; ++i) {
+		const int n = int(soup.points.size());
+		for (int k = 0; k < 3; ++k)
+			soup.points.emplace_back(random() * 1e-9, random() * 1e-9, random() * 1e-9);
+		soup.triangles.push_back({n, n + 1, n + 2});
+	}
+	int asked = 0;
+	closeSeams(soup.points, soup.triangles, Progress([&](int, const char*) {
+		++asked;
+		return true;
+	}));
+	EXPECT_GT(asked, 75); // once in some 30,000 edges; for the stages alone 60
+	// A vertex with many borders is looked at once, not once for each.
+	asked = 0;
+	shapes::Soup fans = wheel(20000, false);
+	closeSeams(fans.points, fans.triangles, Progress([&](int, const char*) {
+		++asked;
+		return true;
+	}));
+	EXPECT_LT(asked, 100);
+}
+
 TEST(Mend, LeavesOutFacesThatAreNotFinite)
 {
 	shapes::Soup soup = shapes::sphere(3);

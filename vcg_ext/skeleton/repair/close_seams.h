@@ -9,6 +9,7 @@
 
 #include <skeleton/core/disjoint_sets.h>
 #include <skeleton/core/progress.h>
+#include <skeleton/core/ticker.h>
 #include <skeleton/input/soup_repair.h>
 #include <skeleton/mesh/surface_mesh.h>
 #include <skeleton/spatial/triangle_tree.h>
@@ -76,9 +77,15 @@ inline ClosedSeams closeSeams(const std::vector<Point3d>& points, std::vector<Tr
 			detail::borderEdges(points.size(), triangles, part.part(0, 0.5));
 		if (border.empty())
 			break;
+		// Both ends: the faces may not be oriented coherently yet.
 		std::vector<Triangle> segments;
-		for (const detail::BorderEdge& e : border)
+		std::vector<int> ends;
+		for (const detail::BorderEdge& e : border) {
 			segments.push_back({e.from, e.to, e.to});
+			ends.insert(ends.end(), {e.from, e.to});
+		}
+		std::sort(ends.begin(), ends.end());
+		ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
 		const TriangleTree tree(points, segments, part.part(0.5, 0.7));
 		const auto length = [&](int e) {
 			return Distance(
@@ -95,41 +102,41 @@ inline ClosedSeams closeSeams(const std::vector<Point3d>& points, std::vector<Tr
 			}
 		std::vector<std::vector<std::pair<double, int>>> onEdge(border.size());
 		int merged = 0, junctions = 0;
-		detail::reportedLoop(
-			int(border.size()), part.part(0.7, 1), detail::repairing, [&](int own) {
-				const int v = border[size_t(own)].from;
-				const Point3d& p = points[size_t(v)];
-				const double reach = nearness * shortest[size_t(v)];
-				Box3d box;
-				box.Add(p);
-				box.Offset(reach);
-				int lowest = v, edge = -1;
-				double nearest = reach, at = 0;
-				tree.forEachFaceIn(box, [&](int e) {
-					const auto [a, b, unused] = segments[size_t(e)];
-					(void)unused;
-					if (a == v || b == v)
-						return;
-					const double whole = length(e), maximum = std::min(reach, nearness * whole);
-					for (int w : {a, b})
-						if (Distance(points[size_t(w)], p)
-							<= std::min(maximum, nearness * shortest[size_t(w)]))
-							lowest = std::min(lowest, w);
-					const Point3d along = points[size_t(b)] - points[size_t(a)];
-					const double t =
-						whole > 0 ? (p - points[size_t(a)]) * along / (whole * whole) : 0;
-					const double away = Distance(p, points[size_t(a)] + along * t);
-					if (t > nearness && t < 1 - nearness && away <= maximum && away < nearest) {
-						nearest = away;
-						edge = e;
-						at = t;
-					}
-				});
-				if (lowest != v)
-					merged += vertices.join(lowest, v);
-				else if (edge >= 0)
-					onEdge[size_t(edge)].emplace_back(at, v);
+		detail::Ticker visits(part.cancelOnly(), detail::repairing, double(border.size()));
+		detail::reportedLoop(int(ends.size()), part.part(0.7, 1), detail::repairing, [&](int i) {
+			const int v = ends[size_t(i)];
+			const Point3d& p = points[size_t(v)];
+			const double reach = nearness * shortest[size_t(v)];
+			Box3d box;
+			box.Add(p);
+			box.Offset(reach);
+			int lowest = v, edge = -1;
+			double nearest = reach, at = 0;
+			tree.forEachFaceIn(box, [&](int e) {
+				visits.tick();
+				const auto [a, b, unused] = segments[size_t(e)];
+				(void)unused;
+				if (a == v || b == v)
+					return;
+				const double whole = length(e), maximum = std::min(reach, nearness * whole);
+				for (int w : {a, b})
+					if (Distance(points[size_t(w)], p)
+						<= std::min(maximum, nearness * shortest[size_t(w)]))
+						lowest = std::min(lowest, w);
+				const Point3d along = points[size_t(b)] - points[size_t(a)];
+				const double t = whole > 0 ? (p - points[size_t(a)]) * along / (whole * whole) : 0;
+				const double away = Distance(p, points[size_t(a)] + along * t);
+				if (t > nearness && t < 1 - nearness && away <= maximum && away < nearest) {
+					nearest = away;
+					edge = e;
+					at = t;
+				}
 			});
+			if (lowest != v)
+				merged += vertices.join(lowest, v);
+			else if (edge >= 0)
+				onEdge[size_t(edge)].emplace_back(at, v);
+		});
 		std::vector<char> cut(triangles.size(), 0);
 		for (size_t e = 0; e < border.size(); ++e) {
 			auto& inserted = onEdge[e];
