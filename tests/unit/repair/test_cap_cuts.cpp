@@ -162,6 +162,36 @@ TEST(CapCuts, LeavesTheCutOfAWall)
 	EXPECT_FALSE(made.surface.closed && made.volume > 1.5);
 }
 
+TEST(CapCuts, LooksAtTheOwnPieceAndTheBordersNearby)
+{
+	// So many pots that the square of their number would take most of a minute.
+	constexpr int rows = 150;
+	const shapes::Soup pot = cutSoup(shapes::box(), {0, 0, 1}, {0, 0, 0.9});
+	shapes::Soup pots;
+	for (int i = 0; i < rows * rows; ++i) {
+		const int first = int(pots.points.size());
+		for (const Point3d& p : pot.points)
+			pots.points.push_back(p + Point3d(2 * (i % rows), 2 * (i / rows), 0));
+		for (const Triangle& t : pot.triangles)
+			pots.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+	}
+	// In the opening of the first one there is the border of another piece.
+	const int first = int(pots.points.size());
+	for (const Point3d& p : {Point3d(0.4, 0.4, 1), Point3d(0.6, 0.4, 1), Point3d(0.5, 0.5, 0.5)})
+		pots.points.push_back(p);
+	pots.triangles.push_back({first, first + 1, first + 2});
+	const size_t before = pots.triangles.size();
+	const std::vector<int> partner =
+		detail::pairedHalfEdges(pots.points, pots.triangles, nullptr, Progress());
+	EXPECT_EQ(capCuts(pots.points, pots.triangles, partner), rows * rows - 1);
+	EXPECT_EQ(pots.triangles.size(), before + 2 * (rows * rows - 1));
+	for (size_t f = before; f < pots.triangles.size(); ++f)
+		for (int v : pots.triangles[f]) {
+			EXPECT_EQ(pots.points[size_t(v)][2], 1);
+			EXPECT_GE(v, int(pot.points.size()));
+		}
+}
+
 TEST(CapCuts, StopsWhenAsked)
 {
 	const shapes::Soup soup = cutSoup(shapes::sphere(5), {0, 0, 1});

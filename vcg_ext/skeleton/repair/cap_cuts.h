@@ -20,6 +20,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <utility>
@@ -173,14 +174,16 @@ struct PlaneCut
  * @param triangles coherently oriented, parted by partSurface(); get the caps at their end.
  * @param partner   as PartedSurface has it.
  * @return the number of openings closed.
- * @throws Cancelled. Complexity: O(F log F), and O(F + b n) for a border of n edges, of b in all.
+ * @throws Cancelled. Complexity: O(F log F), and O(f + n (n + b)) for a border of n edges in a piece
+ * of f faces, with b vertices of borders in its box.
  */
 inline int capCuts(const std::vector<Point3d>& points, std::vector<Triangle>& triangles,
 	const std::vector<int>& partner, const CutLimits& limits = CutLimits(),
 	const Progress& progress = Progress())
 {
 	using namespace detail;
-	const std::vector<std::vector<int>> loops = holeLoops(points, triangles, partner);
+	const std::vector<std::vector<int>> loops =
+		holeLoops(points, triangles, partner, progress.cancelOnly());
 	if (loops.empty())
 		return 0;
 	const std::vector<int> piece = pieceOfFaces(partner);
@@ -203,6 +206,15 @@ inline int capCuts(const std::vector<Point3d>& points, std::vector<Triangle>& tr
 	std::set<std::pair<int, int>> edges = edgesBetween(triangles, onBorder);
 	const std::vector<Triangle> given = triangles;
 	const TriangleTree tree(points, given, progress.part(0, 0.3));
+	std::vector<Triangle> borderPoints; // as triangles, to be searched by boxes
+	for (int v = 0; v < int(points.size()); ++v)
+		if (onBorder[size_t(v)])
+			borderPoints.push_back({v, v, v});
+	const TriangleTree borders(points, borderPoints, progress.cancelOnly());
+	std::vector<int> byPiece(given.size());
+	std::iota(byPiece.begin(), byPiece.end(), 0);
+	std::stable_sort(byPiece.begin(), byPiece.end(),
+		[&](int f, int g) { return piece[size_t(f)] < piece[size_t(g)]; });
 	const Progress capping = progress.part(0.3, 1);
 	int closed = 0;
 	for (size_t i = 0; i < cuts.size(); ++i) {
@@ -210,25 +222,33 @@ inline int capCuts(const std::vector<Point3d>& points, std::vector<Triangle>& tr
 		const PlaneCut& cut = cuts[i];
 		const size_t whose = size_t(*cut.border.pieces.begin());
 		double lowest = 0, highest = 0;
-		for (size_t f = 0; f < given.size(); ++f)
-			if (size_t(piece[f]) == whose)
-				for (int v : given[f]) {
-					const double height = cut.height(points[size_t(v)]);
-					lowest = std::min(lowest, height);
-					highest = std::max(highest, height);
-				}
+		for (auto f = std::partition_point(byPiece.begin(), byPiece.end(),
+				 [&](int g) { return size_t(piece[size_t(g)]) < whose; });
+			 f != byPiece.end() && size_t(piece[size_t(*f)]) == whose; ++f)
+			for (int v : given[size_t(*f)]) {
+				const double height = cut.height(points[size_t(v)]);
+				lowest = std::min(lowest, height);
+				highest = std::max(highest, height);
+			}
 		if (std::min(highest, -lowest) > cut.tolerance
 			|| area[whose] < limits.surface * (capped[whose] + cut.area))
 			continue;
 		std::vector<Point2d> polygon;
-		for (const Point3d& q : cut.border.points)
+		Box3d around;
+		for (const Point3d& q : cut.border.points) {
 			polygon.push_back(cut.inPlane(q));
+			around.Add(q);
+		}
+		// The border itself may be as far from the plane, on its other side.
+		around.Offset(3 * cut.tolerance);
 		const std::set<int> own(cut.border.corners.begin(), cut.border.corners.end());
 		bool fits = true;
-		for (int v = 0; fits && v < int(points.size()); ++v)
-			fits = !onBorder[size_t(v)] || own.count(v)
-				|| std::abs(cut.height(points[size_t(v)])) > cut.tolerance
-				|| !isInPolygon(cut.inPlane(points[size_t(v)]), polygon);
+		borders.forEachFaceIn(around, [&](int i) {
+			const int v = borderPoints[size_t(i)][0];
+			fits = fits
+				&& (own.count(v) || std::abs(cut.height(points[size_t(v)])) > cut.tolerance
+					|| !isInPolygon(cut.inPlane(points[size_t(v)]), polygon));
+		});
 		if (!fits)
 			continue;
 		// Where the surface is steep, the teeth of a jagged border overhang: projected to the plane
