@@ -12,6 +12,8 @@
 #include <cmath>
 #include <functional>
 #include <random>
+#include <set>
+#include <vector>
 
 using namespace vcg::tri::mcf;
 using vcg::Point3d;
@@ -166,13 +168,13 @@ TEST(BridgeGaps, AHoleInASideIsNoEnd)
 }
 
 /// Limbs of these headings around the origin, without what is nearer to it than `gap`.
-shapes::Soup limbsAround(const std::vector<double>& degrees, double gap)
+shapes::Soup limbsAround(const std::vector<double>& degrees, double gap, int sides = 24)
 {
 	shapes::Soup limbs;
 	for (double angle : degrees) {
 		const double c = std::cos(angle * M_PI / 180), s = std::sin(angle * M_PI / 180);
 		const shapes::Soup limb =
-			shapes::transformed(without(shapes::moved(shapes::capsule(4, 0.2, 24), {2.5, 0, 0}),
+			shapes::transformed(without(shapes::moved(shapes::capsule(4, 0.2, sides), {2.5, 0, 0}),
 									[&](const Point3d& p) { return p[0] < gap; }),
 				[&](const Point3d& p) {
 					return Point3d(c * p[0] - s * p[1], s * p[0] + c * p[1], p[2]);
@@ -233,6 +235,83 @@ TEST(BridgeGaps, ALimbThatLeadsIntoAWideHole)
 	};
 	EXPECT_EQ(mended(shapes::joined({body, limbAt(0.3)})).gaps, 1);
 	EXPECT_EQ(mended(shapes::joined({body, limbAt(1.2)})).gaps, 0);
+}
+
+TEST(BridgeGaps, ALimbLeadsIntoAWideHoleInAnyDirection)
+{
+	// More than 120 of its radii away.
+	const shapes::Soup body = without(shapes::sphere(4, 2),
+		[](const Point3d& p) { return p[0] > 0 && std::hypot(p[1], p[2]) < 0.6; });
+	const shapes::Soup limb = shapes::moved(
+		without(shapes::capsule(6, 0.1, 24), [](const Point3d& p) { return p[0] < -2.8; }),
+		{18, 0, 0});
+	const shapes::Soup torn = shapes::joined({body, limb});
+	EXPECT_EQ(mended(torn).gaps, 1);
+	EXPECT_EQ(mended(shapes::transformed(
+						 torn, [](const Point3d& p) { return Point3d(p[1], p[2], p[0]); }))
+				  .gaps,
+		1);
+}
+
+TEST(BridgeGaps, OnlyLimbsWithinReachAreCompared)
+{
+	// Short tubes in rows along x: the next one in the row is within three diagonals, others are
+	// within 60 radii.
+	constexpr int rows = 20;
+	std::vector<detail::LimbEnd> ends;
+	for (int i = 0; i < rows * rows * rows; ++i)
+		for (double side : {-1, 1}) {
+			detail::LimbEnd end;
+			end.piece = i;
+			end.pieceDiagonal = 1;
+			end.centre =
+				Point3d(3 * (i % rows) + 0.5 * side, 3 * (i / rows % rows), 3 * (i / rows / rows));
+			end.radius = 0.5;
+			end.heading = end.out = Point3d(side, 0, 0);
+			end.isCutThrough = true;
+			ends.push_back(end);
+		}
+	int asked = 0;
+	const auto facing =
+		detail::facingEnds(ends, GapLimits(), Progress([&](int, const char*) { return ++asked; }));
+	EXPECT_EQ(facing.size(), size_t(2 * (rows - 1) * rows * rows));
+	for (const auto& [apart, a, b] : facing) {
+		EXPECT_EQ(apart, 2);
+		EXPECT_EQ(std::min(a, b) % 2, 1);
+		EXPECT_EQ(std::abs(a - b), 1);
+	}
+	EXPECT_LT(asked, 100); // once in some 30,000 pairs, of 3e8
+}
+
+TEST(BridgeGaps, AThousandLostJunctionsAreBridged)
+{
+	// So many that the cube of their number would take most of a minute.
+	constexpr int rows = 32;
+	const shapes::Soup one = limbsAround({0, 100, 210}, 0.9, 6);
+	shapes::Soup many;
+	for (int i = 0; i < rows * rows; ++i) {
+		const int first = int(many.points.size());
+		for (const Point3d& p : one.points)
+			many.points.push_back(p + Point3d(30 * (i % rows), 30 * (i / rows), 0));
+		for (const Triangle& t : one.triangles)
+			many.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+	}
+	const std::vector<int> partner =
+		detail::pairedHalfEdges(many.points, many.triangles, nullptr, Progress());
+	EXPECT_EQ(bridgeGaps(many.points, many.triangles, partner, {}), 2 * rows * rows);
+	const std::vector<int> joined =
+		detail::pairedHalfEdges(many.points, many.triangles, nullptr, Progress());
+	const std::vector<int> piece = detail::pieceOfFaces(joined);
+	EXPECT_EQ(std::set<int>(piece.begin(), piece.end()).size(), size_t(rows * rows));
+	EXPECT_EQ(std::count(joined.begin(), joined.end(), -1), 0);
+}
+
+TEST(BridgeGaps, AsksToCancel)
+{
+	std::vector<detail::LimbEnd> ends(2);
+	EXPECT_THROW(
+		detail::facingEnds(ends, GapLimits(), Progress([](int, const char*) { return false; })),
+		Cancelled);
 }
 
 } // namespace

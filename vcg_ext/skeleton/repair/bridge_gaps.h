@@ -13,12 +13,14 @@
 
 #include <skeleton/core/disjoint_sets.h>
 #include <skeleton/core/progress.h>
+#include <skeleton/core/ticker.h>
+#include <skeleton/input/soup_repair.h>
 #include <skeleton/mesh/surface_mesh.h>
 #include <skeleton/spatial/triangle_tree.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <map>
 #include <optional>
 #include <set>
 #include <tuple>
@@ -60,16 +62,70 @@ inline Point3d headingTo(const LimbEnd& other, const LimbEnd& end)
 	return (end.out - end.heading) * (other.centre - end.centre) > 0 ? end.out : end.heading;
 }
 
+/// Cut limbs, to be searched for those within whose reach something is.
+class LimbReaches
+{
+public:
+	/// @param reachOf  reachOf(end), mesh units. @throws Cancelled
+	template <class ReachOf>
+	LimbReaches(
+		const std::vector<LimbEnd>& ends, const ReachOf& reachOf, const Progress& progress) :
+			ticker(progress.cancelOnly(), repairing, double(ends.size()))
+	{
+		constexpr double rounding = 1e-6;
+		for (size_t i = 0; i < ends.size(); ++i) {
+			const double reach = (1 + rounding) * reachOf(ends[i]);
+			if (!ends[i].isCutThrough || !std::isfinite(reach))
+				continue;
+			const int low = int(corners.size());
+			for (double side : {-reach, reach})
+				corners.push_back(ends[i].centre + Point3d(side, side, side));
+			boxes.push_back({low, low + 1, low + 1});
+			limbs.push_back(int(i));
+		}
+		tree.emplace(corners, boxes, progress.cancelOnly());
+	}
+	LimbReaches(const LimbReaches&) = delete;
+	LimbReaches& operator=(const LimbReaches&) = delete;
+
+	/// Calls visit(number of the end) for each limb with some of a box within its reach, and for
+	/// some others. @throws Cancelled
+	template <class Visit>
+	void forEachReaching(const Box3d& box, const Visit& visit)
+	{
+		tree->forEachFaceIn(box, [&](int i) {
+			ticker.tick();
+			visit(limbs[size_t(i)]);
+		});
+	}
+
+private:
+	std::vector<Point3d> corners;
+	std::vector<Triangle> boxes; ///< about the limbs, by two opposite corners
+	std::vector<int> limbs;      ///< the end of each box
+	std::optional<TriangleTree> tree;
+	Ticker ticker;
+};
+
 /// Pairs of ends that face each other, nearest first: distance over the cosine of the larger angle,
-/// and their numbers, a cut limb first. Complexity: O(n^2) where n ends are close along x.
-inline std::vector<std::tuple<double, int, int>> facingEnds(
-	const std::vector<LimbEnd>& ends, const GapLimits& limits)
+/// and their numbers, a cut limb first. @throws Cancelled
+/// Complexity: O(n log n + p log p) for n ends, p of the pairs being within reach.
+inline std::vector<std::tuple<double, int, int>> facingEnds(const std::vector<LimbEnd>& ends,
+	const GapLimits& limits, const Progress& progress = Progress())
 {
 	const double straight = std::cos(limits.aside * M_PI / 180);
-	std::vector<int> byPlace(ends.size());
-	std::iota(byPlace.begin(), byPlace.end(), 0);
-	std::stable_sort(byPlace.begin(), byPlace.end(),
-		[&](int a, int b) { return ends[size_t(a)].centre[0] < ends[size_t(b)].centre[0]; });
+	double widestHole = 0;
+	for (const LimbEnd& end : ends)
+		if (!end.isCutThrough)
+			widestHole = std::max(widestHole, end.radius);
+	LimbReaches reaches(
+		ends,
+		[&](const LimbEnd& end) {
+			const double widest = std::max(limits.wider * end.radius, widestHole);
+			return std::min(std::max(limits.apart, limits.inOnePiece) * (end.radius + widest) / 2,
+				limits.ofPiece * end.pieceDiagonal);
+		},
+		progress);
 	std::vector<std::tuple<double, int, int>> facing;
 	const auto look = [&](int i, int k) {
 		const LimbEnd &a = ends[size_t(i)], &b = ends[size_t(k)];
@@ -86,16 +142,9 @@ inline std::vector<std::tuple<double, int, int>> facingEnds(
 		if (std::min(ofA, ofB) >= straight)
 			facing.emplace_back(gap / std::min(ofA, ofB), i, k);
 	};
-	for (size_t at = 0; at < byPlace.size(); ++at) {
-		const LimbEnd& a = ends[size_t(byPlace[at])];
-		if (!a.isCutThrough)
-			continue;
-		const double reach = limits.apart * a.radius * (1 + limits.wider) / 2;
-		for (size_t k = at + 1;
-			 k < byPlace.size() && ends[size_t(byPlace[k])].centre[0] - a.centre[0] <= reach; ++k)
-			look(byPlace[at], byPlace[k]);
-		for (size_t k = at; k-- > 0 && a.centre[0] - ends[size_t(byPlace[k])].centre[0] <= reach;)
-			look(byPlace[at], byPlace[k]);
+	for (int k = 0; k < int(ends.size()); ++k) {
+		const Point3d& centre = ends[size_t(k)].centre;
+		reaches.forEachReaching(Box3d(centre, centre), [&](int i) { look(i, k); });
 	}
 	std::sort(facing.begin(), facing.end());
 	return facing;
@@ -106,8 +155,8 @@ class GapBridges
 {
 public:
 	GapBridges(std::vector<Point3d>& points, std::vector<Triangle>& triangles,
-		const std::vector<int>& partner, const std::vector<char>& isSpeck,
-		const GapLimits& limits) :
+		const std::vector<int>& partner, const std::vector<char>& isSpeck, const GapLimits& limits,
+		const Progress& progress) :
 			points(points),
 			triangles(triangles), limits(limits), piece(pieceOfFaces(partner)),
 			pieces(int(piece.size()))
@@ -116,7 +165,8 @@ public:
 		for (size_t f = 0; f < piece.size(); ++f)
 			for (int v : triangles[f])
 				box[size_t(piece[f])].Add(points[size_t(v)]);
-		for (const std::vector<int>& loop : holeLoops(points, triangles, partner)) {
+		for (const std::vector<int>& loop :
+			holeLoops(points, triangles, partner, progress.cancelOnly())) {
 			if (loop.size() < 3 || int(loop.size()) > limits.edges)
 				continue;
 			LimbEnd end = limbEnd(points, triangles, partner, loop);
@@ -133,7 +183,8 @@ public:
 	{
 		const char* const what = "Bridging gaps";
 		progress.report(0.2, what);
-		const std::vector<std::tuple<double, int, int>> facing = facingEnds(ends, limits);
+		const std::vector<std::tuple<double, int, int>> facing =
+			facingEnds(ends, limits, progress.cancelOnly());
 		if (facing.empty())
 			return 0;
 		given = triangles;
@@ -217,52 +268,83 @@ private:
 		return true;
 	}
 
-	/// Where a junction was lost, joins the ends that are left to tubes between others.
+	bool areApart(const LimbEnd& end, size_t tube)
+	{
+		return pieces.find(end.piece) != pieces.find(pieceOfTube[tube]);
+	}
+
+	double reachOf(const LimbEnd& end) const
+	{
+		return std::min(limits.apart * end.radius, limits.ofPiece * end.pieceDiagonal);
+	}
+
+	/// A limb that faces a tube: distance over the cosine of the angle, end, tube, and its ring in
+	/// the direction closest to the end's heading.
+	using FacingTube = std::tuple<double, int, size_t, size_t>;
+
+	std::optional<FacingTube> facingTube(int i, size_t t) const
+	{
+		const LimbEnd& end = ends[size_t(i)];
+		if (end.radius > limits.wider * tubes[t].radius)
+			return std::nullopt;
+		const double reach = reachOf(end);
+		double best = -1;
+		size_t ring = 0;
+		const size_t rings = tubes[t].path.size(), skipped = rings > 2 ? 1 : 0;
+		for (size_t k = skipped; k + skipped < rings; ++k) {
+			const Point3d apart = tubes[t].path[k] - end.centre;
+			if (const double gap = apart.Norm();
+				gap > 0 && gap <= reach && end.heading * apart > best * gap) {
+				best = end.heading * apart / gap;
+				ring = k;
+			}
+		}
+		if (!(best >= std::cos(limits.aside * M_PI / 180)))
+			return std::nullopt;
+		return FacingTube((tubes[t].path[ring] - end.centre).Norm() / best, i, t, ring);
+	}
+
+	/// Where a junction was lost, joins the ends that are left to tubes between others, the nearest
+	/// first, the new tubes included.
 	void joinToTubes(const Progress& progress)
 	{
-		const double straight = std::cos(limits.aside * M_PI / 180);
-		for (bool found = true; found;) {
-			found = false;
-			std::vector<std::tuple<double, int, size_t, size_t>> facing; // end, tube, ring
-			for (size_t i = 0; i < ends.size(); ++i) {
-				const LimbEnd& end = ends[i];
-				if (!end.isCutThrough || !isFree(end))
+		LimbReaches reaches(
+			ends, [&](const LimbEnd& end) { return reachOf(end); }, progress);
+		std::set<FacingTube> facing;
+		size_t seen = 0; // tubes
+		const auto lookAtNewTubes = [&] {
+			for (; seen < tubes.size(); ++seen) {
+				Box3d box;
+				for (const Point3d& p : tubes[seen].path)
+					box.Add(p);
+				if (box.IsNull())
 					continue;
-				for (size_t t = 0; t < tubes.size(); ++t) {
-					if (pieces.find(end.piece) == pieces.find(pieceOfTube[t])
-						|| end.radius > limits.wider * tubes[t].radius)
-						continue;
-					// The ring in the direction closest to the end's heading.
-					double best = -1;
-					size_t ring = 0;
-					const size_t rings = tubes[t].path.size(), skipped = rings > 2 ? 1 : 0;
-					for (size_t k = skipped; k + skipped < rings; ++k) {
-						const Point3d apart = tubes[t].path[k] - end.centre;
-						if (const double gap = apart.Norm(); gap > 0
-							&& gap <= std::min(
-								   limits.apart * end.radius, limits.ofPiece * end.pieceDiagonal)
-							&& end.heading * apart > best * gap) {
-							best = end.heading * apart / gap;
-							ring = k;
-						}
-					}
-					if (best >= straight)
-						facing.emplace_back(
-							(tubes[t].path[ring] - end.centre).Norm() / best, int(i), t, ring);
-				}
+				reaches.forEachReaching(box, [&](int i) {
+					if (areApart(ends[size_t(i)], seen) && isFree(ends[size_t(i)]))
+						if (const auto found = facingTube(i, seen))
+							facing.insert(*found);
+				});
 			}
-			std::sort(facing.begin(), facing.end());
-			for (const auto& [apart, i, t, ring] : facing) {
-				progress.report(0.8, "Bridging gaps");
-				std::vector<Triangle> around;
-				LimbEnd hole = holeInWall(points, tubes[t], ring, ends[size_t(i)], around);
-				hole.piece = pieceOfTube[t];
-				if (hole.corner.empty() || !join(ends[size_t(i)], hole))
-					continue;
-				tubes[t].faces = std::move(around);
-				found = true;
-				break;
+		};
+		std::map<size_t, std::vector<FacingTube>> failed; // by tube
+		for (lookAtNewTubes(); !facing.empty(); lookAtNewTubes()) {
+			progress.report(0.8, "Bridging gaps");
+			const FacingTube nearest = *facing.begin();
+			facing.erase(facing.begin());
+			const auto& [apart, i, t, ring] = nearest;
+			if (!areApart(ends[size_t(i)], t) || !isFree(ends[size_t(i)]))
+				continue;
+			std::vector<Triangle> around;
+			LimbEnd hole = holeInWall(points, tubes[t], ring, ends[size_t(i)], around);
+			hole.piece = pieceOfTube[t];
+			if (hole.corner.empty() || !join(ends[size_t(i)], hole)) {
+				failed[t].push_back(nearest);
+				continue;
 			}
+			tubes[t].faces = std::move(around);
+			// In the wall that is left, holes for others may be elsewhere.
+			facing.insert(failed[t].begin(), failed[t].end());
+			failed.erase(t);
 		}
 	}
 };
@@ -281,13 +363,13 @@ private:
  * @param isSpeck   for each face whether its piece is to be dropped unless it is joined to others:
  *                  such a piece is joined only if both ends are cut through. Empty: none is.
  * @return the number of tubes. @throws Cancelled.
- * Complexity: O(F log F + n^2) for n ends, and O(n^2) for each limb that is joined to a tube.
+ * Complexity: O(F log F + p log p) for p pairs of a limb with an end or a tube within its reach.
  */
 inline int bridgeGaps(std::vector<Point3d>& points, std::vector<Triangle>& triangles,
 	const std::vector<int>& partner, const std::vector<char>& isSpeck,
 	const GapLimits& limits = GapLimits(), const Progress& progress = Progress())
 {
-	return detail::GapBridges(points, triangles, partner, isSpeck, limits).run(progress);
+	return detail::GapBridges(points, triangles, partner, isSpeck, limits, progress).run(progress);
 }
 
 } // namespace vcg::tri::mcf
