@@ -70,3 +70,10 @@ TEST(CurveSkeleton, LengthIsTheSumOfTheEdges)
 	s.position[2] = Point3d(1, 3, 4);
 	EXPECT_DOUBLE_EQ(statistics(s).length, 1 + 5);
 }
+
+TEST(CurveSkeleton, TheMajorityOfItsVerticesTellsTheComponentOfACurve)
+{
+	CurveSkeleton s = graph(6, {{0, 1}, {2, 3}});
+	s.node = {2, 0, 1, 0, 3, 3, 4, -1};
+	EXPECT_EQ(componentOfNodes(s, {0, 0, 0, 0, 1, 1, 1, 1}), std::vector<int>({0, 0, 1, 1, 1, -1}));
+}

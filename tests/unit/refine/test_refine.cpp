@@ -1034,6 +1034,34 @@ TEST(Refine, RefinesEachComponentAsIfItWereAlone)
 	}
 }
 
+TEST(Refine, VerticesWithANodeOfAnotherBodyGoToTheNearestOfTheirOwn)
+{
+	// A fat ball beside a rod: the ball's vertices that face the rod are nearer to the rod's nodes.
+	const shapes::Soup rod = shapes::capsule(3, 0.1, 24);
+	const shapes::Soup ball = shapes::moved(shapes::sphere(3), Point3d(0, 1.2, 0));
+	CurveMaker maker =
+		CurveMaker().line({-1.4, 0, 0}, {1.4, 0, 0}, 40).line({0, 1.2, 0}, {0.01, 1.2, 0}, 1);
+	for (const auto& parts : {std::vector {ball, rod}, std::vector {rod, ball}}) {
+		const SurfaceMesh mesh = shapes::joined({parts[0], parts[1]}).mesh();
+		const CurveSkeleton given = maker.in(mesh);
+		const std::vector<int> component = connectedComponents(mesh);
+		const std::vector<int> ofGiven = componentOfNodes(given, component);
+		int crossing = 0;
+		for (size_t v = 0; v < given.node.size(); ++v)
+			crossing += ofGiven[given.node[v]] != component[v];
+		ASSERT_GT(crossing, 50);
+		const Refinement refined = refineChecked(given, mesh);
+		const CurveSkeleton& s = refined.skeleton;
+		EXPECT_EQ(checks::skeletonError(s), "");
+		EXPECT_EQ(refined.report.refined, 2);
+		const std::vector<int> ofNode = componentOfNodes(s, component);
+		for (size_t v = 0; v < s.node.size(); ++v) {
+			ASSERT_GE(s.node[v], 0);
+			EXPECT_EQ(ofNode[s.node[v]], component[v]);
+		}
+	}
+}
+
 TEST(Refine, KeepsTheEdgeOfABallsSkeleton)
 {
 	const SurfaceMesh mesh = shapes::sphere(3).mesh();

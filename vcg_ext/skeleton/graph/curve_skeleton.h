@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <vector>
 
 namespace vcg::tri::mcf {
@@ -102,31 +103,44 @@ inline SkeletonStatistics statistics(const CurveSkeleton& skeleton)
 
 /**
  * The component of the surface that each node belongs to; -1 for parts of the graph into which
- * no vertex has merged.
+ * no vertex has merged. Where vertices of several components have merged into one connected part,
+ * as of bodies whose vertices went to the nearest node of any, the majority decides.
  * @param component of each vertex of the surface. Complexity: O(E log E + surface vertices).
  */
 inline std::vector<int> componentOfNodes(
 	const CurveSkeleton& curve, const std::vector<int>& component)
 {
 	const std::vector<std::vector<int>> neighbours = curve.neighbours();
-	std::vector<int> ofNode(curve.position.size(), -1);
-	std::vector<int> stack;
-	for (size_t s = 0; s < curve.node.size(); ++s) {
-		const int seed = curve.node[s];
-		if (seed < 0 || ofNode[seed] >= 0)
+	std::vector<int> part(curve.position.size(), -1);
+	int parts = 0;
+	for (int seed = 0; seed < int(part.size()); ++seed) {
+		if (part[seed] >= 0)
 			continue;
-		ofNode[seed] = component[s];
-		stack.push_back(seed);
-		while (!stack.empty()) {
+		part[seed] = parts;
+		for (std::vector<int> stack(1, seed); !stack.empty();) {
 			const int v = stack.back();
 			stack.pop_back();
 			for (int w : neighbours[v])
-				if (ofNode[w] < 0) {
-					ofNode[w] = component[s];
+				if (part[w] < 0) {
+					part[w] = parts;
 					stack.push_back(w);
 				}
 		}
+		++parts;
 	}
+	std::vector<std::map<int, int>> votes(static_cast<size_t>(parts));
+	for (size_t s = 0; s < curve.node.size(); ++s)
+		if (curve.node[s] >= 0)
+			++votes[part[curve.node[s]]][component[s]];
+	std::vector<int> ofPart;
+	for (const std::map<int, int>& count : votes) {
+		const auto maximum = std::max_element(count.begin(), count.end(),
+			[](const auto& a, const auto& b) { return a.second < b.second; });
+		ofPart.push_back(maximum == count.end() ? -1 : maximum->first);
+	}
+	std::vector<int> ofNode;
+	for (int own : part)
+		ofNode.push_back(ofPart[own]);
 	return ofNode;
 }
 

@@ -32,6 +32,7 @@
 #include <skeleton/poles/poles.h>
 #include <skeleton/poles/sizing_field.h>
 #include <skeleton/spatial/closest_surface.h>
+#include <skeleton/spatial/point_tree.h>
 #include <skeleton/spatial/solid_test.h>
 
 #include <algorithm>
@@ -544,8 +545,8 @@ inline Defect refineChecked(CurveSkeleton& refined, ClosestSurface& surface,
  * At last the branches below the detail are removed: nothing else depends on it, so that a skeleton
  * of less detail is a part of one of more. The result depends on the shape of each component only,
  * not on its size and place. Each surface vertex goes to a nearest node, by descent along the graph
- * from what its node has become; the radius is measured anew, as the mean distance to these
- * vertices.
+ * from what its node has become; one whose node belongs to another component goes to the nearest of
+ * its own. The radius is measured anew, as the mean distance to these vertices.
  *
  * @param curve       its `node` has an entry for each vertex of `surface`.
  * @param surface     closed triangle mesh of any number of components, compact.
@@ -644,11 +645,15 @@ inline Refinement refineChecked(const CurveSkeleton& curve, const SurfaceMesh& s
 		const std::vector<std::vector<int>> neighbours = part.neighbours();
 		const std::vector<int>& ids = vertices.ids[c];
 		std::vector<int> ofVertex(ids.size(), -1);
+		std::optional<PointTree> ownNodes;
 		detail::reportedLoop(int(ofVertex.size()), ofComponent.part(0.95, 1), what, [&](int i) {
-			const int s = ids[i];
-			if (curve.node[s] < 0)
+			const int s = ids[i], before = curve.node[s];
+			if (before < 0)
 				return;
-			const int node = part.node[number[curve.node[s]]];
+			if (componentOfNode[before] != c && !ownNodes)
+				ownNodes.emplace(part.position);
+			const int node = componentOfNode[before] == c ? part.node[number[before]]
+														  : ownNodes->nearest(unit.position[s]);
 			ofVertex[i] =
 				isRefined ? refining::nearestAlong(part, neighbours, node, unit.position[s]) : node;
 		});
