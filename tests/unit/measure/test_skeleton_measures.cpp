@@ -110,6 +110,37 @@ TEST(SkeletonMeasures, ASpurIsFound)
 	EXPECT_EQ(measured(s, capsule()).spurs, 1);
 }
 
+TEST(SkeletonMeasures, ASkeletonWithoutRadiiIsMeasuredAlike)
+{
+	CurveSkeleton s = axis();
+	addLine(s, 30, {0, 0.3, 0}, 1, 3);
+	const SkeletonMeasures expected = measured(s, capsule());
+	s.radius.clear();
+	const SkeletonMeasures m = measured(s, capsule());
+	EXPECT_EQ(m.spurs, 1);
+	EXPECT_EQ(m.medialMean, expected.medialMean);
+	EXPECT_EQ(m.nodeClearance, expected.nodeClearance);
+}
+
+TEST(SkeletonMeasures, OfANeedleThinnerThanAnyBallOfTheReferenceAreFinite)
+{
+	constexpr double radius = 5e-5;
+	const SurfaceMesh needle = shapes::capsule(1, radius, 12).mesh();
+	const auto measuredAt = [&](double aside) {
+		return measured(line({-0.45, aside, 0}, {0.45, aside, 0}, 1, 50), needle);
+	};
+	const SkeletonMeasures centred = measuredAt(0), outside = measuredAt(0.1);
+	EXPECT_EQ(centred.insideFraction, 1);
+	EXPECT_LT(centred.medialMax, radius / 2);
+	EXPECT_LT(centred.offCentreMean, 0.1);
+	for (double d : centred.nodeMedialDistance)
+		EXPECT_LT(d, radius / 2);
+	EXPECT_NEAR(outside.medialMean, 0.1, 2 * radius);
+	EXPECT_NEAR(outside.medialMax, 0.1, 2 * radius);
+	EXPECT_NEAR(outside.medialP95, 0.1, 2 * radius);
+	EXPECT_NEAR(outside.offCentreMean, 2, 1e-9);
+}
+
 TEST(SkeletonMeasures, CircleOfATorus)
 {
 	const SurfaceMesh torus = shapes::torus(3, 0.8, 192, 64).mesh();

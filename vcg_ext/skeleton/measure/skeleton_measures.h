@@ -75,15 +75,24 @@ struct MedialPlace
 /**
  * The place of the medial axis that is nearest to a point: among the balls of the reference, and
  * the ball that touches the surface at the point's closest point, so that the density of the
- * reference does not matter for points between the medial axis and the surface.
+ * reference does not matter for points between the medial axis and the surface. Of a shape that is
+ * too thin for any ball of the reference, the latter alone or, outside, the surface itself.
  */
 inline MedialPlace nearestMedial(const Point3d& x, const ClosestSurface::Hit& hit, bool inside,
 	const MedialReference& reference, const PointTree& centres, const ClosestSurface& surface)
 {
-	MedialPlace place = {std::numeric_limits<double>::max(), 0};
-	if (const int nearest = centres.nearest(x); nearest >= 0)
-		place = {Distance(x, reference.centre[nearest]), reference.radius[nearest]};
-	if (inside && hit.distance > 1e-7) {
+	constexpr double onSurface = 1e-7; // diagonals
+	constexpr double tolerance = 1e-3; // distances from the surface
+	const bool hasBall = inside && hit.distance > onSurface;
+	const int nearest = centres.nearest(x);
+	if (nearest < 0) {
+		if (!hasBall)
+			return {hit.distance, 0};
+		const double radius = surface.maximalBall(x, hit, tolerance * hit.distance, -1).radius;
+		return {std::abs(radius - hit.distance), radius};
+	}
+	MedialPlace place = {Distance(x, reference.centre[nearest]), reference.radius[nearest]};
+	if (hasBall) {
 		auto ball = TouchingBall::alone(hit.point, (hit.point - x) / hit.distance, 0.5);
 		shrinkExactly(ball, surface, hit.face);
 		const double own = std::abs(ball.radius - hit.distance);
@@ -133,6 +142,7 @@ inline int countSpurs(const CurveSkeleton& skeleton, const std::vector<double>& 
 {
 	constexpr double minimum = 0.1;
 	CurveSkeleton s = skeleton;
+	s.radius.resize(clearance.size());
 	for (size_t v = 0; v < clearance.size(); ++v)
 		s.radius[v] = std::max(clearance[v], 0.0);
 	const std::vector<std::vector<int>> neighbours = s.neighbours();
