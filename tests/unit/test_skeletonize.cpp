@@ -597,6 +597,33 @@ TEST(Skeletonize, OfSeveralComponentsOnlyTheThinOneIsContractedAsItIs)
 	}
 }
 
+TEST(Skeletonize, OfAttemptsWithinAttemptsOnlyTheStagesOfTheOneTakenAreSeen)
+{
+	// Curves only, without resampling, where both the sheets and the resampled surface are given up.
+	std::vector<int> seen;
+	Observer observer;
+	observer.every = 1;
+	observer.onStage = [&](const Stage& stage) { seen.push_back(stage.iteration); };
+	observer.onStartOver = [&] { seen.clear(); };
+	const auto made = [](int iteration) {
+		Stage stage;
+		stage.iteration = iteration;
+		return stage;
+	};
+	observer.onStage(made(1));
+	detail::Alternative curvesOnly(observer);
+	const Observer outer = curvesOnly.listener();
+	outer.onStage(made(2));
+	outer.onStage(made(3));
+	detail::Alternative asItIs(outer);
+	const Observer inner = asItIs.listener();
+	inner.onStage(made(4));
+	asItIs.take();
+	EXPECT_EQ(seen, std::vector<int>({1})) << "not yet taken";
+	curvesOnly.take();
+	EXPECT_EQ(seen, std::vector<int>({4}));
+}
+
 TEST(Skeletonize, SheetsThatWouldLeaveAThicketAreGivenUp)
 {
 	constexpr double breadth = 1, depth = 1, thickness = 2.5e-4; // 0.018 % of the diagonal

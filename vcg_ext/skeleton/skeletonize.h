@@ -312,6 +312,7 @@ public:
 		result.every = observer.every;
 		if (observer.onStage)
 			result.onStage = [&](Stage stage) { stages.push_back(std::move(stage)); };
+		result.onStartOver = [&] { stages.clear(); };
 		return result;
 	}
 
