@@ -329,6 +329,36 @@ TEST(MeanCurvatureSkeleton, CancelledOrRefusedLeavesBothMeshesAsTheyWere)
 	EXPECT_THROW(MeanCurvatureSkeleton<DoubleMesh>::Do(mesh, skeleton), mcf::InvalidInput);
 }
 
+TEST(MeanCurvatureSkeleton, AttributesOfAnotherTypeOnTheSkeletonAreRefused)
+{
+	DoubleMesh mesh;
+	fill(mesh, shapes::capsule());
+	MeanCurvatureSkeleton<DoubleMesh> run(mesh, coarse<DoubleMesh>());
+	run.Resample();
+	while (run.Step())
+		;
+	run.Collapse();
+	for (const char* name : {"mcfskel_radius", "mcfskel_significance", "mcfskel_bridge"}) {
+		DoubleMesh skeleton;
+		fill(skeleton, shapes::tetrahedron());
+		Allocator<DoubleMesh>::AddPerVertexAttribute<float>(skeleton, name);
+		for (bool byStages : {false, true})
+			try {
+				if (byStages)
+					run.GetSkeleton(skeleton);
+				else
+					MeanCurvatureSkeleton<DoubleMesh>::Do(mesh, skeleton, coarse<DoubleMesh>());
+				ADD_FAILURE() << name << " was taken";
+			}
+			catch (const mcf::InvalidInput& error) {
+				EXPECT_EQ(std::string(error.what()),
+					std::string("The mesh has a vertex attribute ") + name + " of another type.");
+			}
+		EXPECT_EQ(places(skeleton), shapes::tetrahedron().points);
+		EXPECT_TRUE(mesh.vert_attr.empty());
+	}
+}
+
 TEST(MeanCurvatureSkeleton, StagesOutOfOrderAreRefused)
 {
 	DoubleMesh mesh, skeleton;

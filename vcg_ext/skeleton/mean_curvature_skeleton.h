@@ -429,11 +429,13 @@ private:
 	void RequireCollapsed() const { Require(curve || sheets, "Collapse() comes first."); }
 
 	template <class SkeletonMesh>
-	static void RequireSkeletonMesh(const SkeletonMesh&, const Params& params)
+	static void RequireSkeletonMesh(const SkeletonMesh& skeleton, const Params& params)
 	{
 		Require(SkeletonMesh::EdgeType::HasEVAdjacency(), "The skeleton needs a mesh with edges.");
 		Require(!params.keep_sheets || SkeletonMesh::FaceType::HasFVAdjacency(),
 			"A skeleton with sheets needs a mesh with edges and faces.");
+		for (const char* name : {radiusAttribute, significanceAttribute, bridgeAttribute})
+			mcf::requireScalarAttribute(skeleton, name);
 	}
 
 	/// Makes stage 0, if there is no stage yet.
