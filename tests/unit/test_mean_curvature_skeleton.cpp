@@ -238,6 +238,46 @@ TEST(MeanCurvatureSkeleton, StageByStageIsTheSame)
 	EXPECT_EQ(scalars(mesh, "mcfskel_node"), node);
 }
 
+TEST(MeanCurvatureSkeleton, StageByStageIsTheSameWhereResamplingCutsCornersOrIsTooCoarse)
+{
+	struct Case
+	{
+		shapes::Soup soup;
+		double length;
+		bool isTooThin;
+	};
+	// Legs of a radius of half an edge, and a plate of eight vertices, too few to resolve it.
+	for (const Case& of : {Case {shapes::fromFile("animal450"), 0.06, false},
+			 Case {shapes::box(1, 0.7, 0.01), 0.03, true}}) {
+		mcf::Parameters parameters;
+		parameters.targetLength = of.length;
+		const mcf::ResampledSurface resampled = mcf::resampledSurface(of.soup.mesh(), parameters);
+		ASSERT_EQ(resampled.isTooThin, of.isTooThin);
+		DoubleMesh mesh, skeleton, bySteps;
+		fill(mesh, of.soup);
+		auto params = coarse<DoubleMesh>();
+		params.target_length = of.length;
+		MeanCurvatureSkeleton<DoubleMesh>::Do(mesh, skeleton, params);
+		const std::vector<double> node = scalars(mesh, "mcfskel_node");
+		MeanCurvatureSkeleton<DoubleMesh> run(mesh, params);
+		run.Resample();
+		while (run.Step())
+			;
+		run.Collapse();
+		run.Refine();
+		run.GetSkeleton(bySteps);
+		run.WriteNodes(mesh);
+		EXPECT_EQ(places(bySteps), places(skeleton));
+		EXPECT_EQ(edges(bySteps), edges(skeleton));
+		for (const char* name : {"mcfskel_radius", "mcfskel_significance"})
+			EXPECT_EQ(scalars(bySteps, name), scalars(skeleton, name));
+		EXPECT_EQ(scalars(mesh, "mcfskel_node"), node);
+		const mcf::SolidTest solid(of.soup.points, of.soup.triangles);
+		for (const Point3d& p : places(bySteps))
+			EXPECT_TRUE(solid.isInside(solid.in(p)));
+	}
+}
+
 TEST(MeanCurvatureSkeleton, KeepsSheetsAsFaces)
 {
 	DoubleMesh mesh, skeleton;

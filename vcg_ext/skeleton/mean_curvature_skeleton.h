@@ -48,10 +48,8 @@ namespace vcg::tri {
  * run.WriteNodes(mesh);
  * \endcode
  *
- * Both ways make the same stages, to the last bit, unless the shape is too thin for its resampled
- * surface. Do() alone tries a second way where the first fails, see mcf::skeletonize(), brings what
- * the refined curve has outside the input back inside, see mcf::bringInsideInput(), and can join
- * the pieces.
+ * Both ways give the same result, to the last bit, but that Do() alone tries a second way where the
+ * first fails, see mcf::skeletonize(), and can join the pieces.
  *
  * MeshType is any TriMesh with vertices and triangles, in float or double; it needs no adjacency,
  * no normals, and may have deleted elements. The mesh should bound a solid: closed, two-manifold,
@@ -202,11 +200,14 @@ public:
 	void Resample()
 	{
 		Require(!poles, "Resample() comes first.");
-		auto resampled = std::make_shared<const mcf::SurfaceMesh>(
-			mcf::resampledSurface(*input.mesh, parameters, progress, params.on_note).mesh);
+		parameters = ParametersOf(params);
+		mcf::ResampledSurface resampled =
+			mcf::resampledSurface(*input.mesh, parameters, progress, params.on_note);
+		parameters.adaptive = parameters.adaptive && !resampled.isTooThin;
+		auto mesh = std::make_shared<const mcf::SurfaceMesh>(std::move(resampled.mesh));
 		if (!input.held.empty())
-			held = mcf::selectionOnResampled(*input.mesh, input.held, *resampled, progress);
-		contracted = std::move(resampled);
+			held = mcf::selectionOnResampled(*input.mesh, input.held, *mesh, progress);
+		contracted = std::move(mesh);
 	}
 
 	/// Finds the medial pole of each vertex of the surface. @pre Step() was not called.
@@ -254,7 +255,8 @@ public:
 		curve.reset();
 	}
 
-	/// Refines the curve. @pre the stage was collapsed without sheets, and no vertices are held.
+	/// Refines the curve and, after Resample(), brings what is outside the input back inside, see
+	/// mcf::bringInsideInput(). @pre the stage was collapsed without sheets; no vertices are held.
 	void Refine()
 	{
 		Require(curve.has_value(),
@@ -266,6 +268,9 @@ public:
 		refinement.detail = parameters.detail;
 		mcf::Refinement refined = mcf::refineChecked(*curve, *contracted, refinement, progress,
 			parameters.poleMethod == mcf::PoleMethod::Balls ? poles.get() : nullptr);
+		if (contracted != input.mesh)
+			mcf::bringInsideInput(refined.skeleton, *contracted, *input.mesh,
+				NodesOfInput(refined.skeleton.node), progress);
 		curve = std::move(refined.skeleton);
 		if (const std::string text = refined.report.text(); params.on_note && !text.empty())
 			params.on_note(text);
@@ -315,10 +320,7 @@ public:
 		if (surface.vert.size() != input.vertexOfSlot.size())
 			throw mcf::InvalidInput("The surface is not the one that the skeleton was made from.");
 		const std::vector<int>& node = sheets ? sheets->skeleton.node : curve->node;
-		WriteNodes(surface, input.vertexOfSlot,
-			contracted == input.mesh
-				? node
-				: mcf::transferredNodes(*contracted, node, *input.mesh, progress));
+		WriteNodes(surface, input.vertexOfSlot, NodesOfInput(node));
 	}
 
 private:
@@ -424,6 +426,14 @@ private:
 	{
 		if (!holds)
 			throw mcf::InvalidInput(text);
+	}
+
+	/// For each vertex of the input its node. @param node of each vertex of the contracted surface.
+	std::vector<int> NodesOfInput(const std::vector<int>& node) const
+	{
+		return contracted == input.mesh
+			? node
+			: mcf::transferredNodes(*contracted, node, *input.mesh, progress);
 	}
 
 	void RequireCollapsed() const { Require(curve || sheets, "Collapse() comes first."); }
