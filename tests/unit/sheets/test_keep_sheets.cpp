@@ -4,6 +4,7 @@
 #include "mesh_checks.h"
 #include "shapes.h"
 
+#include <skeleton/flow/held_vertices.h>
 #include <skeleton/sheets/keep_sheets.h>
 
 #include <gtest/gtest.h>
@@ -92,6 +93,32 @@ TEST(KeepSheets, TwoWallsBecomeOneRectangle)
 	EXPECT_NEAR(skeleton.sheetArea(), 0.7, 0.05) << "once, not twice";
 	for (const Point3d& p : skeleton.position)
 		EXPECT_NEAR(p[2], thickness / 2, thickness / 2);
+}
+
+TEST(KeepSheets, HeldVerticesOfASheetStayExactlyWhereTheyAre)
+{
+	const double thickness = 0.02; // as thick as the sites are apart
+	Stage stage = stageOf(fine(shapes::box(1, 0.7, thickness), 5));
+	std::vector<char> held(stage.held.size(), 0);
+	std::vector<int> chosen; // in the middle of a large face, in its corner, and at its edge
+	for (const Point3d& p :
+		{Point3d(0.41, 0.33, 0), Point3d(1, 0.7, thickness), Point3d(0.5, 0, 0)}) {
+		int nearest = 0;
+		for (int v = 1; v < stage.mesh.vertexSlots(); ++v)
+			if (Distance(stage.mesh.position[v], p) < Distance(stage.mesh.position[nearest], p))
+				nearest = v;
+		chosen.push_back(nearest);
+		held[size_t(nearest)] = 1;
+	}
+	holdVertices(stage, held);
+	const SheetCollapse result = collapseKeepingSheets(stage, all(stage), 0.005);
+	const MesoSkeleton& skeleton = result.skeleton;
+	EXPECT_EQ(error(skeleton), "");
+	EXPECT_EQ(result.givenUp, 0);
+	EXPECT_EQ(skeleton.betti(), (BettiNumbers {1, 0, 0}));
+	EXPECT_NEAR(skeleton.sheetArea(), 0.7, 0.05);
+	for (int v : chosen)
+		EXPECT_EQ(skeleton.position[size_t(skeleton.node[size_t(v)])], stage.mesh.position[v]);
 }
 
 TEST(KeepSheets, HolesOfASheetAreLoops)

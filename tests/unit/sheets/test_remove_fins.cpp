@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 #include <skeleton/sheets/remove_fins.h>
+#include <skeleton/sheets/smooth_sheets.h>
 
 #include <gtest/gtest.h>
 
@@ -94,6 +95,32 @@ TEST(RemoveFins, AWallGoesIfItIsLowerThanTheThickness)
 	EXPECT_EQ(low.faces, sheet(4).faces);
 	EXPECT_EQ(seams(high), 2u) << "sheets that meet";
 	EXPECT_EQ(high.faces.size(), faces);
+}
+
+TEST(RemoveFins, WhatHoldsVerticesStaysInItsPlace)
+{
+	MesoSkeleton skeleton = sheet(4);
+	const int fin = addNode(skeleton, Point3d(1.2, 2, 1)), whisker = addNode(skeleton, {3, 3, 1});
+	const int inside = 2 + 5, atWhisker = 3 + 5 * 3;
+	addFace(skeleton, {11, 12, fin});
+	skeleton.edges.push_back({atWhisker, whisker});
+	MesoSkeleton held = skeleton;
+	held.held.assign(held.position.size(), 0);
+	for (int v : {inside, fin, whisker})
+		held.held[size_t(v)] = 1;
+	held.position[size_t(inside)][2] = skeleton.position[size_t(inside)][2] = 0.3;
+	const MesoSkeleton given = held;
+	for (MesoSkeleton* one : {&held, &skeleton}) {
+		removeFins(*one);
+		removeWhiskers(*one);
+		smoothSheets(*one, 3);
+	}
+	EXPECT_EQ(skeleton.position.size(), 25u);
+	EXPECT_LT(skeleton.position[size_t(inside)][2], 0.3);
+	EXPECT_EQ(held.faces, given.faces);
+	EXPECT_EQ(held.edges, given.edges);
+	for (int v : {inside, fin, whisker})
+		EXPECT_EQ(held.position[size_t(v)], given.position[size_t(v)]);
 }
 
 TEST(RemoveFins, AFinOnAFinGoesToo)

@@ -48,6 +48,30 @@ inline SheetCollapse withoutSheets(const CurveSkeleton& curve)
 
 namespace detail {
 
+/// Moves the nodes into which held vertices have merged to the mean of these, and marks them.
+/// @param nodeOf (vertex of the stage): its node.
+template <class NodeOf>
+void holdNodes(MesoSkeleton& skeleton, const Stage& stage, const NodeOf& nodeOf)
+{
+	if (stage.heldCount() == 0)
+		return;
+	const size_t n = skeleton.position.size();
+	std::vector<Point3d> sum(n, Point3d(0, 0, 0));
+	std::vector<int> count(n, 0);
+	for (int v = 0; v < stage.mesh.vertexSlots(); ++v)
+		if (stage.held[v]) {
+			const size_t node = size_t(nodeOf(v));
+			sum[node] += stage.mesh.position[v];
+			++count[node];
+		}
+	skeleton.held.assign(n, 0);
+	for (size_t node = 0; node < n; ++node)
+		if (count[node] > 0) {
+			skeleton.held[node] = 1;
+			skeleton.position[node] = sum[node] / count[node];
+		}
+}
+
 /// Collapses what is not a sheet, then joins the walls of the sheets. The caller checks the
 /// topology and sets the radii. @pre the stage has one component.
 inline MesoSkeleton collapseAround(
@@ -109,6 +133,7 @@ inline MesoSkeleton collapseAround(
 			if (A < B)
 				curveEdges.push_back({A, B});
 	}
+	holdNodes(skeleton, stage, [&](int v) { return label[complex.find(v)]; });
 	SiteComplex walls = imageComplex({}, faces, label);
 	// An edge of a wall is not a curve, even if joining the walls removes it.
 	std::set<EdgeOfComplex> curves = imageComplex(curveEdges, {}, label).edges;
@@ -257,7 +282,7 @@ inline Stage stageOfComponent(const Stage& stage, int c, const SurfaceMesh& own,
 /**
  * Turns a stage into curves and sheets: collapses the shortest edges as collapseToCurve() does, but
  * none between two vertices of sheets; then joins the two walls of each sheet on common sites, 4
- * epsilon apart.
+ * epsilon apart. A site with held vertices stays where these are, in the middle of several.
  *
  * Each component is treated as if it were alone, and its nodes have consecutive numbers.
  *

@@ -39,6 +39,11 @@ struct MesoSkeleton
 	std::vector<FaceOfComplex> faces;
 	/// The correspondence: for each surface vertex the node it has merged into.
 	std::vector<int> node;
+	/// 1 for nodes that are not to be moved or removed when sheets are tidied, since vertices that
+	/// are held have merged into them, see holdVertices(); empty: there are none.
+	std::vector<char> held = {};
+
+	bool isHeld(int v) const { return !held.empty() && held[size_t(v)]; }
 
 	BettiNumbers betti() const { return bettiNumbers(int(position.size()), edges, faces); }
 
@@ -72,6 +77,8 @@ inline void removeMergedNodes(MesoSkeleton& skeleton, const std::vector<int>& ta
 			number[v] = int(left.position.size());
 			left.position.push_back(skeleton.position[v]);
 			left.radius.push_back(skeleton.radius[v]);
+			if (!skeleton.held.empty())
+				left.held.push_back(skeleton.held[v]);
 		}
 	const auto stays = [&](int v) { return target[size_t(v)] == v; };
 	for (const auto& [a, b] : skeleton.edges)

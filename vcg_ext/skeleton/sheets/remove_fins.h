@@ -103,6 +103,8 @@ inline bool isFin(const Patch& patch, const MesoSkeleton& skeleton, const SheetF
 	for (const auto& [v, count] : uses) {
 		if (count != sheets.uses[size_t(v)])
 			continue;
+		if (skeleton.isHeld(v))
+			return false;
 		int nearest = -1;
 		double minimum = std::numeric_limits<double>::max();
 		for (const EdgeOfComplex& e : patch.seam)
@@ -140,7 +142,7 @@ inline void removeFaces(MesoSkeleton& skeleton, const std::vector<char>& marked)
 /**
  * Removes fins: patches between seams and rim that stick out of a seam by less than the thickness
  * there. They are left where two walls did not meet on the same sites. What merged into their nodes
- * goes to the nearest node of their seams.
+ * goes to the nearest node of their seams. Fins that hold vertices stay.
  *
  * The topology stays: a patch is removed if it has a rim, and V - E + F = 0 for the nodes, edges
  * and faces that it does not share with the rest. Being connected, it then adds nothing to the

@@ -18,7 +18,8 @@ namespace vcg::tri::mcf {
 
 /**
  * Removes whiskers: chains of curve edges from a node of a sheet to a tip that are shorter than the
- * thickness at that node. What merged into their nodes goes to that node. The topology stays.
+ * thickness at that node, unless they hold vertices. What merged into their nodes goes to that
+ * node. The topology stays.
  * @pre radius is set. Complexity: O(N + E + F).
  */
 inline void removeWhiskers(MesoSkeleton& skeleton)
@@ -51,7 +52,9 @@ inline void removeWhiskers(MesoSkeleton& skeleton)
 			v = w;
 		} while (!hasFace[size_t(v)] && neighbours[size_t(v)].size() == 2);
 		// Only whiskers of sheets: for the spurs of curves see refine().
-		if (!hasFace[size_t(v)] || length >= skeleton.radius[size_t(v)])
+		const bool isHeld =
+			std::any_of(chain.begin(), chain.end() - 1, [&](int w) { return skeleton.isHeld(w); });
+		if (!hasFace[size_t(v)] || length >= skeleton.radius[size_t(v)] || isHeld)
 			continue;
 		for (size_t i = 0; i + 1 < chain.size(); ++i) {
 			target[size_t(chain[i])] = v;
@@ -66,7 +69,7 @@ inline void removeWhiskers(MesoSkeleton& skeleton)
 /**
  * Moves each node of a sheet half-way to the mean of its neighbours, `rounds` times. Nodes on a rim
  * or a seam (edges of one face, or of three and more) move along it where two such edges meet, and
- * stay where it ends or forks; nodes with curve edges stay too.
+ * stay where it ends or forks; nodes with curve edges and those that hold vertices stay too.
  * Complexity: O(F log F + rounds * F).
  */
 inline void smoothSheets(MesoSkeleton& skeleton, int rounds)
@@ -83,6 +86,8 @@ inline void smoothSheets(MesoSkeleton& skeleton, int rounds)
 	std::vector<char> stays(n, 0);
 	for (const auto& [a, b] : skeleton.edges)
 		stays[size_t(a)] = stays[size_t(b)] = 1;
+	for (size_t v = 0; v < n; ++v)
+		stays[v] |= skeleton.isHeld(int(v));
 	for (int round = 0; round < rounds; ++round) {
 		const std::vector<Point3d> before = skeleton.position;
 		for (size_t v = 0; v < n; ++v) {
