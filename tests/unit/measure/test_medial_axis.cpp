@@ -77,6 +77,57 @@ TEST(MedialLayer, AnglesOfAComponentAreThoseThatItHasAlone)
 	EXPECT_EQ(anglesOf(shapes::joined({ball, ring})), alone);
 }
 
+/// The angles as they are defined: of all points in the ball.
+std::vector<double> anglesByAllPoints(const SurfaceMesh& mesh, const PoleSet& poles)
+{
+	const UnitFrame frame(mesh.position);
+	std::vector<double> angles;
+	for (int v = 0; v < mesh.vertexSlots(); ++v) {
+		const Point3d centre = frame.in(poles.centre[v]);
+		const Point3d spoke = frame.in(mesh.position[v]) - centre;
+		const double radius = frame.lengthIn(poles.radius[v]) * 1.01;
+		double widest = 0;
+		for (const Point3d& p : mesh.position)
+			if (const Point3d other = frame.in(p)-centre; other.SquaredNorm() <= radius * radius)
+				widest = std::max(widest, std::atan2((spoke ^ other).Norm(), spoke * other));
+		angles.push_back(poles.has(v) ? widest * 180 / M_PI : -1);
+	}
+	return angles;
+}
+
+TEST(MedialLayer, AnglesAreTheWidestOfAllPointsInTheBall)
+{
+	for (const shapes::Soup& soup : {shapes::sphere(4), shapes::jittered(shapes::sphere(3), 0.05),
+			 shapes::torus(), shapes::capsule(), shapes::box(1, 0.7, 0.2), shapes::plate(2, 4)}) {
+		const SurfaceMesh mesh = soup.mesh();
+		const PoleSet poles = medialPoles(mesh, PoleMethod::Balls);
+		EXPECT_EQ(poleAngles(mesh, poles), anglesByAllPoints(mesh, poles));
+	}
+}
+
+TEST(MedialLayer, OnASphereOnlyTheFarSideIsSearchedForTheWidestAngle)
+{
+	struct Counted : detail::WidestAngle
+	{
+		using WidestAngle::WidestAngle;
+		int visits = 0;
+		void visit(int slot, const Point3d& p)
+		{
+			++visits;
+			WidestAngle::visit(slot, p);
+		}
+	};
+	const SurfaceMesh mesh = shapes::sphere(5).mesh();
+	const PointTree tree(mesh.position);
+	for (int v = 0; v < mesh.vertexSlots(); v += 100) {
+		Counted search(Point3d(0, 0, 0), 1.01, mesh.position[size_t(v)]);
+		search.visit(0, mesh.position[size_t(tree.nearest(search.farthest()))]);
+		tree.search(search);
+		EXPECT_GT(search.widest(), 179.9 * M_PI / 180);
+		EXPECT_LT(search.visits, mesh.vertexSlots() / 50);
+	}
+}
+
 TEST(MedialLayer, FiltersByAngleAndRadius)
 {
 	for (double minimum : {0.0, 60.0, 120.0}) {

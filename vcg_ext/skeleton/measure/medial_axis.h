@@ -61,22 +61,55 @@ struct MedialLayer
 
 namespace detail {
 
-/// The widest angle between a point and the others on a sphere, as the search of a tree.
-struct WidestAngle
+/**
+ * The widest angle between a point and the others in a ball, seen from its middle, as the search of
+ * a tree. Only points with wider angles than those found are of interest: they are in a cone from
+ * the middle to the far side. Once that is narrow, it is searched by the ball through its apex and
+ * its rim, which holds few points of a sphere.
+ */
+class WidestAngle
 {
-	Point3d middle;
-	double radius;
-	Point3d spoke; ///< from the middle to the point
-	double widest = 0;
+public:
+	/// @param spoke from the middle to the point.
+	WidestAngle(const Point3d& middle, double radius, const Point3d& spoke) :
+			middle(middle), radius(radius), spoke(spoke), searched(middle), searchedRadius(radius)
+	{
+		const double length = spoke.Norm();
+		farSide = length > 0 ? spoke * (-radius / length) : Point3d(0, 0, 0);
+	}
 
-	const Point3d& centre() const { return middle; }
-	double reach() const { return radius; }
+	/// Where the widest angles are: to visit the point nearest to it first narrows the search.
+	Point3d farthest() const { return middle + farSide; }
+
+	/// Radians.
+	double widest() const { return angle; }
+
+	const Point3d& centre() const { return searched; }
+	double reach() const { return searchedRadius; }
 	void visit(int, const Point3d& p)
 	{
+		constexpr double narrow = M_PI / 3; // half the cone's angle: its ball is smaller from there
 		const Point3d other = p - middle;
-		if (other.SquaredNorm() <= radius * radius)
-			widest = std::max(widest, std::atan2((spoke ^ other).Norm(), spoke * other));
+		if (other.SquaredNorm() > radius * radius)
+			return;
+		const double found = std::atan2((spoke ^ other).Norm(), spoke * other);
+		if (found <= angle)
+			return;
+		angle = found;
+		if (M_PI - angle >= narrow)
+			return;
+		const double part = 1 / (2 * std::cos(M_PI - angle)); // of the way to the far side
+		searched = middle + farSide * part;
+		searchedRadius = radius * part;
 	}
+
+private:
+	Point3d middle;
+	double radius;
+	Point3d spoke, farSide;
+	double angle = 0;
+	Point3d searched;
+	double searchedRadius;
 };
 
 constexpr const char* measuringAngles = "Measuring the poles' angles";
@@ -86,20 +119,24 @@ inline std::vector<double> poleAnglesOfComponent(
 	const SurfaceMesh& surface, const PoleSet& poles, const Progress& progress)
 {
 	constexpr double touching = 0.01; // of the radius: facets of a round surface deviate that much
+	constexpr int blocksPerReport = 8;
 	const UnitFrame frame(surface.position);
 	const PointTree tree(frame.in(surface.position));
 	std::vector<double> angle(poles.radius.size(), -1);
-	forEachBlock(int(angle.size()), progress, measuringAngles, [&](int begin, int end) {
+	const auto measure = [&](int begin, int end) {
 		for (int v = begin; v < end; ++v) {
 			if (!poles.has(v))
 				continue;
 			const Point3d centre = frame.in(poles.centre[v]);
-			WidestAngle search {centre, frame.lengthIn(poles.radius[v]) * (1 + touching),
-				frame.in(surface.position[v]) - centre};
+			WidestAngle search(centre, frame.lengthIn(poles.radius[v]) * (1 + touching),
+				frame.in(surface.position[v]) - centre);
+			const int first = tree.nearest(search.farthest());
+			search.visit(first, frame.in(surface.position[first]));
 			tree.search(search);
-			angle[v] = search.widest * 180 / M_PI;
+			angle[v] = search.widest() * 180 / M_PI;
 		}
-	});
+	};
+	forEachBlock(int(angle.size()), progress, measuringAngles, measure, blocksPerReport);
 	return angle;
 }
 
@@ -108,8 +145,8 @@ inline std::vector<double> poleAnglesOfComponent(
 /**
  * For each pole the widest angle, degrees, between its vertex and any other vertex that its ball
  * touches, seen from the pole; -1 where there is no pole. Other components do not count.
- * @pre surface is compact. @throws Cancelled. Complexity: O(V log V), and O(V^2) on a sphere, where
- * each ball touches all vertices.
+ * @pre surface is compact. @throws Cancelled. Complexity: O(V log V); O(V) for a ball that touches
+ * all vertices, but none on its far side.
  */
 inline std::vector<double> poleAngles(
 	const SurfaceMesh& surface, const PoleSet& poles, const Progress& progress = Progress())

@@ -90,8 +90,9 @@ public:
 	 * Visits every point of the ball, and some outside it, each once.
 	 *
 	 * Ball: `Point3d centre()`, `double reach()`, its radius, and
-	 * `void visit(int slot, const Point3d&)`, which may replace the ball by one inside
-	 * it. `order()[slot]` is the point's id.
+	 * `void visit(int slot, const Point3d&)`, which may replace the ball by one inside it or,
+	 * unless nearestFirst is set, by another one: points outside either are then left out.
+	 * `order()[slot]` is the point's id.
 	 * @tparam nearestFirst  visits the boxes nearest to the centre first: it pays where the ball is
 	 *                       much too large to begin with.
 	 * Complexity: O(log n) for a ball that holds few points.
