@@ -12,6 +12,7 @@
 #include <skeleton/graph/prune.h>
 #include <skeleton/graph/skeleton_branches.h>
 #include <skeleton/flow/stage.h>
+#include <skeleton/mesh/component_meshes.h>
 
 #include <algorithm>
 #include <cmath>
@@ -28,7 +29,7 @@ namespace vcg::tri::mcf::detail {
  * @param component  that each node belongs to.
  * @param held       for each node, whether it is held in its place.
  * @post if there are junctions, radius of these and of tips is that of their balls; held: infinite.
- * @throws Cancelled. Complexity: O(surface vertices * (junctions + tips)).
+ * @throws Cancelled. Complexity: in each component, O(surface vertices * (junctions + tips)).
  */
 inline CurveSkeleton withoutSpurs(CurveSkeleton skeleton, const Stage& stage,
 	const std::vector<int>& component, const std::vector<char>& held, double minimum,
@@ -40,7 +41,8 @@ inline CurveSkeleton withoutSpurs(CurveSkeleton skeleton, const Stage& stage,
 		neighbours.begin(), neighbours.end(), [](const auto& n) { return n.size() > 2; });
 	if (!branched)
 		return skeleton;
-	const std::vector<int> componentOfPoint = componentOfSurfaceVertices(stage, progress);
+	const ComponentVertices vertices(
+		componentOfSurfaceVertices(stage, progress), int(stage.diagonal.size()), progress);
 	for (size_t v = 0; v < neighbours.size(); ++v) {
 		if (held[v]) {
 			skeleton.radius[v] = infinity;
@@ -50,10 +52,8 @@ inline CurveSkeleton withoutSpurs(CurveSkeleton skeleton, const Stage& stage,
 			continue;
 		progress.report(double(v) / neighbours.size(), "Collapsing to curves");
 		double squared = infinity;
-		for (size_t s = 0; s < stage.surface->size(); ++s)
-			if (componentOfPoint[s] == component[v])
-				squared =
-					std::min(squared, SquaredDistance(skeleton.position[v], (*stage.surface)[s]));
+		for (int s : vertices.ids[component[v]])
+			squared = std::min(squared, SquaredDistance(skeleton.position[v], (*stage.surface)[s]));
 		skeleton.radius[v] = std::sqrt(squared);
 	}
 	return withoutTerminalBranches(
