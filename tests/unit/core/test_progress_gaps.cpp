@@ -4,6 +4,7 @@
 // No stage is silent for long: measured by the work between two reports, not by a clock, which
 // would measure the machine.
 
+#include "curves.h"
 #include "shapes.h"
 
 #include <skeleton/input/check_input.h>
@@ -26,6 +27,7 @@
 #include <vector>
 
 using namespace vcg::tri::mcf;
+using vcg::Point3d;
 
 namespace {
 
@@ -166,6 +168,97 @@ TEST(ProgressGaps, WhatADenseSurfaceIsToldAtTheEndReportsAsItGrows)
 		StageFrames(first, p);
 	}),
 		wanted / 4);
+}
+
+namespace {
+
+/// The test of a body whose curve is inside, with what it needs.
+struct Checked
+{
+	SurfaceMesh mesh;
+	std::vector<int> all;
+	ClosestSurface closest;
+	refining::InsideCheck inside;
+
+	Checked(const shapes::Soup& soup, double spacing) :
+			mesh(soup.mesh()), all(detail::numberedArray(mesh.position.size(), Progress())),
+			closest(mesh, all, spacing), inside(closest, {mesh, all, all})
+	{
+	}
+};
+
+} // namespace
+
+TEST(ProgressGaps, TheExactTestOfACurveReportsAsItsSurfaceGrows)
+{
+	const CurveSkeleton curve = curves::line({-0.1, 0, 0}, {0.1, 0, 0}, 0, 4);
+	const shapes::Soup soup = shapes::sphere(7);
+	const int wanted = int(soup.triangles.size()) / maxVerticesBetweenReports / 4;
+	const Checked kept(soup, 1), counted(soup, 1);
+	const int reports = reportsOf(
+		[&](const Progress& p) { EXPECT_TRUE(kept.inside.holds(curve, p.cancelOnly())); });
+	EXPECT_GE(reports, wanted);
+	EXPECT_GE(reportsOf([&](const Progress& p) {
+		EXPECT_EQ(counted.inside.countOutside(curve, p.cancelOnly()), 0);
+	}),
+		wanted);
+	EXPECT_LT(reportsOf([&](const Progress& p) { kept.inside.holds(curve, p.cancelOnly()); }),
+		reports / 2)
+		<< "the tree is there";
+	// Cancelled while the tree is built, the next test builds it.
+	const Checked cancelled(soup, 1);
+	int heard = 0;
+	const Progress half([&](int, const char*) { return ++heard < reports / 2; });
+	EXPECT_THROW(cancelled.inside.holds(curve, half), Cancelled);
+	EXPECT_TRUE(cancelled.inside.holds(curve, Progress()));
+}
+
+TEST(ProgressGaps, EachCrossingOfAnEdgeIsReported)
+{
+	constexpr int boxes = 40; // each runs into the next
+	shapes::Soup row;
+	for (int i = 0; i < boxes; ++i)
+		row = shapes::joined({row, shapes::moved(shapes::box(1.5, 1, 1), Point3d(i, 0, 0))});
+	const Checked checked(row, 1);
+	const CurveSkeleton edge = curves::line({0.5, 0.4, 0.55}, {boxes, 0.4, 0.55}, 0, 1);
+	EXPECT_GE(reportsOf([&](const Progress& p) {
+		EXPECT_TRUE(checked.inside.holds(edge, p.cancelOnly()));
+	}),
+		2 * (boxes - 1));
+}
+
+TEST(ProgressGaps, TidyingAndExtendingBranchesReportEachTip)
+{
+	// A rod whose curve has a short branch at each node.
+	constexpr int tips = 200;
+	const SurfaceMesh mesh = shapes::capsule(2, 0.35).mesh();
+	CurveSkeleton curve = curves::line({-0.9, 0, 0}, {0.9, 0, 0}, 0, tips);
+	for (int i = 1; i < tips; ++i)
+		curves::addLine(curve, i, curve.position[size_t(i)] + Point3d(0, 0.1, 0), 0, 2);
+	const ClosestSurface closest(mesh, detail::numberedArray(mesh.position.size(), {}), 0.01);
+	for (size_t v = 0; v < curve.position.size(); ++v)
+		curve.radius[v] = closest.clearance(curve.position[v]);
+	refining::KnownClearances clearances(closest);
+	EXPECT_GE(reportsOf([&](const Progress& p) { refining::withoutSpurs(curve, 0.1, p); }), tips);
+	EXPECT_GE(reportsOf([&](const Progress& p) { refining::withoutStubs(curve, p); }), tips);
+	EXPECT_GE(reportsOf([&](const Progress& p) { refining::withoutTwinTips(curve, p); }), tips);
+	EXPECT_GE(reportsOf([&](const Progress& p) {
+		refining::withoutCornerBranches(curve, clearances, 0.45, p);
+	}),
+		tips);
+	EXPECT_GE(
+		reportsOf([&](const Progress& p) { refining::withoutStubsInPlates(curve, closest, p); }),
+		tips);
+	EXPECT_GE(reportsOf([&](const Progress& p) {
+		refining::evenlySampled(curve, closest, 0.005, refining::sameEverywhere, p);
+	}),
+		2 * tips - 3);
+	const refining::TipRule rule = {0.005, 0.2, 0.003};
+	EXPECT_GE(reportsOf([&](const Progress& p) {
+		CurveSkeleton extended = curve;
+		refining::extendTips(extended, closest, rule, p);
+	}),
+		tips);
 }
 
 namespace {

@@ -121,15 +121,17 @@ namespace refining {
 /**
  * The smallest lower bound of the scale with which a curve has no more than maxNodes(): a shape
  * that is thin all along, such as a needle, needs no node every half radius. 0: none is needed.
- * Complexity: O(E log V).
+ * @throws Cancelled. Complexity: O(E log V).
  */
 inline double minScale(const CurveSkeleton& curve, const ClosestSurface& closest,
-	const LocalScale& scale, double spacing)
+	const LocalScale& scale, double spacing, const Progress& progress)
 {
 	constexpr int halvings = 30;
 	std::vector<std::pair<double, double>> pieces; // length, scale
 	double length = 0;
 	for (const auto& [a, b] : curve.edges) {
+		if (pieces.size() % nodesPerCheck == 0)
+			progress.check();
 		const Point3d &from = curve.position[a], &to = curve.position[b];
 		pieces.emplace_back(Distance(from, to), scale.at((from + to) / 2, closest));
 		length += pieces.back().first;
@@ -162,6 +164,7 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 	const Progress& progress)
 {
 	const char* what = "Refining the skeleton";
+	const Progress cancel = progress.cancelOnly();
 	constexpr double stiffer = 10, referenceSpacing = 0.005;
 	// Every third round searches the whole surface; the others track the contacts.
 	constexpr int roundsOfSearch = 3;
@@ -178,43 +181,44 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 				contacts = findContacts(skeleton, surface, ascend,
 					progress.part(double(done) / total, double(done) / total));
 			else
-				followContacts(contacts, skeleton, surface);
-			centre(skeleton, contacts, surface, weight, scale);
+				followContacts(contacts, skeleton, surface, cancel);
+			centre(skeleton, contacts, surface, weight, scale, cancel);
 			progress.report(double(++done) / total, what);
 		}
 	};
 	const CurveBounds bounds(skeleton, parameters.spacing * scale.minimum(component.vertices));
-	KnownClearances clearances(surface);
+	KnownClearances clearances(surface, cancel);
 	const auto tidy = [&](double spurProminence, double tipDistinctness) {
 		measureBranchEnds(skeleton, clearances);
-		skeleton = withoutSpurs(skeleton, spurProminence);
+		skeleton = withoutSpurs(skeleton, spurProminence, cancel);
 		if (spurProminence > 0)
-			skeleton = withoutTwinTips(withoutStubs(skeleton));
+			skeleton = withoutTwinTips(withoutStubs(skeleton, cancel), cancel);
 		if (tipDistinctness > 0) {
-			skeleton = withoutCornerBranches(skeleton, clearances, tipDistinctness);
+			skeleton = withoutCornerBranches(skeleton, clearances, tipDistinctness, cancel);
 			skeleton = withoutCornerEnds(skeleton, clearances, tipDistinctness);
 		}
-		skeleton = withWholeJunctions(std::move(skeleton), parameters.junctionProminence);
-		skeleton = evenlySampled(skeleton, surface, parameters.spacing, scale);
+		skeleton = withWholeJunctions(std::move(skeleton), parameters.junctionProminence, cancel);
+		skeleton = evenlySampled(skeleton, surface, parameters.spacing, scale, cancel);
 		// Tips may have been extended to where the shape is far thinner than along the given curve.
 		if (!scale.isUniform()
 			&& double(skeleton.position.size()) > maxNodes(statistics(skeleton).length)) {
-			scale.setMin(
-				std::max(scale.minimum(), minScale(skeleton, surface, scale, parameters.spacing)));
-			skeleton = evenlySampled(skeleton, surface, parameters.spacing, scale);
+			scale.setMin(std::max(
+				scale.minimum(), minScale(skeleton, surface, scale, parameters.spacing, cancel)));
+			skeleton = evenlySampled(skeleton, surface, parameters.spacing, scale, cancel);
 		}
-		moveInside(skeleton, surface); // long edges of a coarse shape's curve may have left it
+		moveInside(
+			skeleton, surface, cancel); // long edges of a coarse shape's curve may have left it
 		progress.report(double(done) / total, what);
 	};
 	const auto extend = [&] {
 		measureBranchEnds(skeleton, clearances);
-		extendTips(skeleton, surface, tips);
+		extendTips(skeleton, surface, tips, cancel);
 		progress.report(double(done) / total, what);
 	};
 	const auto grow = [&] {
 		if (parameters.spurProminence > 0) {
 			measureBranchEnds(skeleton, clearances);
-			skeleton = withoutStubsInPlates(skeleton, surface);
+			skeleton = withoutStubsInPlates(skeleton, surface, cancel);
 		}
 		growFeatures(skeleton, component, surface, clearances, features,
 			progress.part(double(done) / total, double(done + 1) / total));
@@ -222,9 +226,12 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 		extend();
 	};
 	progress.report(0, what);
-	for (size_t v = 0; v < skeleton.position.size(); ++v)
-		skeleton.radius[v] = std::max(surface.clearance(skeleton.position[v]), 0.0);
-	moveInside(skeleton, surface);
+	for (size_t v = 0; v < skeleton.position.size(); ++v) {
+		if (v % nodesPerCheck == 0)
+			cancel.check();
+		skeleton.radius[v] = std::max(surface.clearance(skeleton.position[v], cancel), 0.0);
+	}
+	moveInside(skeleton, surface, cancel);
 	// A stub may be the start of a feature: only branches that do not stick out go before the
 	// extension.
 	constexpr double hopeless = 0;
@@ -523,7 +530,7 @@ inline Defect refineChecked(CurveSkeleton& refined, ClosestSurface& surface,
 	if (defect != Defect::None && !scale.isUniform())
 		defect = attempt(sameEverywhere, usual, second);
 	if ((defect == Defect::Outside || defect == Defect::TooLong) && nodes <= maxNodesOfExact) {
-		surface.makeExact();
+		surface.makeExact(progress.cancelOnly());
 		defect = attempt(sameEverywhere, second, 1);
 	}
 	return defect;
@@ -633,7 +640,8 @@ inline Refinement refineChecked(const CurveSkeleton& curve, const SurfaceMesh& s
 		const refining::SurfaceComponent own = {unit, vertices.ids[c], vertices.place};
 		scale.setMin(0);
 		if (isThin(c))
-			scale.setMin(refining::minScale(part, closest, scale, parameters.spacing));
+			scale.setMin(refining::minScale(
+				part, closest, scale, parameters.spacing, ofComponent.cancelOnly()));
 		const refining::Defect defect = refining::refineChecked(part, closest, own,
 			isThin(c) ? scale : refining::sameEverywhere, parameters, ofComponent.part(0.1, 0.95));
 		const bool isRefined = defect == refining::Defect::None;

@@ -151,11 +151,13 @@ inline std::vector<Contact> findContacts(CurveSkeleton& skeleton, const ClosestS
 	return contacts;
 }
 
-/// Tracks the contacts of nodes that have moved a little; radius is unchanged.
-inline void followContacts(
-	std::vector<Contact>& contacts, const CurveSkeleton& skeleton, const ClosestSurface& surface)
+/// Tracks the contacts of nodes that have moved a little; radius is unchanged. @throws Cancelled
+inline void followContacts(std::vector<Contact>& contacts, const CurveSkeleton& skeleton,
+	const ClosestSurface& surface, const Progress& progress = Progress())
 {
 	for (size_t v = 0; v < contacts.size(); ++v) {
+		if (v % nodesPerCheck == 0)
+			progress.check();
 		Contact& contact = contacts[v];
 		if (contact.ball.face < 0)
 			continue;
@@ -200,10 +202,11 @@ inline std::vector<double> sharesOfCentring(const CurveSkeleton& skeleton,
  * Moves nodes back to where they were, until no edge that was inside has left the surface: both
  * nodes of one that has. Edges are tested in ascending order, round after round, but only those
  * that may have changed.
+ * @throws Cancelled
  * Complexity: O(E log E), a test of each edge, and one of each edge of a node that goes back.
  */
-inline void keepEdgesInside(
-	CurveSkeleton& skeleton, const CurveSkeleton& before, const ClosestSurface& surface)
+inline void keepEdgesInside(CurveSkeleton& skeleton, const CurveSkeleton& before,
+	const ClosestSurface& surface, const Progress& progress = Progress())
 {
 	std::vector<std::vector<int>> edgesOf(skeleton.position.size());
 	std::set<int> round, nextRound;
@@ -213,8 +216,11 @@ inline void keepEdgesInside(
 			edgesOf[v].push_back(e);
 	}
 	std::vector<char> back(skeleton.position.size(), 0);
+	size_t tested = 0;
 	for (; !round.empty(); round.swap(nextRound))
 		while (!round.empty()) {
+			if (tested++ % nodesPerCheck == 0)
+				progress.check();
 			const int edge = *round.begin();
 			round.erase(round.begin());
 			const auto [a, b] = skeleton.edges[edge];
@@ -245,10 +251,11 @@ inline void keepEdgesInside(
  * @param kappa for nodes at the skeleton's own spacing whose distance r_k from the surface is R.
  * @param scale where it is smaller than 1, so are that spacing and R.
  * @pre radius holds distances from the surface, or lower bounds. @post lower bounds.
- * @throws SolverError
+ * @throws SolverError, Cancelled
  */
 inline void centre(CurveSkeleton& skeleton, const std::vector<Contact>& contacts,
-	const ClosestSurface& surface, double kappa, const LocalScale& scale = sameEverywhere)
+	const ClosestSurface& surface, double kappa, const LocalScale& scale = sameEverywhere,
+	const Progress& progress = Progress())
 {
 	constexpr double tipWeight = 1e3, weightWithoutBall = 1e-6;
 	constexpr double referenceRadius = 0.033, thinnest = 0.03, thickest = 3;
@@ -313,7 +320,7 @@ inline void centre(CurveSkeleton& skeleton, const std::vector<Contact>& contacts
 		// The distance from the surface cannot fall faster than the node moves.
 		skeleton.radius[v] = before.radius[v] - std::min(length, maximum);
 	}
-	keepEdgesInside(skeleton, before, surface);
+	keepEdgesInside(skeleton, before, surface, progress);
 }
 
 /// A point inside and its distance from the surface; negative: there is none.
@@ -353,17 +360,20 @@ inline InnerPlace placeInside(
 
 /**
  * Moves nodes that are outside into the maximal ball that touches the closest surface point from
- * inside; where there is none they stay, with radius 0.
+ * inside; where there is none they stay, with radius 0. @throws Cancelled
  */
-inline void moveInside(CurveSkeleton& skeleton, const ClosestSurface& surface)
+inline void moveInside(
+	CurveSkeleton& skeleton, const ClosestSurface& surface, const Progress& progress = Progress())
 {
 	for (size_t v = 0; v < skeleton.position.size(); ++v) {
+		if (v % nodesPerCheck == 0)
+			progress.check();
 		if (skeleton.radius[v] > 0)
 			continue;
 		const ClosestSurface::Hit hit = surface.closest(skeleton.position[v]);
 		if (hit.distance <= 0)
 			continue;
-		if (surface.isInside(skeleton.position[v], hit)) { // only its bound was too low
+		if (surface.isInside(skeleton.position[v], hit, progress)) { // only its bound was too low
 			skeleton.radius[v] = hit.distance;
 			continue;
 		}

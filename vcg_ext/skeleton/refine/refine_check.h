@@ -106,6 +106,8 @@ public:
 	 */
 	bool holds(const CurveSkeleton& curve, const Progress& progress) const
 	{
+		if (!curve.position.empty())
+			closest.prepareExact(progress);
 		std::vector<double> empty; // radii of balls that the surface does not enter
 		empty.reserve(curve.position.size());
 		detail::reportedLoop(int(curve.position.size()), progress, what,
@@ -115,23 +117,29 @@ public:
 		};
 		for (const auto& [a, b] : curve.edges) {
 			const Point3d &from = curve.position[a], &to = curve.position[b];
-			if (Distance(from, to) > empty[a] + empty[b]
-				&& !isCovered(from, measured(a), to, measured(b))
-				&& !isEnclosed(from, to, progress))
+			if (Distance(from, to) <= empty[a] + empty[b])
+				continue;
+			progress.report(0, what);
+			if (!isCovered(from, measured(a), to, measured(b)) && !isEnclosed(from, to, progress))
 				return false;
 		}
 		const std::vector<Point3d> firsts = firstNodes(curve);
 		return std::all_of(firsts.begin(), firsts.end(), [&](const Point3d& p) {
-			return closest.exactClearance(p) > 0 || windingNumber(p) > half;
+			progress.report(0, what);
+			return closest.exactClearance(p, progress) > 0 || windingNumber(p) > half;
 		});
 	}
 
-	/// How many nodes are outside, by their closest points. Complexity: O(N log V).
+	/// How many nodes are outside, by their closest points. @throws Cancelled
+	/// Complexity: O(N log V).
 	int countOutside(const CurveSkeleton& curve, const Progress& progress) const
 	{
 		int outside = 0;
-		detail::reportedLoop(int(curve.position.size()), progress, what,
-			[&](int v) { outside += !(closest.exactClearance(curve.position[v]) > 0); });
+		for (size_t v = 0; v < curve.position.size(); ++v) {
+			if (v % nodesPerCheck == 0)
+				progress.report(double(v) / double(curve.position.size()), what);
+			outside += !(closest.exactClearance(curve.position[v], progress) > 0);
+		}
 		return outside;
 	}
 
@@ -221,7 +229,6 @@ private:
 	{
 		constexpr double shortest =
 			1e-6; // parts of the segment; shorter ones are where triangles meet
-		progress.report(0, what);
 		const Point3d segment = b - a;
 		std::vector<double> ends = {0, 1};
 		forEachTriangle([&](const Point3d& u, const Point3d& v, const Point3d& w) {
@@ -236,10 +243,12 @@ private:
 				ends.push_back(along);
 		});
 		std::sort(ends.begin(), ends.end());
-		for (size_t i = 1; i < ends.size(); ++i)
+		for (size_t i = 1; i < ends.size(); ++i) {
+			progress.report(0, what);
 			if (ends[i] - ends[i - 1] > shortest
 				&& windingNumber(a + segment * ((ends[i - 1] + ends[i]) / 2)) < half)
 				return false;
+		}
 		return true;
 	}
 };

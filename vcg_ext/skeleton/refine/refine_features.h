@@ -88,13 +88,14 @@ constexpr double lobeHeight = 5;
  * of a lobe, or than that height if there is no other tip; the shortest first. Where the flow
  * leaves such stubs is chance, and next to one growFeatures() would take the rim for several lobes.
  * A plate that stands on a thicker body, as an ear does, is a limb and keeps its branch.
- * @pre the radius of junctions and tips is their distance from the surface.
+ * @pre the radius of junctions and tips is their distance from the surface. @throws Cancelled
  */
-inline CurveSkeleton withoutStubsInPlates(
-	const CurveSkeleton& skeleton, const ClosestSurface& surface)
+inline CurveSkeleton withoutStubsInPlates(const CurveSkeleton& skeleton,
+	const ClosestSurface& surface, const Progress& progress = Progress())
 {
 	constexpr double mostlyFlat = 0.65, asThin = 0.5;
-	return withoutTerminalBranches(skeleton, 0,
+	return withoutTerminalBranches(
+		skeleton, 0,
 		[&](const CurveSkeleton& s, const Branch& fromJunction, const std::set<int>& tips) {
 			const double radius = s.radius[fromJunction.first()];
 			const double lobes = tips.size() > 1 ? 2 : 1;
@@ -113,7 +114,8 @@ inline CurveSkeleton withoutStubsInPlates(
 					&& widePlaces(surface, x, hit, ball.contact, direction).size() == 2;
 			}
 			return flat >= mostlyFlat * double(fromJunction.nodes.size() - 1) ? excess : 0.0;
-		});
+		},
+		progress);
 }
 
 /// A branch to be added: points from the tip of a feature into one of the skeleton's balls.

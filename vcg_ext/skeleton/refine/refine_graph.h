@@ -9,6 +9,7 @@
 
 #include "local_scale.h"
 
+#include <skeleton/core/progress.h>
 #include <skeleton/graph/prune.h>
 #include <skeleton/graph/skeleton_branches.h>
 #include <skeleton/poles/sizing_field.h>
@@ -28,22 +29,32 @@
 
 namespace vcg::tri::mcf::refining {
 
+/// Loops over nodes check for cancellation this often: a node may take several searches.
+constexpr size_t nodesPerCheck = 256;
+
 /// The distances of nodes from the surface, cached by position, since nodes are renumbered.
 class KnownClearances
 {
 public:
-	explicit KnownClearances(const ClosestSurface& surface) : surface(surface) {}
+	/// @param progress checked once for nodesPerCheck distances that were not known.
+	explicit KnownClearances(const ClosestSurface& surface, const Progress& progress = Progress()) :
+			surface(surface), progress(progress)
+	{
+	}
 
+	/// @throws Cancelled
 	double at(const Point3d& node)
 	{
-		const auto [place, isNew] = known.emplace(node, 0);
-		if (isNew)
-			place->second = surface.clearance(node);
-		return place->second;
+		if (const auto place = known.find(node); place != known.end())
+			return place->second;
+		if (known.size() % nodesPerCheck == 0)
+			progress.check();
+		return known[node] = surface.clearance(node, progress);
 	}
 
 private:
 	const ClosestSurface& surface;
+	const Progress progress;
 	std::map<Point3d, double> known;
 };
 
@@ -95,11 +106,12 @@ inline bool isEdgeInside(CurveSkeleton& skeleton, const ClosestSurface& surface,
  * Removes the spurs: terminal branches whose prominence() is below `minimum`, the lowest first,
  * since a branch that loses its junction becomes part of a longer one. What had merged into a spur
  * goes to its junction. A component that is a single chain keeps it.
- * @pre the radius of junctions and tips is their distance from the surface.
+ * @pre the radius of junctions and tips is their distance from the surface. @throws Cancelled
  */
-inline CurveSkeleton withoutSpurs(const CurveSkeleton& skeleton, double minimum)
+inline CurveSkeleton withoutSpurs(
+	const CurveSkeleton& skeleton, double minimum, const Progress& progress = Progress())
 {
-	return withoutTerminalBranches(skeleton, minimum, terminalProminence);
+	return withoutTerminalBranches(skeleton, minimum, terminalProminence, progress);
 }
 
 /// Minimum length of a terminal branch, in radii of the ball at its root.
@@ -167,12 +179,15 @@ inline bool isCornerOfBend(const CurveSkeleton& skeleton,
  * large: it is a blunt end, not a limb. It stays if it sticks out by minBluntHeight, as in one half
  * of a large round body.
  * @pre the radius of junctions and tips is their distance from the surface; the diagonal is 1.
+ * @throws Cancelled
  */
-inline CurveSkeleton withoutStubs(const CurveSkeleton& skeleton)
+inline CurveSkeleton withoutStubs(
+	const CurveSkeleton& skeleton, const Progress& progress = Progress())
 {
 	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
 	return withoutTerminalBranches(
-		skeleton, minWayOfBranch, [&](const CurveSkeleton& s, const Branch& fromJunction) {
+		skeleton, minWayOfBranch,
+		[&](const CurveSkeleton& s, const Branch& fromJunction) {
 			const int junction = fromJunction.first(), tip = fromJunction.last();
 			if (protrusion(s, tip, junction) >= minBluntHeight)
 				return minWayOfBranch;
@@ -180,18 +195,21 @@ inline CurveSkeleton withoutStubs(const CurveSkeleton& skeleton)
 				? 0
 				: Distance(s.position[tip], s.position[junction])
 					/ std::max(s.radius[junction], 1e-300);
-		});
+		},
+		progress);
 }
 
 /**
  * Of two terminal branches that end in the same place, with tips closer to each other than twice
  * the radius of their smaller ball, keeps the shorter one. What had merged into the other goes to
  * its junction. The tips of different limbs, or of a limb that forks, are farther apart than that.
- * @pre the radius of tips is their distance from the surface.
+ * @pre the radius of tips is their distance from the surface. @throws Cancelled
  */
-inline CurveSkeleton withoutTwinTips(const CurveSkeleton& skeleton)
+inline CurveSkeleton withoutTwinTips(
+	const CurveSkeleton& skeleton, const Progress& progress = Progress())
 {
-	return withoutTerminalBranches(skeleton, 0,
+	return withoutTerminalBranches(
+		skeleton, 0,
 		[](const CurveSkeleton& s, const Branch& fromJunction, const std::set<int>& tips) {
 			const int tip = fromJunction.last();
 			for (int other : tips)
@@ -200,7 +218,8 @@ inline CurveSkeleton withoutTwinTips(const CurveSkeleton& skeleton)
 						< 2 * std::min(s.radius[tip], s.radius[other]))
 					return -branchLength(s, fromJunction);
 			return 0.0;
-		});
+		},
+		progress);
 }
 
 /// The profile of a terminal branch: for each node the length along the branch from the first one,
@@ -285,14 +304,17 @@ inline double distinctness(
 /**
  * Removes the terminal branches whose distinctness() is below `minimum`, in the order of
  * withoutSpurs(): they lead into corners and edges of the surface, which a skeleton leaves out.
+ * @throws Cancelled
  */
-inline CurveSkeleton withoutCornerBranches(
-	const CurveSkeleton& skeleton, KnownClearances& clearances, double minimum)
+inline CurveSkeleton withoutCornerBranches(const CurveSkeleton& skeleton,
+	KnownClearances& clearances, double minimum, const Progress& progress = Progress())
 {
 	return withoutTerminalBranches(
-		skeleton, minimum, [&](const CurveSkeleton& s, const Branch& branch) {
+		skeleton, minimum,
+		[&](const CurveSkeleton& s, const Branch& branch) {
 			return distinctness(s, clearances, branch);
-		});
+		},
+		progress);
 }
 
 /**
@@ -354,14 +376,17 @@ inline CurveSkeleton withoutBluntEnds(
  * leaves a body keeps its fork. By how much the connecting branch is longer than straight is added.
  * The junction with the larger ball stays in its place. Branches that close a cycle of the shape
  * are kept.
- * @pre the radius of junctions and tips is their distance from the surface.
+ * @pre the radius of junctions and tips is their distance from the surface. @throws Cancelled
  */
-inline CurveSkeleton withWholeJunctions(CurveSkeleton skeleton, double minimum)
+inline CurveSkeleton withWholeJunctions(
+	CurveSkeleton skeleton, double minimum, const Progress& progress = Progress())
 {
-	return withMergedJunctions(std::move(skeleton), minimum,
+	return withMergedJunctions(
+		std::move(skeleton), minimum,
 		[](const CurveSkeleton& s, int larger, int smaller, double detour) {
 			return (protrusion(s, smaller, larger) + detour) / std::max(s.radius[smaller], 1e-300);
-		});
+		},
+		progress);
 }
 
 /// Length of a polyline up to each of its points.
@@ -403,15 +428,18 @@ inline BallChain evenPoints(const BallChain& line, int segments)
 }
 
 /// The spacing of nodes at each point of a polyline: `spacing` times the scale there, but growing
-/// by at most 0.3 of the length along the polyline.
-inline std::vector<double> spacingsAlong(
-	const BallChain& line, const ClosestSurface& surface, double spacing, const LocalScale& scale)
+/// by at most 0.3 of the length along the polyline. @throws Cancelled
+inline std::vector<double> spacingsAlong(const BallChain& line, const ClosestSurface& surface,
+	double spacing, const LocalScale& scale, const Progress& progress)
 {
 	std::vector<double> spacings(line.points.size(), spacing);
 	if (scale.isUniform())
 		return spacings;
-	for (size_t i = 0; i < spacings.size(); ++i)
+	for (size_t i = 0; i < spacings.size(); ++i) {
+		if (i % nodesPerCheck == 0)
+			progress.check();
 		spacings[i] *= scale.at(line.points[i], surface);
+	}
 	const auto boundBy = [&](size_t i, size_t near) {
 		spacings[i] = std::min(spacings[i],
 			spacings[near]
@@ -478,14 +506,17 @@ inline BallChain withShortEdges(const BallChain& line, const std::vector<double>
  * A polyline without crowded nodes: one goes if the straight segment from the node kept
  * before it to the one after it is inside and shorter than 1.25 spacings.
  * @param spacings at its points; on return at those that are left.
+ * @throws Cancelled
  */
-inline BallChain withoutCrowdedNodes(
-	const BallChain& line, std::vector<double>& spacings, const ClosestSurface& surface)
+inline BallChain withoutCrowdedNodes(const BallChain& line, std::vector<double>& spacings,
+	const ClosestSurface& surface, const Progress& progress)
 {
 	constexpr double longest = 1.25; // spacings
 	BallChain kept = {{line.points.front()}, {line.radii.front()}};
 	std::vector<double> ofKept(1, spacings.front());
 	for (size_t i = 1; i < line.points.size(); ++i) {
+		if (i % nodesPerCheck == 0)
+			progress.check();
 		const bool isLast = i + 1 == line.points.size();
 		if (!isLast && Distance(kept.points.back(), line.points[i + 1]) < longest * spacings[i]
 			&& isSegmentInside(surface, kept.points.back(), kept.radii.back(), line.points[i + 1],
@@ -500,13 +531,16 @@ inline BallChain withoutCrowdedNodes(
 }
 
 /// Whether a chain is inside; measures the radii where the bounds are not enough to tell.
-inline bool isInside(BallChain& chain, const ClosestSurface& surface)
+/// @throws Cancelled
+inline bool isInside(BallChain& chain, const ClosestSurface& surface, const Progress& progress)
 {
 	const auto segmentInside = [&](size_t i) {
 		return isSegmentInside(
 			surface, chain.points[i - 1], chain.radii[i - 1], chain.points[i], chain.radii[i]);
 	};
 	for (size_t i = 1; i < chain.points.size(); ++i) {
+		if (i % nodesPerCheck == 0)
+			progress.check();
 		if (segmentInside(i))
 			continue;
 		for (size_t k : {i - 1, i})
@@ -523,9 +557,10 @@ inline bool isInside(BallChain& chain, const ClosestSurface& surface)
  * Where a chord would leave the surface, the branch keeps its nodes, but for crowded ones, and only
  * its long edges are cut.
  * @pre radius holds the distances from the surface, or lower bounds. @post lower bounds.
+ * @throws Cancelled
  */
 inline CurveSkeleton evenlySampled(const CurveSkeleton& skeleton, const ClosestSurface& surface,
-	double spacing, const LocalScale& scale = sameEverywhere)
+	double spacing, const LocalScale& scale = sameEverywhere, const Progress& progress = Progress())
 {
 	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
 	const std::vector<Branch> branches = skeletonBranches(skeleton);
@@ -545,6 +580,7 @@ inline CurveSkeleton evenlySampled(const CurveSkeleton& skeleton, const ClosestS
 	for (const Branch& branch : branches)
 		++parallel[std::minmax(branch.first(), branch.last())];
 	for (const Branch& branch : branches) {
+		progress.check();
 		keep(branch.first()); // of a free cycle
 		const int minimum = branch.isClosed()                          ? 3
 			: parallel[std::minmax(branch.first(), branch.last())] > 1 ? 2
@@ -555,12 +591,12 @@ inline CurveSkeleton evenlySampled(const CurveSkeleton& skeleton, const ClosestS
 			line.radii.push_back(skeleton.radius[v]);
 		}
 		const double length = branchLength(skeleton, branch);
-		std::vector<double> spacings = spacingsAlong(line, surface, spacing, scale);
+		std::vector<double> spacings = spacingsAlong(line, surface, spacing, scale, progress);
 		BallChain chain = scale.isUniform()
 			? evenPoints(line, std::max(minimum, int(std::lround(length / spacing))))
 			: gradedPoints(line, spacings, minimum);
-		if (!isInside(chain, surface)) {
-			const BallChain thinned = withoutCrowdedNodes(line, spacings, surface);
+		if (!isInside(chain, surface, progress)) {
+			const BallChain thinned = withoutCrowdedNodes(line, spacings, surface, progress);
 			const BallChain kept = withShortEdges(thinned, spacings);
 			if (int(kept.points.size()) > minimum)
 				chain = kept;

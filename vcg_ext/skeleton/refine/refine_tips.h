@@ -12,6 +12,7 @@
 #include "refine_centre.h"
 #include "refine_graph.h"
 
+#include <skeleton/core/progress.h>
 #include <skeleton/graph/curve_skeleton.h>
 #include <skeleton/spatial/closest_surface.h>
 
@@ -63,9 +64,10 @@ inline Point3d tipDirection(
  * the shape is wide it goes no farther than three radii: a sheet would lead it around its rim. A
  * tip outside stays.
  * @pre the radius of tips is their distance from the surface, that of others a lower bound of it.
- * @post the same.
+ * @post the same. @throws Cancelled
  */
-inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, const TipRule& rule)
+inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, const TipRule& rule,
+	const Progress& progress = Progress())
 {
 	constexpr double farthest = 3, farthestTurn = 30 * M_PI / 180;
 	constexpr double gainOfLimb = 0.5;    // a cone of 30 degrees; a corner of a box has 0.42
@@ -76,6 +78,7 @@ inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, c
 	for (int v = 0; v < count; ++v) {
 		if (neighbours[v].size() != 1 || skeleton.radius[v] <= 0)
 			continue;
+		progress.check();
 		Point3d direction = tipDirection(skeleton, neighbours, v);
 		if (direction.SquaredNorm() == 0)
 			continue;
@@ -84,6 +87,8 @@ inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, c
 		int tip = v;
 		double scale = rule.scale.at(skeleton.position[v], surface);
 		while (left > 0) {
+			if (skeleton.position.size() % nodesPerCheck == 0)
+				progress.check();
 			const Point3d x = skeleton.position[tip];
 			const double r = skeleton.radius[tip];
 			const double step = std::min(rule.spacing * scale, r / 4);

@@ -106,8 +106,25 @@ public:
 		return exactFrom(query, closestNearSample(query));
 	}
 
-	/// Makes closest() exact, as closestExactly(), for all callers.
-	void makeExact() { alwaysExact = true; }
+	/// Builds what the first exact query would. @throws Cancelled. Complexity: O(F log F).
+	void prepareExact(const Progress& progress) const
+	{
+		std::call_once(trianglesOnce, [&] {
+			std::vector<Triangle> corners;
+			corners.reserve(faces.size());
+			for (int face : faces)
+				corners.push_back(surface.triangle(face));
+			triangles.corners = std::move(corners);
+			triangles.tree.emplace(surface.position, triangles.corners, progress);
+		});
+	}
+
+	/// Makes closest() exact, as closestExactly(), for all callers. @throws Cancelled
+	void makeExact(const Progress& progress = Progress())
+	{
+		prepareExact(progress);
+		alwaysExact = true;
+	}
 	bool isExact() const { return alwaysExact; }
 
 	/// A lower bound of the distance to the surface, inside or outside: the distance to the nearest
@@ -143,8 +160,9 @@ public:
 	 * "Signed distance computation using the angle weighted pseudonormal", IEEE TVCG 11(3), 2005).
 	 * Where that sum nearly cancels, or a face is a sliver, the winding number decides: at the
 	 * bottom of a slit, or the edge of a blade, thinner than the precision of the coordinates.
+	 * @param progress cancels what the first such query builds, in O(F log F).
 	 */
-	bool isInside(const Point3d& query, const Hit& hit) const
+	bool isInside(const Point3d& query, const Hit& hit, const Progress& progress = Progress()) const
 	{
 		const int h = 3 * hit.face;
 		const detail::TrianglePoint on = detail::closestOnTriangle(
@@ -173,16 +191,20 @@ public:
 			});
 		}
 		if (!isClear || normal.Norm() < minNormal * weights)
-			return solid().isInside(solid().in(query));
+			return solid(progress).isInside(solid(progress).in(query));
 		return (query - on.point) * normal < 0;
 	}
 
-	/// Distance to the surface: positive inside, negative outside.
-	double clearance(const Point3d& query) const { return signedDistance(query, closest(query)); }
-	/// The same from closestExactly().
-	double exactClearance(const Point3d& query) const
+	/// Distance to the surface: positive inside, negative outside. @param progress see isInside().
+	double clearance(const Point3d& query, const Progress& progress = Progress()) const
 	{
-		return signedDistance(query, closestExactly(query));
+		return signedDistance(query, closest(query), progress);
+	}
+	/// The same from closestExactly().
+	double exactClearance(const Point3d& query, const Progress& progress = Progress()) const
+	{
+		prepareExact(progress);
+		return signedDistance(query, closestExactly(query), progress);
 	}
 
 	/**
@@ -260,7 +282,7 @@ private:
 	mutable std::optional<SolidTest> bounded;
 	mutable std::once_flag boundedOnce;
 
-	const SolidTest& solid() const
+	const SolidTest& solid(const Progress& progress) const
 	{
 		std::call_once(boundedOnce, [&] {
 			std::vector<Point3d> corners;
@@ -273,7 +295,7 @@ private:
 				for (int v : surface.triangle(face))
 					corners.push_back(surface.position[v]);
 			}
-			bounded.emplace(corners, own);
+			bounded.emplace(corners, own, progress);
 		});
 		return *bounded;
 	}
@@ -335,20 +357,15 @@ private:
 
 	Hit exactFrom(const Point3d& query, const Hit& first) const
 	{
-		std::call_once(trianglesOnce, [&] {
-			triangles.corners.reserve(faces.size());
-			for (int face : faces)
-				triangles.corners.push_back(surface.triangle(face));
-			triangles.tree.emplace(surface.position, triangles.corners);
-		});
+		prepareExact(Progress());
 		const TriangleTree::Closest found = triangles.tree->closest(query, first.distance);
 		return found.face < 0 ? first
 							  : Hit {found.point, found.distance, faces[size_t(found.face)]};
 	}
 
-	double signedDistance(const Point3d& query, const Hit& hit) const
+	double signedDistance(const Point3d& query, const Hit& hit, const Progress& progress) const
 	{
-		return isInside(query, hit) ? hit.distance : -hit.distance;
+		return isInside(query, hit, progress) ? hit.distance : -hit.distance;
 	}
 
 	/// The ball if the surface bounds it, else the one around the query: the radius with which a
