@@ -120,7 +120,8 @@ public:
 			if (Distance(from, to) <= empty[a] + empty[b])
 				continue;
 			progress.report(0, what);
-			if (!isCovered(from, measured(a), to, measured(b)) && !isEnclosed(from, to, progress))
+			if (!isCovered(from, measured(a), to, measured(b), progress)
+				&& !isEnclosed(from, to, progress))
 				return false;
 		}
 		const std::vector<Point3d> firsts = firstNodes(curve);
@@ -152,25 +153,28 @@ private:
 
 	/// Whether empty balls cover the segment; false as well if it comes nearer to the surface than
 	/// its length / 2^16, or if the closest points would take longer than isEnclosed().
-	bool isCovered(const Point3d& a, double radiusA, const Point3d& b, double radiusB) const
+	bool isCovered(const Point3d& a, double radiusA, const Point3d& b, double radiusB,
+		const Progress& progress) const
 	{
 		constexpr int minimum = 64, verticesOfQuery = 8;
 		int queries = minimum + int(component.vertices.size()) / verticesOfQuery;
-		return isCovered(a, radiusA, b, radiusB, 0, queries);
+		return isCovered(a, radiusA, b, radiusB, progress, 0, queries);
 	}
 	/// @param queries that are left.
-	bool isCovered(const Point3d& a, double radiusA, const Point3d& b, double radiusB, int depth,
-		int& queries) const
+	bool isCovered(const Point3d& a, double radiusA, const Point3d& b, double radiusB,
+		const Progress& progress, int depth, int& queries) const
 	{
 		constexpr int deepest = 16;
 		if (!(radiusA > 0) || !(radiusB > 0) || depth > deepest || --queries < 0)
 			return false;
 		if (Distance(a, b) <= radiusA + radiusB)
 			return true;
+		if (queries % int(nodesPerCheck) == 0)
+			progress.report(0, what);
 		const Point3d middle = (a + b) / 2;
 		const double radius = closest.closestExactly(middle).distance;
-		return isCovered(a, radiusA, middle, radius, depth + 1, queries)
-			&& isCovered(middle, radius, b, radiusB, depth + 1, queries);
+		return isCovered(a, radiusA, middle, radius, progress, depth + 1, queries)
+			&& isCovered(middle, radius, b, radiusB, progress, depth + 1, queries);
 	}
 
 	/// The first node of each connected component of the curve.
