@@ -13,6 +13,7 @@
 #include <functional>
 #include <limits>
 #include <random>
+#include <utility>
 #include <vector>
 
 using namespace vcg::tri::mcf;
@@ -378,6 +379,80 @@ TEST(Mend, FillsATinyHoleHoweverItsFillingTurns)
 	EXPECT_EQ(fill(anyhow).left, 0);
 	anyhow.anyhow = 1e-6;
 	EXPECT_EQ(fill(anyhow).left, 1);
+}
+
+/// Tetrahedra around a common edge, each half as wide as its place, every third one inside out.
+shapes::Soup wedgesAroundAnEdge(int count)
+{
+	shapes::Soup soup;
+	soup.points = {{0, 0, -1}, {0, 0, 1}};
+	for (int i = 0; i < count; ++i) {
+		const int a = int(soup.points.size()), b = a + 1;
+		for (const double at : {i + 0.1, i + 0.6}) {
+			const double turn = 2 * M_PI * at / count;
+			soup.points.emplace_back(std::cos(turn), std::sin(turn), 0);
+		}
+		const shapes::Soup wedge = {{}, {{0, 1, b}, {0, a, 1}, {0, b, a}, {1, a, b}}};
+		for (const Triangle& t : (i % 3 ? wedge : shapes::insideOut(wedge)).triangles)
+			soup.triangles.push_back(t);
+	}
+	return soup;
+}
+
+TEST(Mend, PartsAnEdgeOfVeryManyFacesAcrossTheSolids)
+{
+	// All pairs of faces would take 16 GB.
+	const int count = 16000;
+	const shapes::Soup soup = wedgesAroundAnEdge(count);
+	int crowded = 0;
+	const std::vector<int> partner =
+		detail::pairedHalfEdges(soup.points, soup.triangles, &crowded, Progress());
+	EXPECT_EQ(crowded, 1);
+	int alone = 0, apart = 0;
+	for (size_t h = 0; h < partner.size(); ++h) {
+		const int g = partner[h];
+		alone += g < 0 || partner[size_t(g)] != int(h);
+		// Where none is inside out, each wedge stays with itself.
+		apart += g >= 0 && g / 12 != int(h) / 12 && (int(h) / 12) % 3 == 2;
+	}
+	EXPECT_EQ(alone, 0);
+	EXPECT_EQ(apart, 0);
+}
+
+TEST(Mend, MakesABodyOfEachOfManyThatShareAnEdge)
+{
+	const int count = 60;
+	shapes::Soup soup = wedgesAroundAnEdge(count);
+	for (int i = 0; i < count; i += 3) // all outward
+		for (int k = 0; k < 4; ++k)
+			std::swap(soup.triangles[size_t(4 * i + k)][1], soup.triangles[size_t(4 * i + k)][2]);
+	expectMended(mendedOf(soup), soup, count, 2 * count);
+}
+
+TEST(Mend, LeavesFacesAloneThatAllTurnTheSameWayAtAnEdge)
+{
+	shapes::Soup fins = wedgesAroundAnEdge(100);
+	std::vector<Triangle> same;
+	for (size_t f = 1; f < fins.triangles.size(); f += 4)
+		if (f / 4 % 3 != 0)
+			same.push_back(fins.triangles[f]);
+	ASSERT_GT(same.size(), 64u);
+	for (const int g : detail::pairedHalfEdges(fins.points, same, nullptr, Progress()))
+		EXPECT_EQ(g, -1);
+}
+
+TEST(Mend, IsCancelledAtAnEdgeOfVeryManyFaces)
+{
+	const shapes::Soup soup = wedgesAroundAnEdge(100000);
+	int asked = 0, last = 1 << 30;
+	const Progress progress([&](int, const char*) { return ++asked < last; });
+	detail::pairedHalfEdges(soup.points, soup.triangles, nullptr, progress);
+	// Sorting at the edge asks, by far, more often than what comes before it.
+	const int inAll = std::exchange(asked, 0);
+	EXPECT_GT(inAll, 100);
+	last = inAll - 10;
+	EXPECT_THROW(
+		detail::pairedHalfEdges(soup.points, soup.triangles, nullptr, progress), Cancelled);
 }
 
 TEST(Mend, DoesNotMergeAcrossSlivers)

@@ -8,7 +8,9 @@
 #define VCG_MCF_PART_SURFACE_H
 
 #include <skeleton/core/disjoint_sets.h>
+#include <skeleton/core/grouped_sort.h>
 #include <skeleton/core/progress.h>
+#include <skeleton/core/ticker.h>
 #include <skeleton/input/soup_repair.h>
 #include <skeleton/mesh/surface_mesh.h>
 
@@ -62,8 +64,61 @@ private:
 	int vertex(int h) const { return triangles[size_t(h) / 3][size_t(h) % 3]; }
 };
 
+/**
+ * Pairs the faces around an edge as brackets are matched: each with the next one across the solid
+ * between them. Those that stay alone all turn the same way.
+ * @param axis  of the edge, from its lower end. @param away  unit vectors into each face, square to
+ * the edge. @param join  join(i, j) is called for each pair.
+ * @throws Cancelled. Complexity: O(n log n).
+ */
+template <class Join>
+void pairAcrossSolid(const SoupEdge* faces, const Point3d& axis, const std::vector<Point3d>& away,
+	const Cancellation& cancel, const Join& join)
+{
+	struct Face
+	{
+		long angle;
+		bool opens; ///< the solid is on its counter-clockwise side, seen against the axis
+		int index;
+		/// Of faces at the same angle those that close come first, so that bodies that touch part.
+		bool operator<(const Face& other) const
+		{
+			return std::tie(angle, opens, index) < std::tie(other.angle, other.opens, other.index);
+		}
+	};
+	constexpr double alike = 1e6; // angles are compared to 1 / alike
+	const long halfTurn = std::lround(alike * M_PI);
+	const int count = int(away.size());
+	const Point3d& x = away[0];
+	const Point3d y = axis.SquaredNorm() > 0 ? (axis ^ x) / axis.Norm() : Point3d(0, 0, 0);
+	std::vector<Face> around;
+	around.reserve(away.size());
+	cancellableLoop(count, cancel, [&](int i) {
+		const Point3d& d = away[size_t(i)];
+		const long angle = std::lround(alike * std::atan2(d * y, d * x));
+		around.push_back({angle == -halfTurn ? halfTurn : angle, !faces[i].forward, i});
+	});
+	sortCancellable(around, 0, around.size(), cancel);
+	std::vector<char> taken(away.size(), 0);
+	std::vector<int> open;
+	for (const bool isFirstRound : {true, false})
+		cancellableLoop(count, cancel, [&](int k) {
+			const Face& face = around[size_t(k)];
+			if (face.opens) {
+				if (isFirstRound)
+					open.push_back(face.index);
+			}
+			else if (!taken[size_t(face.index)] && !open.empty()) {
+				taken[size_t(face.index)] = 1;
+				join(open.back(), face.index);
+				open.pop_back();
+			}
+		});
+}
+
 /// The partner of each half-edge; -1: none. Of more than two faces at an edge, those that continue
-/// each other best are paired first. @param crowdedEdges  gets the number of such edges, or null.
+/// each other best are paired first; of very many, see pairAcrossSolid().
+/// @param crowdedEdges  gets the number of such edges, or null. @throws Cancelled
 inline std::vector<int> pairedHalfEdges(const std::vector<Point3d>& points,
 	const std::vector<Triangle>& triangles, int* crowdedEdges, const Progress& progress)
 {
@@ -98,6 +153,12 @@ inline std::vector<int> pairedHalfEdges(const std::vector<Point3d>& points,
 					d -= axis * ((d * axis) / axis.SquaredNorm());
 				away.push_back(d.Norm() > 0 ? d / d.Norm() : d);
 			}
+			constexpr int maxForAllPairs = 64;
+			if (count > maxForAllPairs) {
+				pairAcrossSolid(
+					begin, axis, away, progress, [&](int i, int j) { join(begin[i], begin[j]); });
+				return;
+			}
 			// Pairs of consistent orientation come first, then those with the flatter angle, then
 			// those with the solid in the angle below 180 degrees, which parts bodies that touch.
 			constexpr double alike = 1e6; // cosines are compared to 1 / alike
@@ -129,12 +190,13 @@ inline std::vector<int> pairedHalfEdges(const std::vector<Point3d>& points,
 /**
  * Parts a surface where an edge has more than two faces or a vertex several fans of faces: by
  * copies of vertices, and by new ones in the middle of edges whose pairs of faces share both ends.
- * At an edge, the faces that continue each other best are paired.
+ * At an edge, the faces that continue each other best are paired; of very many, those with the
+ * solid between them.
  * @param points    mesh units; get new ones at their end. @param triangles are changed.
  * @param partedFrom gets, for each new point, the one that it copies; -1 in the middle of an edge.
  * @param keepOpenFans  fans with borders at a vertex stay together, since the hole between them is
  *                  still to be filled.
- * @throws Cancelled. Complexity: about O(V + F), and O(n^2 log n) for each edge with n > 2 faces.
+ * @throws Cancelled. Complexity: about O(V + F), and O(n log n) for each edge with n > 2 faces.
  */
 inline PartedSurface partSurface(std::vector<Point3d>& points, std::vector<Triangle>& triangles,
 	std::vector<int>& partedFrom, bool keepOpenFans, const Progress& progress = Progress())
