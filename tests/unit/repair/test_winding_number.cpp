@@ -9,7 +9,11 @@
 
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
+#include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <random>
 #include <vector>
 
@@ -144,6 +148,55 @@ TEST(WindingVolumes, OfWhatIsInsideOut)
 {
 	const shapes::Soup soup = shapes::insideOut(shapes::box());
 	EXPECT_NEAR(windingVolumes(soup.points, soup.triangles).negative, 1, 1e-9);
+}
+
+/// Of this process, in MB.
+double residentMemory()
+{
+	size_t all = 0, resident = 0;
+	std::ifstream("/proc/self/statm") >> all >> resident;
+	return double(resident) * double(sysconf(_SC_PAGESIZE)) / (1 << 20);
+}
+
+TEST(WindingVolumes, KeepTheCrossingsOfOneRayOnly)
+{
+	// Every ray crosses all of the plates: 128 x 128 x 400 crossings are 105 MB.
+	const int count = 200;
+	shapes::Soup plates;
+	for (int i = 0; i < count; ++i) {
+		const int first = int(plates.points.size());
+		const shapes::Soup plate = shapes::moved(shapes::box(1, 1, 0.4), {0, 0, double(i)});
+		plates.points.insert(plates.points.end(), plate.points.begin(), plate.points.end());
+		for (const Triangle& t : plate.triangles)
+			plates.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+	}
+	const double before = residentMemory();
+	double most = 0;
+	int asked = 0;
+	const Progress progress([&](int, const char*) {
+		most = std::max(most, residentMemory() - before);
+		return ++asked > 0;
+	});
+	const WindingVolumes found = windingVolumes(plates.points, plates.triangles, 128, progress);
+	EXPECT_NEAR(found.once, 0.4 * count, 1e-9 * count);
+	EXPECT_EQ(found.wrongPart(), 0);
+	EXPECT_LT(most, 20);
+	EXPECT_GT(asked, 200) << "it can be cancelled";
+}
+
+TEST(WindingVolumes, AreTheSameForFacesInAnyOrder)
+{
+	shapes::Soup soup =
+		shapes::joined({shapes::sphere(4), shapes::insideOut(shapes::sphere(3, 0.5)),
+			shapes::moved(shapes::box(2, 0.3, 0.2), {0.5, 0.1, 0.2})});
+	const WindingVolumes found = windingVolumes(soup.points, soup.triangles);
+	EXPECT_GT(found.repeated, 0.01);
+	std::mt19937 random(3);
+	std::shuffle(soup.triangles.begin(), soup.triangles.end(), random);
+	const WindingVolumes again = windingVolumes(soup.points, soup.triangles);
+	EXPECT_EQ(found.once, again.once);
+	EXPECT_EQ(found.repeated, again.repeated);
+	EXPECT_EQ(found.negative, again.negative);
 }
 
 } // namespace

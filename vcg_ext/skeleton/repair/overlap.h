@@ -35,11 +35,57 @@ struct WindingVolumes
 	}
 };
 
+namespace detail {
+
+/// A face that is on the lines of a grid up to the last one.
+struct FaceOnLines
+{
+	int face, last;
+};
+
+/**
+ * Calls visit(line, faces on it) for each of `lines`, in order, that has any.
+ * @param span  of a face: its first and last line; none if the last is before the first.
+ * Complexity: O(lines + faces) and the faces that are visited; memory O(lines + faces).
+ */
+template <class Span, class Visit>
+void sweepLines(
+	int lines, const std::vector<FaceOnLines>& faces, const Span& span, const Visit& visit)
+{
+	struct Waiting
+	{
+		FaceOnLines face;
+		int next; ///< that starts on the same line; -1: none
+	};
+	std::vector<int> starting(size_t(lines), -1);
+	std::vector<Waiting> waiting;
+	waiting.reserve(faces.size());
+	for (const FaceOnLines& each : faces)
+		if (const auto [first, last] = span(each.face); first <= last) {
+			int& chain = starting[size_t(first)];
+			waiting.push_back({{each.face, last}, chain});
+			chain = int(waiting.size()) - 1;
+		}
+	std::vector<FaceOnLines> here;
+	for (int line = 0; line < lines; ++line) {
+		here.erase(std::remove_if(here.begin(), here.end(),
+					   [&](const FaceOnLines& each) { return each.last < line; }),
+			here.end());
+		for (int w = starting[size_t(line)]; w >= 0; w = waiting[size_t(w)].next)
+			here.push_back(waiting[size_t(w)].face);
+		if (!here.empty())
+			visit(line, here);
+	}
+}
+
+} // namespace detail
+
 /**
  * Integrates the winding number of a closed, oriented surface along rays parallel to z, one for
  * each cell of a grid over the bounding box in x and y: exactly along each ray.
  * @param across  cells along either side of the grid.
- * @throws Cancelled. Complexity: O(F + n log n) for n pairs of a face and a ray through its box.
+ * @throws Cancelled. Complexity: O(F + n log n) for n pairs of a face and a ray through its box;
+ * memory O(F), since only the crossings of one ray are kept.
  */
 inline WindingVolumes windingVolumes(const std::vector<Point3d>& points,
 	const std::vector<Triangle>& triangles, int across = 128, const Progress& progress = Progress())
@@ -55,48 +101,51 @@ inline WindingVolumes windingVolumes(const std::vector<Point3d>& points,
 		return volumes;
 	// Rays avoid the middle and the sides of cells, where shapes tend to have vertices and edges.
 	constexpr double offset = 0.4637;
-	std::vector<std::vector<std::pair<double, int>>> crossings(size_t(across) * size_t(across));
-	detail::reportedLoop(int(triangles.size()), progress.part(0, 0.8), what, [&](int f) {
+	detail::Ticker ticker(progress.cancelOnly(), what, 1);
+	// The first and the last ray, or line of rays, that may meet a face.
+	const auto spanAlong = [&](int axis, double step) {
+		return [&, axis, step](int f) {
+			ticker.tick();
+			const Triangle& t = triangles[size_t(f)];
+			const double p = points[size_t(t[0])][axis], q = points[size_t(t[1])][axis],
+						 r = points[size_t(t[2])][axis];
+			const auto rays = [&](double x) { return (x - box.min[axis]) / step - offset; };
+			return std::pair(std::max(0, int(std::ceil(rays(std::min({p, q, r}))))),
+				std::min(across - 1, int(std::floor(rays(std::max({p, q, r}))))));
+		};
+	};
+	const auto column = spanAlong(0, dx), row = spanAlong(1, dy);
+	std::vector<detail::FaceOnLines> faces;
+	for (int f = 0; f < int(triangles.size()); ++f)
+		if (const auto [first, last] = column(f); first <= last)
+			if (const auto [low, high] = row(f); low <= high) // of fine meshes few remain
+				faces.push_back({f, last});
+	std::vector<std::pair<double, int>> crossings; // of a ray: z, and the change of the winding
+	const auto addCrossing = [&](int f, double x, double y) {
 		const Triangle& t = triangles[size_t(f)];
 		const Point3d &a = points[size_t(t[0])], &b = points[size_t(t[1])],
 					  &c = points[size_t(t[2])];
 		const Point3d n = (b - a) ^ (c - a);
 		if (n[2] == 0)
 			return;
-		const auto first = [&](double minimum, double low, double step) {
-			return std::max(0, int(std::ceil((minimum - low) / step - offset)));
+		// The same for both triangles at an edge: no ray slips through or counts twice.
+		const auto isLeft = [&](int v, int w) {
+			const Point3d &p = points[size_t(std::min(v, w))], &q = points[size_t(std::max(v, w))];
+			const bool left = (q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0]) > 0;
+			return left == (v < w);
 		};
-		const auto last = [&](double maximum, double low, double step) {
-			return std::min(across - 1, int(std::floor((maximum - low) / step - offset)));
-		};
-		const int x1 = last(std::max({a[0], b[0], c[0]}), box.min[0], dx);
-		const int y0 = first(std::min({a[1], b[1], c[1]}), box.min[1], dy);
-		const int y1 = last(std::max({a[1], b[1], c[1]}), box.min[1], dy);
-		for (int i = first(std::min({a[0], b[0], c[0]}), box.min[0], dx); i <= x1; ++i)
-			for (int j = y0; j <= y1; ++j) {
-				const double x = box.min[0] + (i + offset) * dx, y = box.min[1] + (j + offset) * dy;
-				// The same for both triangles at an edge: no ray slips through or counts twice.
-				const auto isLeft = [&](int v, int w) {
-					const Point3d &p = points[size_t(std::min(v, w))],
-								  &q = points[size_t(std::max(v, w))];
-					const bool left = (q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0]) > 0;
-					return left == (v < w);
-				};
-				const bool left = isLeft(t[0], t[1]);
-				if (isLeft(t[1], t[2]) != left || isLeft(t[2], t[0]) != left)
-					continue;
-				const double z = a[2] - (n[0] * (x - a[0]) + n[1] * (y - a[1])) / n[2];
-				crossings[size_t(i) * size_t(across) + size_t(j)].emplace_back(
-					z, n[2] < 0 ? 1 : -1);
-			}
-	});
-	detail::reportedLoop(int(crossings.size()), progress.part(0.8, 1), what, [&](int i) {
-		auto& ray = crossings[size_t(i)];
-		std::sort(ray.begin(), ray.end());
+		const bool left = isLeft(t[0], t[1]);
+		if (isLeft(t[1], t[2]) != left || isLeft(t[2], t[0]) != left)
+			return;
+		const double z = a[2] - (n[0] * (x - a[0]) + n[1] * (y - a[1])) / n[2];
+		crossings.emplace_back(z, n[2] < 0 ? 1 : -1);
+	};
+	const auto addVolumes = [&] {
+		std::sort(crossings.begin(), crossings.end());
 		int winding = 0;
-		for (size_t k = 0; k + 1 < ray.size(); ++k) {
-			winding += ray[k].second;
-			const double volume = (ray[k + 1].first - ray[k].first) * dx * dy;
+		for (size_t k = 0; k + 1 < crossings.size(); ++k) {
+			winding += crossings[k].second;
+			const double volume = (crossings[k + 1].first - crossings[k].first) * dx * dy;
 			if (winding >= 1)
 				volumes.once += volume;
 			if (winding >= 2)
@@ -104,6 +153,20 @@ inline WindingVolumes windingVolumes(const std::vector<Point3d>& points,
 			if (winding < 0)
 				volumes.negative += volume;
 		}
+	};
+	using Faces = std::vector<detail::FaceOnLines>;
+	detail::sweepLines(across, faces, column, [&](int i, const Faces& inColumn) {
+		progress.report(double(i) / across, what);
+		const double x = box.min[0] + (i + offset) * dx;
+		detail::sweepLines(across, inColumn, row, [&](int j, const Faces& atRay) {
+			const double y = box.min[1] + (j + offset) * dy;
+			crossings.clear();
+			for (const detail::FaceOnLines& each : atRay) {
+				ticker.tick();
+				addCrossing(each.face, x, y);
+			}
+			addVolumes();
+		});
 	});
 	return volumes;
 }
