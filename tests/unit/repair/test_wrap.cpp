@@ -171,4 +171,36 @@ TEST(Wrap, SaysWhereItIsTooMuch)
 	EXPECT_THROW(wrap(tree, winding, 0.01, 1000), SolverError);
 }
 
+/// A sphere with a triangle without area that reaches far.
+shapes::Soup sphereWithASliver(double length)
+{
+	shapes::Soup soup = shapes::sphere(2);
+	const int first = int(soup.points.size());
+	soup.points.insert(soup.points.end(),
+		{Point3d(1, 0, 0), Point3d(length / 2, length / 7, 0), Point3d(length, 2 * length / 7, 0)});
+	soup.triangles.push_back({first, first + 1, first + 2});
+	return soup;
+}
+
+TEST(Wrap, OfALongSliverEndsAtTheLimit)
+{
+	// Hundreds of millions of nodes are near the first one, and the second one is too long for any.
+	for (const double length : {1e6, 1e12}) {
+		const shapes::Soup soup = sphereWithASliver(length);
+		const TriangleTree tree(soup.points, soup.triangles);
+		const WindingNumber winding(tree);
+		EXPECT_THROW(wrap(tree, winding, 0.1, 20000), SolverError) << length;
+	}
+}
+
+TEST(Wrap, IsCancelledWithinALongSliver)
+{
+	const shapes::Soup soup = sphereWithASliver(1e5);
+	const TriangleTree tree(soup.points, soup.triangles);
+	const WindingNumber winding(tree);
+	int asked = 0;
+	const Progress progress([&](int, const char*) { return ++asked < 4; });
+	EXPECT_THROW(wrap(tree, winding, 0.1, 1 << 30, progress), Cancelled);
+}
+
 } // namespace

@@ -84,16 +84,26 @@ private:
 	bool isInside(int node) const { return value[size_t(node)] > 0.5; }
 	bool changes(int node, int other) const { return isInside(node) != isInside(other); }
 
+	[[noreturn]] static void refuse()
+	{
+		throw SolverError("The surface has too many places of detail to be wrapped.");
+	}
+
 	void limitNodes() const
 	{
 		if (lattice.size() > maxNodes)
-			throw SolverError("The surface has too many places of detail to be wrapped.");
+			refuse();
 	}
 
 	void addNodesNearTriangles(const Progress& progress)
 	{
 		// The ends of an edge that crosses a triangle are no farther from it than the edge is long.
+		constexpr double maxSpacings = 1e9; // places in the lattice are integers
 		const double a = lattice.spacing();
+		if (tree.size() && tree.allNodes()[0].box.Diag() > maxSpacings * a)
+			refuse();
+		// A single long triangle may have more pieces than there may be nodes.
+		Ticker ticker(progress.cancelOnly(), wrapping, 1);
 		std::vector<std::array<Point3d, 3>> pieces;
 		reportedLoop(tree.size(), progress, wrapping, [&](int i) {
 			const int f = tree.order()[size_t(i)];
@@ -101,6 +111,8 @@ private:
 			while (!pieces.empty()) {
 				const std::array<Point3d, 3> t = pieces.back();
 				pieces.pop_back();
+				ticker.tick();
+				limitNodes();
 				size_t longest = 0;
 				for (size_t k = 1; k < 3; ++k)
 					if (SquaredDistance(t[k], t[(k + 1) % 3])
@@ -115,8 +127,8 @@ private:
 				else
 					addNodesNear(t, a);
 			}
-			limitNodes();
 		});
+		limitNodes();
 	}
 
 	void addNodesNear(const std::array<Point3d, 3>& t, double reach)
@@ -300,7 +312,7 @@ private:
  * @param tree      of the triangles. @param winding  their winding number.
  * @param spacing   of the lattice, mesh units, > 0: about the edge length of the result.
  * @param maxNodes  largest number of nodes of the lattice.
- * @throws SolverError if more nodes are needed; Cancelled.
+ * @throws SolverError if more nodes are needed, or the triangles reach over 1e9 spacings; Cancelled.
  * Complexity: O((F + A / spacing^2) log F) for the area A of the triangles.
  * Source: ours; marching tetrahedra after Doi and Koide, 1991, on the lattice of Labelle and
  * Shewchuk, 2007.
