@@ -150,6 +150,35 @@ TEST(SolidPieces, CavitiesAreTurnedInward)
 	EXPECT_EQ(count, 0);
 }
 
+TEST(SolidPieces, ManyAreLookedThroughOneByOneAndCanBeCancelled)
+{
+	// Blocks with a smaller one in each, every third of which is a cavity.
+	constexpr int side = 10, blocks = side * side * side;
+	shapes::Soup soup;
+	const auto add = [&](const shapes::Soup& block) {
+		const int first = int(soup.points.size());
+		soup.points.insert(soup.points.end(), block.points.begin(), block.points.end());
+		for (const Triangle& t : block.triangles)
+			soup.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+	};
+	for (int i = 0; i < blocks; ++i) {
+		const vcg::Point3d at(i % side, i / side % side, i / side / side);
+		add(shapes::moved(shapes::box(0.8, 0.8, 0.8), at));
+		const shapes::Soup inner =
+			shapes::moved(shapes::box(0.2, 0.2, 0.2), at + vcg::Point3d(0.3, 0.3, 0.3));
+		add(i % 3 == 0 ? shapes::insideOut(inner) : inner);
+	}
+	const CheckedSurface checked = checkedSurface(soup.points, soup.triangles);
+	int asked = 0, last = 1 << 30, cavities = 0;
+	const Progress progress([&](int, const char*) { return ++asked < last; });
+	EXPECT_TRUE(withCavitiesInward(checked.mesh, checked.turned, cavities, progress));
+	EXPECT_EQ(cavities, (blocks + 2) / 3);
+	EXPECT_GT(asked, 2 * blocks);
+	asked = 0;
+	last = blocks;
+	EXPECT_THROW(withCavitiesInward(checked.mesh, checked.turned, cavities, progress), Cancelled);
+}
+
 TEST(SolidPieces, WhatIsInsideACavityIsABody)
 {
 	const shapes::Soup soup = shapes::joined({hollowBall(), shapes::sphere(2, 0.2)});

@@ -23,6 +23,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -115,7 +116,8 @@ struct ClosedPieces
 };
 
 /// For each piece whether it is a cavity: oriented against the smallest piece around it, which is
-/// not one. @param turned  of each piece, see CheckedSurface::turned.
+/// not one. @param turned  of each piece, see CheckedSurface::turned. @throws Cancelled
+/// Complexity: see keepSolidPieces().
 inline std::vector<char> cavitiesAmong(const SurfaceMesh& mesh, const ClosedPieces& pieces,
 	const std::vector<char>& turned, const Progress& progress)
 {
@@ -129,18 +131,19 @@ inline std::vector<char> cavitiesAmong(const SurfaceMesh& mesh, const ClosedPiec
 		TriangleTree tree;
 		WindingNumber winding;
 
-		Body(const std::vector<Point3d>& points, const std::vector<Triangle>& faces) :
-				tree(points, faces), winding(tree)
+		Body(const std::vector<Point3d>& points, const std::vector<Triangle>& faces,
+			const Progress& progress) :
+				tree(points, faces, progress),
+				winding(tree, progress)
 		{
 		}
 	};
 	std::vector<std::unique_ptr<Body>> bodies(pieces.count());
 	const auto isInside = [&](size_t inner, size_t outer) {
-		if (!pieces.box[outer].IsIn(pieces.box[inner].min)
-			|| !pieces.box[outer].IsIn(pieces.box[inner].max))
-			return false;
 		if (!bodies[outer])
-			bodies[outer] = std::make_unique<Body>(mesh.position, pieces.faces[outer]);
+			bodies[outer] =
+				std::make_unique<Body>(mesh.position, pieces.faces[outer], progress.cancelOnly());
+		progress.check();
 		const std::vector<int>& vertices = pieces.vertices[inner];
 		const size_t step = std::max<size_t>(1, vertices.size() / samples);
 		for (size_t i = 0; i < vertices.size(); i += step)
@@ -148,17 +151,36 @@ inline std::vector<char> cavitiesAmong(const SurfaceMesh& mesh, const ClosedPiec
 				return false;
 		return true;
 	};
+	// Of the boxes of the pieces in `bySize`, each as a triangle between two of its corners.
+	std::vector<Point3d> corners;
+	std::vector<Triangle> boxes;
+	for (int piece : bySize) {
+		const int first = int(corners.size());
+		boxes.push_back({first, first + 1, first + 1});
+		corners.push_back(pieces.box[size_t(piece)].min);
+		corners.push_back(pieces.box[size_t(piece)].max);
+	}
+	const TriangleTree tree(corners, boxes, progress.part(0, 0.1));
 	std::vector<char> cavity(pieces.count(), 0);
-	reportedLoop(int(bySize.size()), progress, "Looking for cavities", [&](int i) {
+	std::vector<int> larger; // places in `bySize` of pieces with the box around
+	for (int i = 0; i < int(bySize.size()); ++i) {
+		progress.report(0.1 + 0.9 * i / double(bySize.size()), "Looking for cavities");
 		const size_t piece = size_t(bySize[size_t(i)]);
-		for (int k = i - 1; k >= 0; --k) {
+		const Box3d& box = pieces.box[piece];
+		larger.clear();
+		tree.forEachFaceIn(Box3d(box.min, box.min), [&](int k) {
+			if (k < i && pieces.box[size_t(bySize[size_t(k)])].IsIn(box.max))
+				larger.push_back(k);
+		});
+		std::sort(larger.begin(), larger.end(), std::greater<>());
+		for (int k : larger) {
 			const size_t around = size_t(bySize[size_t(k)]);
 			if (!isInside(piece, around))
 				continue;
 			cavity[piece] = !cavity[around] && turned[piece] != turned[around];
-			return;
+			break;
 		}
-	});
+	}
 	return cavity;
 }
 
@@ -238,7 +260,7 @@ inline std::optional<SurfaceMesh> withCavitiesInward(const SurfaceMesh& mesh,
  * @param minimum  volume below which a piece is left out, as a part of the largest's; 0: none is.
  * @param cavities  what becomes of them.
  * @throws Cancelled. Complexity: O(V + F); where some of P pieces are turned against others also
- *         O(P^2), and O(F log F) for each that has another one in its box.
+ *         about O(P log P), and O(F log F) for each that has another one in its box.
  */
 inline LeftOutPieces keepSolidPieces(CheckedSurface& surface, double minimum, Cavities cavities,
 	const Progress& progress = Progress())
