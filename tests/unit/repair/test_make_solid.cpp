@@ -208,6 +208,26 @@ TEST(MakeSolid, LeavesWhatIsTooThinToBeWrappedAndSaysSo)
 	EXPECT_EQ(piecesOf(made.surface.mesh), 2);
 }
 
+TEST(MakeSolid, DoesNotTakeACavityForAnOverlap)
+{
+	// Two small balls that cross in a lens, beside a hollow one: sound, or with a hole to be mended.
+	const double radius = 0.2, apart = 0.3;
+	const double lens = M_PI * (4 * radius + apart) * std::pow(2 * radius - apart, 2) / 12;
+	const double volume = 4 * M_PI / 3 * (1 - 0.125 + 2 * std::pow(radius, 3)) - lens;
+	const shapes::Soup ball = shapes::sphere(4, radius);
+	for (const shapes::Soup& outer : {shapes::sphere(4), shapes::opened(shapes::sphere(4))}) {
+		const SolidSurface made =
+			solid(shapes::joined({outer, shapes::insideOut(shapes::sphere(3, 0.5)),
+				shapes::moved(ball, {0, 0, 2}), shapes::moved(ball, {0, 0, 2 + apart})}));
+		EXPECT_NE(made.report.outcome, SolidReport::Wrapped);
+		EXPECT_NEAR(made.report.overlap, lens / volume, 0.1 * lens / volume);
+		EXPECT_GT(made.report.selfIntersections, 0);
+		EXPECT_EQ(piecesOf(made.surface.mesh), 4);
+		ASSERT_FALSE(made.surface.notes.empty());
+		EXPECT_NE(made.surface.notes.back().find("that is little"), std::string::npos);
+	}
+}
+
 TEST(MakeSolid, LeavesBodiesThatAWrapWouldCut)
 {
 	// A dumbbell and a block that crosses one of its ends, or shares a wall with it.

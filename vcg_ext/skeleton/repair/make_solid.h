@@ -441,7 +441,8 @@ public:
 			return std::move(solid);
 		if (!error) {
 			if (repair == Repair::Auto
-				&& isToBeWrapped(solid.surface.mesh, solid.surface.notes, progress.part(0.3, 0.4)))
+				&& isToBeWrapped(solid.surface.mesh, solid.surface.turned, solid.surface.notes,
+					progress.part(0.3, 0.4)))
 				wrapSound(progress.part(0.4, 1));
 			return std::move(solid);
 		}
@@ -519,13 +520,21 @@ private:
 	/// Whether bodies share walls, or the surface crosses itself and a noticeable part of the solid
 	/// is enclosed more than once; and it is not too thin to be wrapped. Adds a note if a surface
 	/// that crosses itself is kept.
-	bool isToBeWrapped(
-		const SurfaceMesh& mesh, std::vector<std::string>& notes, const Progress& progress)
+	/// @param turned  see CheckedSurface::turned.
+	bool isToBeWrapped(const SurfaceMesh& mesh, const std::vector<char>& turned,
+		std::vector<std::string>& notes, const Progress& progress)
 	{
 		const std::vector<Triangle> faces = mesh.triangles(progress);
 		SolidReport& report = solid.report;
+		// Outward, as the check has turned them, cavities would count as enclosed twice.
+		int cavities = 0;
+		const std::optional<SurfaceMesh> hollow =
+			withCavitiesInward(mesh, turned, cavities, progress.cancelOnly());
+		const std::vector<Triangle> inward =
+			hollow ? hollow->triangles(progress) : std::vector<Triangle>();
 		report.overlap =
-			windingVolumes(mesh.position, faces, 128, progress.part(0, 0.3)).wrongPart();
+			windingVolumes(mesh.position, hollow ? inward : faces, 128, progress.part(0, 0.3))
+				.wrongPart();
 		int pieces = 0;
 		connectedComponents(mesh, &pieces, progress.cancelOnly());
 		if (report.overlap < smallestOverlap && pieces == 1)
@@ -578,7 +587,8 @@ private:
 			return false; // flat
 		}
 		std::vector<std::string> notes;
-		if (repair == Repair::Auto && isToBeWrapped(checked.mesh, notes, progress.part(0.4, 0.6)))
+		if (repair == Repair::Auto
+			&& isToBeWrapped(checked.mesh, checked.turned, notes, progress.part(0.4, 0.6)))
 			return false;
 		std::vector<int> vertexOfInput;
 		vertexOfInput.reserve(points.size());
