@@ -381,6 +381,32 @@ TEST(Mend, FillsATinyHoleHoweverItsFillingTurns)
 	EXPECT_EQ(fill(anyhow).left, 1);
 }
 
+TEST(Mend, ASpeckIsOneWhicheverFaceComesFirst)
+{
+	// Half a sphere, open, with a ball far away, whose first face may be the first of all.
+	shapes::Soup half = shapes::sphere(4);
+	half.triangles.erase(std::remove_if(half.triangles.begin(), half.triangles.end(),
+							 [&](const Triangle& t) {
+								 return (half.points[size_t(t[0])] + half.points[size_t(t[1])]
+											+ half.points[size_t(t[2])])[2]
+									 < 0;
+							 }),
+		half.triangles.end());
+	// Of its diagonal the balls have 0.8, 3 and 4.6 %, of its volume about 1e-6, 4e-5 and 2e-4.
+	for (const auto& [radius, isSpeck] :
+		{std::pair(0.007, true), std::pair(0.026, true), std::pair(0.04, false)})
+		for (const Point3d& place : {Point3d(0, 0, 50), Point3d(0, 0, -50), Point3d(50, 20, 0)}) {
+			const shapes::Soup ball = shapes::moved(shapes::sphere(2, radius), place);
+			for (const shapes::Soup& soup :
+				{shapes::joined({half, ball}), shapes::joined({ball, half})}) {
+				const std::vector<int> partner =
+					detail::pairedHalfEdges(soup.points, soup.triangles, nullptr, Progress());
+				EXPECT_EQ(detail::specksOf(soup.points, soup.triangles, partner).count, isSpeck)
+					<< radius << " at " << place[0] << ' ' << place[2];
+			}
+		}
+}
+
 /// Tetrahedra around a common edge, each half as wide as its place, every third one inside out.
 shapes::Soup wedgesAroundAnEdge(int count)
 {

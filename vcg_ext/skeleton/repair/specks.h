@@ -73,6 +73,10 @@ inline Specks specksOf(const std::vector<Point3d>& points, const std::vector<Tri
 		}
 		largest = std::max(largest, p.box.Diag());
 	}
+	// That of an open piece depends on the origin: from the middle it is about what is enclosed.
+	for (auto& [first, p] : pieces)
+		if (p.open)
+			p.volume -= (p.box.Center() - origin) * p.normal / 3;
 	for (const auto& [first, p] : pieces)
 		if (p.box.Diag() > small * largest)
 			fullest = std::max(fullest, std::abs(p.volume));
