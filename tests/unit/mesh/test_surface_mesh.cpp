@@ -415,10 +415,11 @@ TEST(SurfaceMesh, TrimmedIsTheSameMeshWithoutSpareMemory)
 		EXPECT_EQ(anew.twin(h), trimmed.twin(h)) << "it goes on as before";
 }
 
-TEST(SurfaceMesh, AVertexOfVeryHighValenceIsBuiltInLinearTime)
+namespace {
+
+/// Two hubs, the first vertices, and a ring of vertices between them.
+shapes::Soup twoHubs(int around)
 {
-	// Quadratic pairing would take minutes at this size.
-	const int around = 200000;
 	shapes::Soup fan;
 	fan.points = {{0, 0, -1}, {0, 0, 1}};
 	for (int i = 0; i < around; ++i) {
@@ -428,9 +429,45 @@ TEST(SurfaceMesh, AVertexOfVeryHighValenceIsBuiltInLinearTime)
 		fan.triangles.push_back({0, b, a});
 		fan.triangles.push_back({1, a, b});
 	}
-	const SurfaceMesh mesh = fan.mesh();
-	EXPECT_EQ(mesh.eulerCharacteristic(), 2);
-	EXPECT_EQ(mesh.valence(0), around);
+	return fan;
+}
+
+} // namespace
+
+TEST(SurfaceMesh, AVertexOfVeryHighValenceIsBuiltInLinearTime)
+{
+	// Quadratic pairing would take minutes at this size, in whatever order the faces are.
+	const int around = 200000;
+	shapes::Soup fan = twoHubs(around);
+	std::mt19937 random(6);
+	for (bool isShuffled : {false, true}) {
+		if (isShuffled)
+			for (size_t i = fan.triangles.size() - 1; i > 0; --i)
+				std::swap(fan.triangles[i], fan.triangles[random() % (i + 1)]);
+		const SurfaceMesh mesh = fan.mesh();
+		EXPECT_EQ(mesh.eulerCharacteristic(), 2);
+		EXPECT_EQ(mesh.valence(0), around);
+		EXPECT_EQ(mesh.valence(1), around);
+	}
+}
+
+TEST(SurfaceMesh, TwinsAreFoundAtVerticesOfAnyValence)
+{
+	for (int around : {3, 100, 127, 128, 129, 130, 1000})
+		EXPECT_EQ(structureError(twoHubs(around).mesh()), "") << around;
+}
+
+TEST(SurfaceMesh, ManyCopiesOfAFaceAreRefusedInLinearTime)
+{
+	// Quadratic pairing would take minutes at this size.
+	const std::vector<Point3d> points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+	const std::vector<Triangle> alike(300000, Triangle {0, 1, 2});
+	EXPECT_THROW(SurfaceMesh(points, alike), InvalidInput);
+	EXPECT_FALSE(SurfaceMesh::isClosedManifold(points.size(), alike));
+	// Each with a twin, but many at an edge.
+	std::vector<Triangle> twoSided = alike;
+	twoSided.insert(twoSided.end(), alike.size(), Triangle {1, 0, 2});
+	EXPECT_FALSE(SurfaceMesh::isClosedManifold(points.size(), twoSided));
 }
 
 TEST(SurfaceMesh, APillowIsAComponentOfItsOwn)
