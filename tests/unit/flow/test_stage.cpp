@@ -9,7 +9,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
+#include <random>
+#include <utility>
 #include <vector>
 
 using namespace vcg::tri::mcf;
@@ -87,6 +90,56 @@ TEST(Stage, AVertexMadeByASplitHasItsNeighboursRadius)
 	stage.node = {0, 1, 2};
 	for (double r : stageRadius(stage))
 		EXPECT_DOUBLE_EQ(r, 2);
+}
+
+TEST(Stage, RadiiSpreadFromRingToRing)
+{
+	// The surface has merged into a vertex at one end. Other radii are means of equal ones, and of
+	// 20000 rings each is found from the one before.
+	std::vector<std::pair<double, double>> profile = {{0, 0}};
+	for (int i = 1; i <= 20000; ++i)
+		profile.emplace_back(i, 1);
+	profile.emplace_back(20001, 0);
+	Stage stage = plainStage(shapes::revolved(profile, 3));
+	std::fill(stage.node.begin(), stage.node.end(), 0);
+	int asked = 0;
+	const std::vector<double> radius =
+		stageRadius(stage, Progress([&](int, const char*) { return ++asked > 0; }));
+	for (double r : radius)
+		ASSERT_DOUBLE_EQ(r, radius[0]);
+	// Looking at all the unknown vertices in each round, it would ask 20000 times.
+	EXPECT_LT(asked, 100);
+	asked = 0;
+	EXPECT_THROW(
+		stageRadius(stage, Progress([&](int, const char*) { return ++asked < 3; })), Cancelled);
+}
+
+TEST(Stage, EachRoundTakesTheMeanOfAllThatWereKnownBefore)
+{
+	Stage stage = plainStage(shapes::torus(1, 0.3, 40, 12));
+	std::mt19937 random(1);
+	for (int& node : stage.node)
+		node = int(random() % 5) * 90;
+	const std::vector<double> found = stageRadius(stage);
+	std::vector<double> expected =
+		meanSurfaceDistance(stage.mesh.position, *stage.surface, stage.node);
+	for (bool isAnyLeft = true; isAnyLeft;) {
+		isAnyLeft = false;
+		const std::vector<double> before = expected;
+		for (int v = 0; v < stage.mesh.vertexSlots(); ++v) {
+			double sum = 0;
+			int count = 0;
+			stage.mesh.forEachOutgoing(v, [&](int h) {
+				const double r = before[stage.mesh.target(h)];
+				sum += r >= 0 ? r : 0;
+				count += r >= 0;
+			});
+			if (before[v] < 0 && count > 0)
+				expected[v] = sum / count;
+			isAnyLeft |= expected[v] < 0;
+		}
+	}
+	EXPECT_EQ(found, expected);
 }
 
 TEST(Stage, RadiiOfASphereAtItsCentre)

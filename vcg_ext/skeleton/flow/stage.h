@@ -226,20 +226,23 @@ inline std::vector<double> meanSurfaceDistance(const std::vector<Point3d>& posit
 }
 
 /// Local thickness at each vertex of a stage; where no surface vertex has merged into it, as after
-/// a split, the mean of its neighbours'. @throws Cancelled
+/// a split, the mean of its neighbours'. @throws Cancelled. Complexity: O(V + surface).
 inline std::vector<double> stageRadius(const Stage& stage, const Progress& progress = Progress())
 {
 	const SurfaceMesh& mesh = stage.mesh;
 	std::vector<double> radius =
 		meanSurfaceDistance(mesh.position, *stage.surface, stage.node, progress);
-	std::vector<int> unknown;
+	detail::Ticker ticker(progress.cancelOnly(), "Measuring the thickness", mesh.vertexSlots());
+	std::vector<int> unknown; // those that may have a neighbour whose radius is known
 	for (int v = 0; v < mesh.vertexSlots(); ++v)
 		if (radius[v] < 0)
 			unknown.push_back(v);
+	std::vector<std::pair<int, double>> found;
+	std::vector<char> isNext = detail::filledArray(radius.size(), char(0), progress);
 	while (!unknown.empty()) {
-		std::vector<int> left;
-		std::vector<std::pair<int, double>> found;
+		found.clear();
 		for (int v : unknown) {
+			ticker.tick();
 			double sum = 0;
 			int count = 0;
 			mesh.forEachOutgoing(v, [&](int h) {
@@ -251,14 +254,18 @@ inline std::vector<double> stageRadius(const Stage& stage, const Progress& progr
 			});
 			if (count)
 				found.emplace_back(v, sum / count);
-			else
-				left.push_back(v);
 		}
-		if (found.empty())
-			break;
 		for (const auto& [v, r] : found)
 			radius[v] = r;
-		unknown = std::move(left);
+		unknown.clear();
+		for (const auto& entry : found)
+			mesh.forEachOutgoing(entry.first, [&](int h) {
+				const int w = mesh.target(h);
+				if (radius[w] < 0 && !isNext[w]) {
+					isNext[w] = 1;
+					unknown.push_back(w);
+				}
+			});
 	}
 	return radius;
 }
