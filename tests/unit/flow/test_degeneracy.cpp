@@ -29,6 +29,13 @@ std::vector<int> allVertices(const Stage& stage)
 	return all;
 }
 
+int neighbourhoodEuler(const SurfaceMesh& mesh, int v, double radius)
+{
+	NeighbourhoodScratch scratch(mesh.vertexSlots());
+	vcg::tri::mcf::detail::Ticker ticker(Progress(), "", 1);
+	return vcg::tri::mcf::neighbourhoodEuler(mesh, v, radius, scratch, ticker);
+}
+
 int fixedCount(const Stage& stage)
 {
 	return int(std::count(stage.fixed.begin(), stage.fixed.end(), 1));
@@ -73,6 +80,24 @@ TEST(NeighbourhoodEuler, StaysInItsOwnSheet)
 			middle = v;
 	ASSERT_GE(middle, 0);
 	EXPECT_EQ(neighbourhoodEuler(mesh, middle, 0.4), 1);
+}
+
+TEST(FixDegenerateVertices, TakesTimeInProportionToTheNeighbourhoodsAndCanBeCancelled)
+{
+	// Each of the 3000 vertices sees all of the others.
+	Stage stage = plainStage(shapes::torus(1, 0.3, 60, 50));
+	const double everything = 2;
+	int asked = 0;
+	EXPECT_EQ(fixDegenerateVertices(stage, allVertices(stage), everything,
+				  Progress([&](int, const char*) { return ++asked > 0; })),
+		3000);
+	// Ticks, one in 32768 of which asks.
+	EXPECT_NEAR(asked, 3000 * 3000 / 32768, 2);
+	stage.fixed.assign(stage.fixed.size(), 0);
+	asked = 0;
+	EXPECT_THROW(fixDegenerateVertices(stage, allVertices(stage), everything,
+					 Progress([&](int, const char*) { return ++asked < 3; })),
+		Cancelled);
 }
 
 TEST(FixDegenerateVertices, FixesAThinTubeAndNotAThickOne)

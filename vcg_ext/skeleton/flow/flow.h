@@ -50,7 +50,7 @@ inline void stepInFrames(
 	const std::vector<int> candidates =
 		collapseShortEdges(stage, parameters.epsilon, forest, progress.part(0.8, 0.9));
 	splitWideAngles(stage, parameters, forest, progress.part(0.9, 1));
-	fixDegenerateVertices(stage, candidates, parameters.epsilon);
+	fixDegenerateVertices(stage, candidates, parameters.epsilon, progress);
 	fixArrivedSheets(stage, parameters.epsilon);
 
 	// Merged and new vertices are between grid points; so are the poles of new ones.
