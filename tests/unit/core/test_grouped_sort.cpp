@@ -57,6 +57,21 @@ TEST(SortedGroups, AreWhatASortByGroupAndEntryMakes)
 			}
 }
 
+TEST(SortedGroups, OfNoEntriesReportPercentsAsOthersDo)
+{
+	for (int count : {0, 1}) {
+		int reports = 0;
+		const Progress progress([&](int percent, const char*) {
+			++reports;
+			EXPECT_GE(percent, 0);
+			EXPECT_LE(percent, 100);
+			return true;
+		});
+		EXPECT_EQ(grouped(randomPairs(count, 4, 1), 300000, progress).size(), size_t(count));
+		EXPECT_GE(reports, 2 * 300000 / int(detail::sortedAtOnce));
+	}
+}
+
 TEST(SortedGroups, OneLargeGroupAsksWhetherToCancelAsItGrows)
 {
 	constexpr int count = 1'000'000;

@@ -86,9 +86,8 @@ private:
 	std::vector<int> start; ///< of each group; the end of the last one; a spare
 	std::vector<Entry> entries;
 
-	double shareOf(size_t i) const { return double(i) / double(entries.size()); }
-
-	/// As forEach(), with indices into `entries`. Empty groups count for the reports as well.
+	/// As forEach(), with indices into `entries`. Empty groups count for the reports as well; there
+	/// may be no other ones.
 	template <class Visit>
 	void forEachRange(const Progress& progress, const char* what, Visit&& visit) const
 	{
@@ -98,7 +97,7 @@ private:
 			const size_t from = size_t(start[g]), to = size_t(start[g + 1]);
 			sinceReport += 1 + (to - from);
 			if (sinceReport > sortedAtOnce) {
-				progress.report(shareOf(from), what);
+				progress.report(entries.empty() ? 1 : double(from) / double(entries.size()), what);
 				sinceReport = 0;
 			}
 			if (from < to)
