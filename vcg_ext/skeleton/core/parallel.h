@@ -178,8 +178,10 @@ void forEachPart(
 			stop = true;
 		}
 	};
+	// Hidden, so that the threads that share it only read it. Made here: where memory is short,
+	// work() must not throw.
+	const Progress silent = Progress([&](int, const char*) { return !stop; }).cancelOnly();
 	const auto work = [&](bool reports) {
-		const Progress silent([&](int, const char*) { return !stop; });
 		for (int i; !stop && (i = next++) < count;) {
 			guarded(errors[i], [&] {
 				const Progress window = progress.part(before[i] / total, before[i + 1] / total);
