@@ -90,6 +90,24 @@ TEST(Progress, WhatMustNotEndHalfwayIsShownAndGoesOn)
 	EXPECT_NO_THROW(Progress().showOnly().report(0.5, "Writing"));
 }
 
+TEST(Progress, WhatIsShownOnlyGoesOnFromWhereTheBarIs)
+{
+	std::vector<int> percents;
+	std::string said;
+	const Progress progress([&](int percent, const char* what) {
+		percents.push_back(percent);
+		said = what;
+		return true;
+	});
+	progress.report(0.5, "Measuring");
+	const Progress shown = progress.showOnly();
+	shown.check();
+	EXPECT_EQ(said, "Measuring");
+	shown.cancelOnly().report(1, "Copying");
+	progress.check();
+	EXPECT_EQ(percents, (std::vector<int> {50, 50, 50, 50}));
+}
+
 TEST(Progress, IsSilentByDefault)
 {
 	EXPECT_NO_THROW(Progress().part(0, 0.5).report(1, "work"));

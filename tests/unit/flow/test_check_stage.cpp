@@ -272,3 +272,15 @@ TEST(CheckStage, CanBeCancelled)
 	const Progress stop([](int, const char*) { return false; });
 	EXPECT_THROW(checkStage(twoBodies(), stop), Cancelled);
 }
+
+TEST(CheckStage, TheBarRunsForwardOnce)
+{
+	const Stage stage = firstStage(shapes::sphere(7).mesh(), Parameters());
+	int last = 0;
+	checkStage(stage, Progress([&](int percent, const char*) {
+		EXPECT_GE(percent, last);
+		last = percent;
+		return true;
+	}));
+	EXPECT_GE(last, 90);
+}

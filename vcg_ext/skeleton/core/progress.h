@@ -91,11 +91,12 @@ public:
 		Progress shown = *this;
 		if (job)
 			shown.job = std::make_shared<Job>(Job {[job = job](int percent, const char* what) {
-				job->percent = percent;
-				job->what = what;
-				job->callback(percent, what);
-				return true;
-			}});
+													   job->percent = percent;
+													   job->what = what;
+													   job->callback(percent, what);
+													   return true;
+												   },
+				job->percent, job->what});
 		return shown;
 	}
 

@@ -161,8 +161,13 @@ private:
 
 	void checkVertices(const Progress& part) const
 	{
+		constexpr int properties = 6;
+		int property = 0;
 		const auto each = [&](const char* reason, const auto& isRight) {
-			requireEach(Part::Vertex, vertices(), part, reason, isRight);
+			const Progress own =
+				part.part(double(property) / properties, double(property + 1) / properties);
+			++property;
+			requireEach(Part::Vertex, vertices(), own, reason, isRight);
 		};
 		each("'mcfskel_pole_radius' is not finite, or too large to work with.",
 			[&](size_t v) { return std::abs(stage.poleRadius[v]) <= maxCoordinate; });
