@@ -101,6 +101,37 @@ TEST(SizingField, AShapeOfOneScaleHasNone)
 	EXPECT_TRUE(fieldOf(torus, 0.02).empty());
 }
 
+TEST(SizingField, RingsDoNotSpreadThroughTheHubsOfFans)
+{
+	// A thin disc whose caps are fans: the hubs are next to all vertices of their rims.
+	constexpr int around = 20000;
+	constexpr double height = 0.01;
+	const SurfaceMesh mesh =
+		shapes::revolved({{0, 0}, {0, 1}, {height, 1}, {height, 0}}, around).mesh();
+	PoleSet poles;
+	for (int v = 0; v < mesh.vertexSlots(); ++v) {
+		const vcg::Point3d& p = mesh.position[v];
+		poles.centre.emplace_back(height / 2, p[1], p[2]);
+		poles.radius.push_back(height / 2);
+	}
+	const detail::NeighbourLists neighbours(mesh, Progress());
+	std::vector<int> rings;
+	detail::RingScratch scratch(mesh.vertexSlots());
+	size_t total = 0, hubs = 0;
+	for (int v = 0; v < mesh.vertexSlots(); ++v) {
+		detail::twoRings(neighbours, v, rings);
+		total += rings.size();
+		EXPECT_TRUE(detail::isThin(mesh, neighbours, poles.radius, v, scratch));
+		total += scratch.around.size();
+		hubs += neighbours.valence(v) == around;
+	}
+	EXPECT_EQ(hubs, 2u);
+	EXPECT_LT(total, 80u * around);
+	for (double radius : detail::medianRadii(
+			 neighbours, poles, std::vector<char>(poles.radius.size(), 1), Progress()))
+		ASSERT_EQ(radius, height / 2);
+}
+
 TEST(SizingField, NoiseIsNotThin)
 {
 	// The balls between the spikes are as small as those of a thin tube, on a ball that is nowhere thin.

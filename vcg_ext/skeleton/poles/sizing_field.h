@@ -69,6 +69,8 @@ public:
 		});
 	}
 
+	int valence(int v) const { return start[v + 1] - start[v]; }
+
 	template <class Visitor>
 	void forEach(int v, Visitor&& visit) const
 	{
@@ -80,13 +82,18 @@ private:
 	std::vector<int> start, target;
 };
 
-/// The vertices up to two edges away from v, v included, ascending.
+/// Rings of a vertex do not spread through neighbours of more edges than these. They would reach
+/// all around a fan of triangles, which is no neighbourhood, in the square of its size.
+constexpr int maxSpread = 256;
+
+/// The vertices up to two edges away from v, v included, ascending; see maxSpread.
 inline void twoRings(const NeighbourLists& neighbours, int v, std::vector<int>& around)
 {
 	around.assign(1, v);
 	neighbours.forEach(v, [&](int w) {
 		around.push_back(w);
-		neighbours.forEach(w, [&](int x) { around.push_back(x); });
+		if (neighbours.valence(w) <= maxSpread)
+			neighbours.forEach(w, [&](int x) { around.push_back(x); });
 	});
 	std::sort(around.begin(), around.end());
 	around.erase(std::unique(around.begin(), around.end()), around.end());
@@ -99,12 +106,17 @@ template <class Scratch, class Visit>
 void forEachVertex(int vertices, const Progress& progress, const Visit& visit)
 {
 	constexpr int minForTeam = 1 << 12;
+	constexpr int reportEvery = 1 << 9; // a visit may take a millisecond
 	if (vertices == 0)
 		return;
 	forEachPart(rangesForThreads(vertices, minForTeam), progress, sizing,
 		[&](int begin, int end, const Progress& part) {
 			Scratch scratch(vertices);
-			reportedLoop(end - begin, part, sizing, [&](int i) { visit(begin + i, scratch); });
+			for (int v = begin; v < end; ++v) {
+				if ((v - begin) % reportEvery == 0)
+					part.report(double(v - begin) / double(end - begin), sizing);
+				visit(v, scratch);
+			}
 		});
 }
 
@@ -155,7 +167,7 @@ struct RingScratch
  * Whether small balls at a vertex mean that the shape is thin there. Balls shrink towards sharp
  * edges and corners in proportion to the distance, but not along a tube or a plate: of the vertices
  * up to three edges away, and up to six within two radii r, at most a quarter may have balls larger
- * than 1.1 r + d / 4, d their distance.
+ * than 1.1 r + d / 4, d their distance. See maxSpread.
  * @param radius  see medianRadii().
  */
 inline bool isThin(const SurfaceMesh& mesh, const NeighbourLists& neighbours,
@@ -173,7 +185,9 @@ inline bool isThin(const SurfaceMesh& mesh, const NeighbourLists& neighbours,
 	size_t first = 0;
 	for (int ring = 0; ring < farthest && first < around.size(); ++ring) {
 		const size_t last = around.size();
-		for (; first < last; ++first)
+		for (; first < last; ++first) {
+			if (first > 0 && neighbours.valence(around[first]) > maxSpread)
+				continue;
 			neighbours.forEach(around[first], [&](int w) {
 				if (seen[w] || (ring >= always && Distance(mesh.position[w], p) > reach))
 					return;
@@ -182,6 +196,7 @@ inline bool isThin(const SurfaceMesh& mesh, const NeighbourLists& neighbours,
 				countLarger += radius[w] > larger
 					&& radius[w] > larger + slope * Distance(mesh.position[w], p);
 			});
+		}
 	}
 	for (int w : around)
 		seen[w] = 0;
