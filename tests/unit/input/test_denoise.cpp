@@ -79,16 +79,18 @@ TEST(Noise, CleanSurfacesAreLeftAlone)
 	}
 }
 
-TEST(Noise, NeighboursTellNoiseFromFacets)
+constexpr int coarseAround = 150;
+
+/// A thin ring of seven sides, its vertices spread unevenly over the exact surface.
+SurfaceMesh coarseRing()
 {
-	// A thin ring of seven sides, its vertices spread unevenly over the exact surface.
 	const double minor = 0.05;
-	const int around = 150, across = 7;
+	const int around = coarseAround, across = 7;
 	std::mt19937 random(3);
 	const auto deviate = [&] {
 		return 0.7 * (double(random()) / double(std::mt19937::max()) - 0.5);
 	};
-	const SurfaceMesh coarse = meshOf(
+	return meshOf(
 		shapes::transformed(shapes::torus(1, minor, around, across), [&](const vcg::Point3d& p) {
 			const double u = std::atan2(p[1], p[0]) + deviate() * 2 * M_PI / around;
 			const double v =
@@ -96,8 +98,13 @@ TEST(Noise, NeighboursTellNoiseFromFacets)
 			const double r = 1 + minor * std::cos(v);
 			return vcg::Point3d(r * std::cos(u), r * std::sin(u), minor * std::sin(v));
 		}));
+}
+
+TEST(Noise, NeighboursTellNoiseFromFacets)
+{
+	const SurfaceMesh coarse = coarseRing();
 	// Facets deviate by more than a twentieth of an edge, as noise would.
-	const double edge = 2 * M_PI / around, diagonal = coarse.bounds().Diag();
+	const double edge = 2 * M_PI / coarseAround, diagonal = coarse.bounds().Diag();
 	const NoiseLevel ofFacets = levelOf(coarse);
 	EXPECT_GT(ofFacets.deviation, 0.05 * edge);
 	EXPECT_GT(ofFacets.deviation, 3e-4 * diagonal);
@@ -174,6 +181,34 @@ TEST(Noise, OnlyTheNoisyComponentIsSmoothed)
 	const SurfaceMesh calm = smoothed(surface, report.ofVertices(surface.component(), {}));
 	for (size_t v = 0; v < clean.position.size(); ++v)
 		EXPECT_EQ(calm.position[v], mesh.position[v]);
+}
+
+TEST(Noise, TheReportIsOfWhatIsSmoothed)
+{
+	// Facets of a clean surface deviate more than the noise of the other one.
+	const SurfaceMesh facets = coarseRing();
+	const SurfaceMesh clean = meshOf(shapes::sphere(6));
+	const SurfaceMesh rough = noisy(clean, 5e-4 * clean.bounds().Diag());
+	const double ofFacets = measureNoise(facets).level, ofNoise = measureNoise(rough).level;
+	ASSERT_GT(ofFacets, 1.2 * ofNoise) << "where nothing is smoothed, facets count";
+	ASSERT_EQ(measureNoise(facets).maxRounds(), 0);
+	const NoiseReport both =
+		measureNoise(meshOf(shapes::joined({{facets.position, facets.triangles()},
+			shapes::moved({rough.position, rough.triangles()}, vcg::Point3d(5, 0, 0))})));
+	EXPECT_EQ(both.rounds[0], 0);
+	EXPECT_GT(both.rounds[1], 0);
+	EXPECT_NEAR(both.level, ofNoise, 1e-3 * ofNoise);
+}
+
+TEST(Noise, IsNotMeasuredNextToAHubOfManyTriangles)
+{
+	// A double cone, whose vertices have nearly all the others within two rings.
+	const auto cones = [](int around) {
+		return noisy(meshOf(shapes::revolved({{-1, 0}, {0, 1}, {1, 0}}, around)), 1e-3);
+	};
+	EXPECT_GT(levelOf(cones(100)).deviation, 1e-4);
+	EXPECT_EQ(levelOf(cones(2000)).deviation, 0);
+	EXPECT_FALSE(measureNoise(cones(2000)).isNoisy());
 }
 
 TEST(Noise, SmoothingRemovesNoiseAndKeepsTheVolume)

@@ -70,10 +70,17 @@ public:
 	{
 	}
 
-	/// Euclidean norm of the row of a vertex.
+	/// Number of terms of the row of a vertex: for v, its ring, and the rings of its ring.
+	double terms(int v) const
+	{
+		double count = 1;
+		mesh.forEachOutgoing(v, [&](int h) { count += 1 + rings.valence(mesh.target(h)); });
+		return count;
+	}
+
+	/// Euclidean norm of the row of a vertex. Complexity: O(terms(v)).
 	double norm(int v)
 	{
-		// The row has an entry for v, its ring, and the rings of its ring.
 		add(v, 1);
 		mesh.forEachOutgoing(v, [&](int h) {
 			const int j = mesh.target(h);
@@ -192,7 +199,9 @@ public:
 
 	/**
 	 * The noise of each component, or of some of its vertices. Of a component, at most 12000
-	 * vertices are sampled, spread evenly over its numbering.
+	 * vertices are sampled, spread evenly over its numbering; those with more than some 1000 within
+	 * two rings are left out: next to a hub of that many triangles, noise is no property of the
+	 * surface.
 	 * @param isAsked   of each vertex, 0 to leave it out; empty: none is left out.
 	 * @param thickness of each vertex, mesh units; empty: NoiseLevel::relative is not measured.
 	 * @throws Cancelled. Complexity: O(V).
@@ -200,7 +209,7 @@ public:
 	std::vector<NoiseLevel> levels(const Progress& progress = Progress(),
 		const std::vector<char>& isAsked = {}, const std::vector<double>& thickness = {}) const
 	{
-		constexpr int enough = 12000;
+		constexpr int enough = 12000, maxTerms = 1000;
 		detail::BilaplacianRows rows(mesh, rings, progress.cancelOnly());
 		const int components = surface.components();
 		std::vector<int> size(components, 0), seen(components, 0);
@@ -212,7 +221,7 @@ public:
 			const int c = surface.component()[v];
 			if (seen[c]++ % (1 + size[c] / enough) != 0 || (!isAsked.empty() && !isAsked[v]))
 				return;
-			if (!(normal[v].Norm() > 0))
+			if (!(normal[v].Norm() > 0) || rows.terms(v) > maxTerms)
 				return;
 			deviations[c].push_back(std::abs(alongNormal(v)) / rows.norm(v));
 			asked[c].push_back(v);
@@ -293,9 +302,11 @@ inline SurfaceMesh smoothed(const MeasuredSurface& surface, const std::vector<in
 /// The noise of a surface, and the smoothing that it needs.
 struct NoiseReport
 {
-	/// Largest NoiseLevel::deviation of a component, fraction of its diagonal; facets count, too.
+	/// Largest NoiseLevel::deviation of what gets rounds, of a component or of its thin parts,
+	/// fraction of its diagonal. If nothing gets any: of all components, facets included.
 	double level = 0;
-	/// Largest NoiseLevel::relative of the thin parts of a component; 0 if nothing is thin.
+	/// Largest NoiseLevel::relative of the thin parts of a component, likewise; 0 if nothing is
+	/// thin.
 	double ofThickness = 0;
 	/// Rounds of smoothed() for each component, where it is not thin and where it is thin.
 	std::vector<int> rounds, roundsWhereThin;
@@ -370,6 +381,8 @@ inline NoiseReport measureNoise(const MeasuredSurface& surface,
 			++edgeCount[c];
 		});
 	NoiseReport report;
+	double ofNoise = 0, ofThinNoise = 0; // the largest deviations of what gets rounds
+	double ofAll = 0, ofAllThin = 0;     // and of everything
 	for (int c = 0; c < components; ++c) {
 		const double edge = edgeSum[c] / edgeCount[c] / surface.diagonal(c);
 		const auto isClean = [&](const NoiseLevel& own) {
@@ -388,14 +401,22 @@ inline NoiseReport measureNoise(const MeasuredSurface& surface,
 		const double relative = isShape ? 0 : whereThin[c].relative;
 		const bool cleanWhereThin =
 			relative < minOfThickness || whereThin[c].whiteness < minWhiteness;
-		report.level = std::max(
-			{report.level, level, isShape ? 0 : whereThin[c].deviation / surface.diagonal(c)});
-		report.ofThickness = std::max(report.ofThickness, relative);
+		const double levelWhereThin = isShape ? 0 : whereThin[c].deviation / surface.diagonal(c);
+		ofAll = std::max({ofAll, level, levelWhereThin});
+		ofAllThin = std::max(ofAllThin, relative);
+		if (!clean)
+			ofNoise = std::max(ofNoise, level);
+		if (!cleanWhereThin) {
+			ofNoise = std::max(ofNoise, levelWhereThin);
+			ofThinNoise = std::max(ofThinNoise, relative);
+		}
 		report.rounds.push_back(clean ? 0 : level < strong ? fewRounds : manyRounds);
 		report.roundsWhereThin.push_back(cleanWhereThin ? 0
 				: relative < strongOfThickness          ? fewRounds
 														: manyRounds);
 	}
+	report.level = ofNoise > 0 ? ofNoise : ofAll;
+	report.ofThickness = ofThinNoise > 0 ? ofThinNoise : ofAllThin;
 	return report;
 }
 
