@@ -105,7 +105,7 @@ def test_subfolders_and_names_that_meet(folder, environment):
 @pytest.mark.parametrize("arguments, words", [
     (["--option", "foo=1"], "There is no option foo"),
     (["--option", "w_l=thin"], "w_l='thin' is no number"),
-    (["--option", "w_m=-1"], "Parameter w_m must be at least 0."),
+    (["--option", "w_m=-1"], "Parameter w_m must be between 0 and 1000000."),
     (["--option", "target_length=-1%"], "target_length='-1%' is not between 0% and 100%"),
     (["--option", "repair=all"], "repair='all' is none of 'auto', 'mend', 'off'"),
     (["--option", "w_l"], "expected NAME=VALUE"),

@@ -62,6 +62,16 @@ TEST(Parameters, NamesTheOneThatIsOutOfItsRange)
 	for (double bad : {-1.0, notANumber, infinity})
 		EXPECT_NE(refusal([&](Parameters& p) { p.wM = bad; }).find("w_m"), std::string::npos)
 			<< bad;
+	for (double bad : {1e-7, 1e22})
+		for (double Parameters::*weight :
+			{&Parameters::wL, &Parameters::wH, &Parameters::cotangentFactor})
+			EXPECT_NE(refusal([&](Parameters& p) {
+				p.*weight = bad;
+			}).find("between 0.000001 and 1000000."),
+				std::string::npos)
+				<< bad;
+	EXPECT_EQ(refusal([](Parameters& p) { p.wM = 1e22; }),
+		"Parameter w_m must be between 0 and 1000000.");
 	for (double bad : {0.0, -0.1, 0.11, notANumber, infinity})
 		EXPECT_NE(
 			refusal([&](Parameters& p) { p.epsilon = bad; }).find("epsilon"), std::string::npos)

@@ -430,6 +430,42 @@ TEST(Contraction, ExtremeWeightsAreSolvedToo)
 			}
 }
 
+TEST(Contraction, AllWeightsThatAreTakenCanBeSolvedFor)
+{
+	const Stage start = stageWithPoles(shapes::jittered(shapes::torus(1, 0.3, 30, 12), 0.005));
+	const double low = Parameters::minWeight, high = Parameters::maxWeight;
+	for (double factor : {low, 0.5, high})
+		for (double wL : {low, 1.0, high})
+			for (double wH : {low, 20.0, high})
+				for (double wM : {0.0, 40.0, high}) {
+					Parameters parameters;
+					parameters.cotangentFactor = factor;
+					parameters.wL = wL;
+					parameters.wH = wH;
+					parameters.wM = wM;
+					ASSERT_NO_THROW(parameters.check());
+					Stage stage = start;
+					EXPECT_NO_THROW(contract(stage, parameters))
+						<< factor << " (" << wL << ", " << wH << ", " << wM << ")";
+				}
+}
+
+TEST(Contraction, AVelocityWeightThatIsTooSmallForTheDirectSolverIsNamed)
+{
+	Stage stage = stageWithPoles(shapes::jittered(shapes::torus(), 0.005));
+	Parameters parameters;
+	parameters.directSolver = true;
+	parameters.wH = Parameters::minWeight;
+	parameters.wM = 0;
+	try {
+		contract(stage, parameters);
+		ADD_FAILURE() << "the system is singular in double precision";
+	}
+	catch (const SolverError& error) {
+		EXPECT_NE(std::string(error.what()).find("w_h"), std::string::npos) << error.what();
+	}
+}
+
 TEST(Contraction, CanBeCancelled)
 {
 	Stage stage = stageWithPoles(shapes::sphere(2));

@@ -10,7 +10,6 @@
 #include "errors.h"
 #include "has_qhull.h"
 
-#include <cmath>
 #include <string>
 
 namespace vcg::tri::mcf {
@@ -41,13 +40,17 @@ enum class Preset {
  */
 struct Parameters
 {
-	/// Smoothness weight w_L (Eq. 6); > 0. The weights of the Laplacian are `cotangentFactor` times
-	/// the sums of the cotangents.
+	/// Smoothness weight w_L (Eq. 6); in [minWeight, maxWeight]. The weights of the Laplacian are
+	/// `cotangentFactor` times the sums of the cotangents.
 	double wL = 1;
-	/// Velocity weight w_H (Eq. 6), in the paper's units; > 0. Larger: smaller steps, more of them.
+	/// Velocity weight w_H (Eq. 6), in the paper's units; in [minWeight, maxWeight]. Larger: smaller
+	/// steps, more of them.
 	double wH = 20;
-	/// Medial weight w_M (Eq. 6), in the paper's units; >= 0. 0: plain mean curvature skeleton.
+	/// Medial weight w_M (Eq. 6), in the paper's units; in [0, maxWeight]. 0: plain mean curvature
+	/// skeleton.
 	double wM = 40;
+	/// So that products of squared weights stay far inside single precision.
+	static constexpr double minWeight = 1e-6, maxWeight = 1e6;
 	/// Shorter edges are collapsed (Sec. 4.3); fraction of the diagonal, in (0, maxEpsilon].
 	double epsilon = 0.002;
 	static constexpr double maxEpsilon = 0.1;
@@ -80,7 +83,8 @@ struct Parameters
 	/// nestedBranches(); in [0, 1]. 0: the trunk alone; 1: all.
 	double detail = defaultDetail;
 	static constexpr double defaultDetail = 0.9;
-	/// Factor of the sums of the cotangents in the Laplacian, > 0. The published weights are for 1.
+	/// Factor of the sums of the cotangents in the Laplacian, in [minWeight, maxWeight]. The
+	/// published weights are for 1.
 	double cotangentFactor = 0.5;
 	/// Merge edges up to two epsilon before the flow, halve those far too long: see firstStage().
 	bool coarsen = true;
@@ -117,11 +121,12 @@ struct Parameters
 	/// @throws InvalidParameter naming the first parameter that is out of its range.
 	void check() const
 	{
-		require(wL > 0 && std::isfinite(wL), "w_l", "greater than 0");
-		require(cotangentFactor > 0 && std::isfinite(cotangentFactor), "cotangent_factor",
-			"greater than 0");
-		require(wH > 0 && std::isfinite(wH), "w_h", "greater than 0");
-		require(wM >= 0 && std::isfinite(wM), "w_m", "at least 0");
+		const auto isWeight = [](double w) { return w >= minWeight && w <= maxWeight; };
+		const char* const weights = "between 0.000001 and 1000000"; // minWeight, maxWeight
+		require(isWeight(wL), "w_l", weights);
+		require(isWeight(cotangentFactor), "cotangent_factor", weights);
+		require(isWeight(wH), "w_h", weights);
+		require(wM >= 0 && wM <= maxWeight, "w_m", "between 0 and 1000000");
 		require(
 			epsilon > 0 && epsilon <= maxEpsilon, "epsilon", "between 0 and 10 % of the diagonal");
 		require(splitAngle >= 60 && splitAngle < 180, "split_angle", "in [60, 180) degrees");

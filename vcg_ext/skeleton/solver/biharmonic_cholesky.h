@@ -64,8 +64,9 @@ inline std::vector<Point3d> solveBiharmonicDirectly(const SymmetricRows& M,
 	progress.report(0.4, "Contracting");
 	factor.factorize(A);
 	if (factor.info() != Eigen::Success)
-		throw SolverError("The contraction's linear system could not be factorised: the mesh "
-						  "has degenerate triangles. Resample it first.");
+		throw SolverError("The contraction's linear system could not be factorised: the mesh has "
+						  "degenerate triangles, or w_h is too small beside w_l. Resample the "
+						  "mesh first, or enlarge w_h.");
 	progress.report(0.9, "Contracting");
 	Eigen::MatrixXd right(n, 3);
 	for (int i = 0; i < n; ++i)
