@@ -246,6 +246,30 @@ TEST(ResampleSkeleton, RefusesParametersOutOfRange)
 	EXPECT_THROW(resampledSkeleton(s, 0.1, 1e-9), InvalidParameter);
 }
 
+TEST(ResampleSkeleton, AnEdgeThatIsTooShortIsAnsweredWithOneThatIsTaken)
+{
+	const CurveSkeleton large = spectacles();
+	CurveSkeleton small = large;
+	for (Point3d& p : small.position)
+		p = p * 1e-7;
+	for (const CurveSkeleton& s : {large, small})
+		for (double longest : {1e-30, 1e-300})
+			try {
+				resampledSkeleton(s, longest);
+				ADD_FAILURE() << longest;
+			}
+			catch (const InvalidParameter& error) {
+				const std::string text = error.what(), before = "at least ";
+				EXPECT_NE(text.find("more than 1e15 nodes"), std::string::npos) << text;
+				const double enough = std::stod(text.substr(text.find(before) + before.size()));
+				EXPECT_THROW(resampledSkeleton(
+								 s, enough, 0, Progress([](int, const char*) { return false; })),
+					Cancelled)
+					<< text;
+				EXPECT_THROW(resampledSkeleton(s, 0.98 * enough), InvalidParameter);
+			}
+}
+
 TEST(ResampleSkeleton, ACycleFarBelowTheSmoothingLengthIsSmoothedToo)
 {
 	// A large V, and a cycle at its corner that is a millionth of it.

@@ -207,6 +207,29 @@ TEST(Swc, ScaleAndUnits)
 		EXPECT_DOUBLE_EQ(rows[i].z, 1000 * plain[i].z);
 		EXPECT_DOUBLE_EQ(rows[i].radius, 1000 * plain[i].radius);
 	}
-	for (double scale : {0.0, -1.0, 1e37, std::numeric_limits<double>::quiet_NaN()})
-		EXPECT_THROW(swc(s, {scale, "", SwcSoma::None}), InvalidInput);
+	for (double scale : {0.0, -1.0, 1e37, 1e40, std::numeric_limits<double>::quiet_NaN()})
+		try {
+			swc(s, {scale, "", SwcSoma::None});
+			ADD_FAILURE() << scale;
+		}
+		catch (const InvalidInput& error) {
+			EXPECT_STREQ(error.what(), "The scale must be above 0 and at most 1e+36.");
+		}
+}
+
+TEST(Swc, AnIdBeyondAllIntegersIsOutOfRange)
+{
+	for (const char* id : {"3000000000", "-3000000000", "99999999999999999999"}) {
+		std::istringstream in(std::string(id) + " 0 0 0 0 1 -1\n");
+		try {
+			readSwc(in);
+			ADD_FAILURE() << id;
+		}
+		catch (const FormatError& error) {
+			EXPECT_NE(std::string(error.what())
+						  .find("id " + std::string(id) + " is not between 0 and 2147483647."),
+				std::string::npos)
+				<< error.what();
+		}
+	}
 }

@@ -93,6 +93,30 @@ TEST(MedialBalls, ScaleDoesNotMatter)
 			expected, 1e-3 * expected);
 }
 
+TEST(MedialBalls, AVoxelThatIsTooSmallIsAnsweredWithOneThatIsTaken)
+{
+	for (double scale : {1.0, 1e-9})
+		for (double length : {0.0, 100.0})
+			for (const auto& [voxel, count] :
+				{std::pair {1e-3, " million"}, {1e-100, "more than 1e15"}}) {
+				const auto ballsOf = [&, s = scale, l = length](double side) {
+					unionOfBalls({{0, 0, 0}, {l * s, 0, 0}}, {s, s}, side,
+						Progress([](int, const char*) { return false; }));
+				};
+				try {
+					ballsOf(voxel * scale);
+					ADD_FAILURE() << voxel;
+				}
+				catch (const InvalidParameter& error) {
+					const std::string text = error.what(), before = "at least ";
+					EXPECT_NE(text.find(count), std::string::npos) << text;
+					const double enough = std::stod(text.substr(text.find(before) + before.size()));
+					EXPECT_THROW(ballsOf(enough), Cancelled) << text;
+					EXPECT_THROW(ballsOf(0.95 * enough), InvalidParameter) << text;
+				}
+			}
+}
+
 TEST(MedialBalls, RefusesWhatItCannotBuild)
 {
 	EXPECT_THROW(unionOfBalls({{0, 0, 0}}, {1}, 0), InvalidParameter);

@@ -462,13 +462,18 @@ TEST(Resample, RefusesLengthsThatMakeNoSense)
 	EXPECT_THROW(resample(surface, {-0.1}, 5), InvalidParameter);
 	EXPECT_THROW(resample(surface, {std::nan("")}, 5), InvalidParameter);
 	EXPECT_THROW(resample(surface, {HUGE_VAL}, 5), InvalidParameter);
-	try {
-		resample(surface, {1e-5}, 5);
-		FAIL() << "60 thousand million vertices";
-	}
-	catch (const InvalidParameter& error) {
-		EXPECT_NE(std::string(error.what()).find("target_length"), std::string::npos);
-	}
+	for (const auto& [length, vertices] : {std::pair {1e-5, "need 69282 million vertices."},
+			 {1e-13, "need more than 1e15 million vertices."},
+			 {1e-200, "need more than 1e15 million vertices."}})
+		try {
+			resample(surface, {length}, 5);
+			FAIL() << length;
+		}
+		catch (const InvalidParameter& error) {
+			const std::string text = error.what();
+			EXPECT_NE(text.find("target_length"), std::string::npos);
+			EXPECT_NE(text.find(vertices), std::string::npos) << text;
+		}
 }
 
 TEST(Resample, NarrowBodiesGetNoMoreVerticesThanTheyNeed)

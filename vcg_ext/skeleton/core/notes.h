@@ -7,6 +7,7 @@
 #ifndef VCG_MCF_NOTES_H
 #define VCG_MCF_NOTES_H
 
+#include <cmath>
 #include <functional>
 #include <locale>
 #include <sstream>
@@ -34,6 +35,20 @@ std::string sentence(int digits, const Parts&... parts)
 inline std::string number(double value, int digits)
 {
 	return sentence(digits, value);
+}
+
+/// A count that may be too large for an integer, to the next one.
+inline std::string countText(double count)
+{
+	constexpr double most = 1e15;
+	return count < most ? number(std::round(count), 16) : "more than 1e15";
+}
+
+/// A lower bound with three digits, rounded up: the number that one reads is within the bound.
+inline std::string lowerBoundText(double bound)
+{
+	constexpr double halfOfLastDigit = 0.005; // of a number from 1 to 10
+	return number(bound * (1 + halfOfLastDigit), 3);
 }
 
 } // namespace detail

@@ -12,6 +12,7 @@
 #include "skeleton_branches.h"
 
 #include <skeleton/core/errors.h>
+#include <skeleton/core/notes.h>
 #include <skeleton/core/progress.h>
 
 #include <Eigen/SparseCholesky>
@@ -212,9 +213,9 @@ inline CurveSkeleton resampledSkeleton(const CurveSkeleton& skeleton, double lon
 	const double spacing = smoothing > 0 ? std::min(longestEdge, smoothing) : longestEdge;
 	if (length / spacing > maxNodes)
 		throw InvalidParameter("Edges as short as this would make "
-			+ std::to_string(std::llround(length / spacing))
+			+ detail::countText(length / spacing)
 			+ " nodes; choose a longest_edge and a smoothing of at least "
-			+ std::to_string(length / maxNodes) + " mesh units.");
+			+ detail::lowerBoundText(length / maxNodes) + " mesh units.");
 
 	CurveSkeleton result;
 	const bool knowsSignificance = !skeleton.significance.empty();

@@ -100,7 +100,8 @@ inline SwcReport writeSwc(
 {
 	requireWritable(skeleton);
 	if (!(options.scale > 0 && options.scale <= maxCoordinate))
-		throw InvalidInput("The scale must be above 0.");
+		throw InvalidInput(
+			"The scale must be above 0 and at most " + numberText(maxCoordinate) + ".");
 	for (size_t v = 0; v < skeleton.position.size(); ++v)
 		if (!isUsablePlace(skeleton.position[v] * options.scale)
 			|| (!skeleton.radius.empty() && !isUsableRadius(skeleton.radius[v] * options.scale)))

@@ -16,6 +16,7 @@
 #include <istream>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 namespace vcg::tri::mcf {
@@ -74,7 +75,7 @@ public:
 	double real(std::size_t i, const char* what) const
 	{
 		double value = 0;
-		if (!parse(i, value))
+		if (parse(i, value) != std::errc())
 			throw error(std::string(what) + " '" + std::string(fields[i]) + "' is no number.");
 		if (!std::isfinite(value))
 			throw error(std::string(what) + " '" + std::string(fields[i]) + "' is not finite.");
@@ -85,24 +86,27 @@ public:
 	int integer(std::size_t i, int minimum, int maximum, const char* what) const
 	{
 		int value = 0;
-		if (!parse(i, value))
+		const std::errc status = parse(i, value);
+		const bool isTooLarge = status == std::errc::result_out_of_range; // for any int
+		if (status != std::errc() && !isTooLarge)
 			throw error(std::string(what) + " '" + std::string(fields[i]) + "' is no integer.");
-		if (value < minimum || value > maximum)
-			throw error(std::string(what) + " " + std::to_string(value) + " is not between "
+		if (isTooLarge || value < minimum || value > maximum)
+			throw error(std::string(what) + " " + std::string(fields[i]) + " is not between "
 				+ std::to_string(minimum) + " and " + std::to_string(maximum) + ".");
 		return value;
 	}
 
 private:
+	/// @return invalid_argument also where something follows the number.
 	template <class Number>
-	bool parse(std::size_t i, Number& value) const
+	std::errc parse(std::size_t i, Number& value) const
 	{
 		std::string_view field = fields[i];
 		if (field.size() > 1 && field[0] == '+' && field[1] != '-')
 			field.remove_prefix(1);
 		const auto [end, status] =
 			std::from_chars(field.data(), field.data() + field.size(), value);
-		return status == std::errc() && end == field.data() + field.size();
+		return end == field.data() + field.size() ? status : std::errc::invalid_argument;
 	}
 
 	std::istream& in;

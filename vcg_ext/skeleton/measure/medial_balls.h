@@ -8,6 +8,7 @@
 #define VCG_MCF_MEDIAL_BALLS_H
 
 #include <skeleton/core/errors.h>
+#include <skeleton/core/notes.h>
 #include <skeleton/core/progress.h>
 #include <skeleton/mesh/surface_mesh.h>
 
@@ -86,17 +87,23 @@ inline BallUnion unionOfBalls(const std::vector<Point3d>& centre, const std::vec
 		throw InvalidInput(
 			"No node of the skeleton has a radius: there is no ball to join. Give its "
 			"surface, from which the radius can be measured.");
-	Point3i size;
-	double voxels = 1;
-	for (int axis = 0; axis < 3; ++axis) {
-		const double cells = std::ceil(box.Dim()[axis] / voxel) + 2 * margin + 1;
-		voxels *= cells;
-		size[axis] = int(std::min(cells, maxVoxels));
-	}
-	if (voxels > maxVoxels)
+	const auto cellsAlong = [&](int axis, double side) {
+		return std::ceil(box.Dim()[axis] / side) + 2 * margin + 1;
+	};
+	const auto voxelsOf = [&](double side) {
+		return cellsAlong(0, side) * cellsAlong(1, side) * cellsAlong(2, side);
+	};
+	if (!(voxelsOf(voxel) <= maxVoxels)) {
+		double enough = box.Dim()[box.MaxDim()] / maxVoxels;
+		while (voxelsOf(enough) > maxVoxels)
+			enough *= 1.01;
 		throw InvalidParameter("Voxels as small as this would be "
-			+ std::to_string(std::llround(voxels / 1e6)) + " million: choose a voxel of at least "
-			+ std::to_string(voxel * std::cbrt(voxels / maxVoxels)) + " mesh units.");
+			+ detail::countText(voxelsOf(voxel) / 1e6) + " million: choose a voxel of at least "
+			+ detail::lowerBoundText(enough) + " mesh units.");
+	}
+	Point3i size;
+	for (int axis = 0; axis < 3; ++axis)
+		size[axis] = int(cellsAlong(axis, voxel));
 
 	// In coordinates where a voxel is 1.
 	using Volume = SimpleVolume<SimpleVoxel<double>>;

@@ -10,6 +10,7 @@
 #include "medial_reference.h"
 
 #include <skeleton/core/errors.h>
+#include <skeleton/core/notes.h>
 #include <skeleton/core/parallel.h>
 #include <skeleton/core/progress.h>
 #include <skeleton/core/large_arrays.h>
@@ -218,7 +219,7 @@ inline SkeletonMeasures skeletonMeasures(const CurveSkeleton& skeleton, const Su
 		throw InvalidInput(
 			"The skeleton has no edge of positive length: there is nothing to measure.");
 	if (length > 1e4)
-		throw InvalidInput("The skeleton is " + std::to_string(std::llround(length))
+		throw InvalidInput("The skeleton is " + detail::countText(length)
 			+ " times as long as the surface's bounding box diagonal: they do not belong together.");
 	SurfaceMesh unit = surface.copied(begin);
 	detail::reportedLoop(unit.vertexSlots(), begin, what,

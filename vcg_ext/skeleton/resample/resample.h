@@ -11,6 +11,7 @@
 #include "isotropic_remesher.h"
 
 #include <skeleton/core/errors.h>
+#include <skeleton/core/notes.h>
 #include <skeleton/core/progress.h>
 #include <skeleton/core/ticker.h>
 #include <skeleton/mesh/breadth_first_numbering.h>
@@ -77,7 +78,7 @@ inline SurfaceMesh resampleAll(const MeasuredSurface& surface,
 	const double expected = expectedVertices(surface, targetLengthOfComponent, field);
 	if (!(expected <= maxVertices))
 		throw InvalidParameter("Parameter target_length is too small: the surface would need "
-			+ std::to_string(std::llround(expected / 1e6)) + " million vertices.");
+			+ detail::countText(expected / 1e6) + " million vertices.");
 	// Needles need more vertices than their area suggests; this bounds how many they may get.
 	const double limit =
 		std::max(maxOfExpected * expected, fewestAllowed) + surface.mesh().vertexCount();
