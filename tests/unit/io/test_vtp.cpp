@@ -94,3 +94,28 @@ TEST(Vtp, WhatIsNotKnownIsLeftOutAndWhatCannotBeIsRefused)
 	s.position[4][1] = std::numeric_limits<double>::infinity();
 	EXPECT_THROW(vtp(s), InvalidInput);
 }
+
+TEST(Vtp, IntegersAreWrittenWithoutExponents)
+{
+	// 100000 as a double is "1e+05", at which VTK stops reading an array of integers.
+	constexpr int nodes = 100001;
+	CurveSkeleton s;
+	for (int i = 0; i < nodes; ++i) {
+		s.position.emplace_back(i, 0, 0);
+		s.radius.push_back(1);
+		s.node.push_back(i);
+		if (i > 0)
+			s.edges.push_back({i - 1, i});
+	}
+	const std::string file = vtp(s);
+	int arrays = 0;
+	for (size_t at = file.find("type=\"Int"); at != file.npos;
+		 at = file.find("type=\"Int", at + 1)) {
+		const size_t begin = file.find('>', at) + 1;
+		EXPECT_EQ(file.substr(begin, file.find('<', begin) - begin).find('e'), file.npos)
+			<< file.substr(at, 60);
+		++arrays;
+	}
+	EXPECT_EQ(arrays, 9);
+	EXPECT_EQ(numbers(file, "mcfskel_node").back(), nodes - 1);
+}

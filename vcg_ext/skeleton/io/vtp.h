@@ -17,9 +17,24 @@
 
 #include <ostream>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace vcg::tri::mcf {
+
+namespace detail {
+
+/// Integers in full: VTK reads no exponents there.
+template <class Number>
+std::string vtpNumber(Number value)
+{
+	if constexpr (std::is_integral_v<Number>)
+		return std::to_string(value);
+	else
+		return numberText(value);
+}
+
+} // namespace detail
 
 /**
  * Writes a skeleton as .vtp, in text. Points are the nodes, in their order, shared by the branches
@@ -48,7 +63,7 @@ inline void writeVtp(std::ostream& out, const CurveSkeleton& skeleton)
 		out << "<DataArray type=\"" << type << "\" Name=\"" << name << '"' << more
 			<< " format=\"ascii\">";
 		for (size_t i = 0; i < values.size(); ++i)
-			out << (i % 12 == 0 ? '\n' : ' ') << numberText(double(values[i]));
+			out << (i % 12 == 0 ? '\n' : ' ') << detail::vtpNumber(values[i]);
 		out << "\n</DataArray>\n";
 	};
 	// VTK's cells: all of their points, and after each cell how many points there are so far.
