@@ -196,6 +196,20 @@ TEST(SkinWeights, VerticesAtTheSamePlaceMoveTogether)
 		}
 }
 
+TEST(SkinWeights, AVertexWithoutANodeFollowsTheNearestOne)
+{
+	// Of nodes at the same distance, as in the star's plane of symmetry, the first.
+	for (const Rigged& rigged : {star(2), ring()}) {
+		Rigged without = rigged;
+		without.skeleton.node.assign(without.skeleton.node.size(), -1);
+		const std::vector<VertexShares> expected = rigged.weights(), found = without.weights();
+		for (size_t v = 0; v < expected.size(); ++v) {
+			EXPECT_EQ(found[v].bone, expected[v].bone);
+			EXPECT_EQ(found[v].weight, expected[v].weight);
+		}
+	}
+}
+
 /// Neither a vertex without faces, nor one without a place, nor triangles without area keep the others from it.
 TEST(SkinWeights, WhatIsNoSurfaceFollowsItsNode)
 {

@@ -13,6 +13,7 @@
 #include <skeleton/core/progress.h>
 #include <skeleton/core/ticker.h>
 #include <skeleton/input/coincident_points.h>
+#include <skeleton/spatial/point_tree.h>
 
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
@@ -21,6 +22,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -144,7 +146,7 @@ inline VertexShares fourOfFive(std::array<double, 5> weight, const std::array<in
  * @pre the skeleton has nodes, and `armature` was made from it.
  * @throws SolverError; Cancelled
  * Complexity: one sparse factorisation, which takes longest and cannot be cancelled; a solution
- * with its factors for each bone; and all nodes looked at for each vertex without one.
+ * with its factors for each bone; O(log nodes) for each vertex without a node.
  */
 inline std::vector<VertexShares> skinWeights(const SkinnedSurface& surface,
 	const CurveSkeleton& skeleton, const Armature& armature, const Progress& progress = Progress())
@@ -153,6 +155,9 @@ inline std::vector<VertexShares> skinWeights(const SkinnedSurface& surface,
 	const size_t n = surface.position.size();
 	const std::vector<int> at =
 		detail::firstCoincident(surface.position, progress.part(0, 0.03), what);
+	std::optional<PointTree> nodes; // where a vertex has none
+	if (std::any_of(skeleton.node.begin(), skeleton.node.end(), [](int node) { return node < 0; }))
+		nodes.emplace(skeleton.position, progress.cancelOnly());
 	std::vector<int> node(n);
 	std::vector<double> reach(n);
 	double longest = 0;
@@ -163,11 +168,7 @@ inline std::vector<VertexShares> skinWeights(const SkinnedSurface& surface,
 		const Point3d& p = surface.position[v];
 		node[v] = skeleton.node[v];
 		if (node[v] < 0)
-			for (size_t k = 0; k < skeleton.position.size(); ++k)
-				if (node[v] < 0
-					|| SquaredDistance(p, skeleton.position[k])
-						< SquaredDistance(p, skeleton.position[size_t(node[v])]))
-					node[v] = int(k);
+			node[v] = std::max(nodes->nearest(p), 0); // none is nearest to what is not finite
 		reach[v] = Distance(p, skeleton.position[size_t(node[v])]);
 		if (std::isfinite(reach[v]))
 			longest = std::max(longest, reach[v]);
