@@ -434,6 +434,13 @@ TEST(SurfaceRounding, LeavesSurfacesFarAwayAlone)
 	EXPECT_EQ(roundedCoordinates(near)[0][0], double(0.1f));
 	const std::vector<Point3d> far = {{1e6 + 0.1, 0, 0}, {1e6 + 1, 1, 1}};
 	EXPECT_EQ(roundedCoordinates(far), far);
+	// Beyond the largest number of single precision, and near its smallest one.
+	for (double scale : {1e39, 1e-42, 1e-60}) {
+		std::vector<Point3d> own = near;
+		for (Point3d& p : own)
+			p = p * scale;
+		EXPECT_EQ(roundedCoordinates(own), own) << scale;
+	}
 }
 
 TEST(TransferredNodes, AreThoseOfTheNearestVertex)

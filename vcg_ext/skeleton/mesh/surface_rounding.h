@@ -33,7 +33,8 @@ inline double toSingle(double x)
 
 /**
  * Rounds the coordinates of a surface to single precision, where that resolves a millionth of its
- * diagonal: where it is not far from the origin. Elsewhere they stay as they are.
+ * diagonal: where it is not far from the origin, nor larger or smaller than single precision
+ * reaches. Elsewhere they stay as they are.
  *
  * The steps of the contraction amplify the smallest difference. Rounded, a mesh gives the same
  * graph whether it was stored in float or in double.
@@ -56,10 +57,12 @@ private:
 
 	static bool fitsSinglePrecision(const Box3d& box)
 	{
+		using Float = std::numeric_limits<float>;
 		double reach = 0;
 		for (int k = 0; k < 3; ++k)
 			reach = std::max({reach, std::abs(box.min[k]), std::abs(box.max[k])});
-		return reach * std::numeric_limits<float>::epsilon() <= 1e-6 * box.Diag();
+		const double step = std::max(reach * Float::epsilon(), double(Float::denorm_min()));
+		return reach <= Float::max() && step <= 1e-6 * box.Diag();
 	}
 };
 
