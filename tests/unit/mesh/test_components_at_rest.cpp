@@ -11,6 +11,8 @@
 #include <skeleton/flow/first_stage.h>
 #include <skeleton/resample/resample.h>
 #include <skeleton/flow/flow.h>
+#include <skeleton/flow/start_of_flow.h>
+#include <skeleton/poles/poles.h>
 #include <skeleton/spatial/solid_test.h>
 #include <skeleton/resample/target_length.h>
 
@@ -200,6 +202,28 @@ TEST(ComponentsAtRest, SpecksTakeNoShareOfTheWork)
 	const Parameters shared = sharedAmong(usual, diagonal);
 	EXPECT_NEAR(shared.epsilon, 2 * usual.epsilon, 1e-15);
 	EXPECT_EQ(sharedAmong(shared, diagonal).epsilon, shared.epsilon) << "twice";
+}
+
+TEST(ComponentsAtRest, AFlowThatHoldsVerticesSharesAndRestsLikeOthers)
+{
+	// Thin rings, which have limits of epsilon, and a speck.
+	shapes::Soup soup = shapes::torus(1e-3, 3e-4, 8, 6);
+	const size_t speck = soup.points.size();
+	for (int i = 0; i < 80; ++i)
+		soup =
+			shapes::joined({soup, shapes::moved(shapes::torus(1, 0.008, 60, 6), {0, 0, 1.0 + i})});
+	const SurfaceMesh surface = soup.mesh();
+	const PoleSet poles = medialPoles(surface, PoleMethod::Balls);
+	std::vector<char> held(soup.points.size(), 0);
+	held.back() = 1;
+	const Parameters usual;
+	const Parameters shared = sharedAmong(usual, MeasuredSurface(surface).diagonals());
+	ASSERT_GT(shared.epsilon, usual.epsilon);
+	const Stage stage = startOfFlow(surface, poles, held, usual);
+	EXPECT_FALSE(stage.epsilonLimit.empty());
+	EXPECT_EQ(stage.epsilonLimit, startOfFlow(surface, poles, held, shared).epsilonLimit);
+	for (size_t v = 0; v < held.size(); ++v)
+		EXPECT_EQ(stage.fixed[v], v < speck || held[v]) << v;
 }
 
 TEST(ComponentsAtRest, HostileBodiesHaveCurvesInsideOfTheRightTopology)

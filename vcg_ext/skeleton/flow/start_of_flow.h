@@ -16,6 +16,8 @@
 #include <skeleton/core/notes.h>
 #include <skeleton/core/parameters.h>
 #include <skeleton/core/progress.h>
+#include <skeleton/mesh/components_at_rest.h>
+#include <skeleton/mesh/measured_surface.h>
 #include <skeleton/mesh/surface_mesh.h>
 #include <skeleton/poles/pole_set.h>
 
@@ -29,25 +31,31 @@ namespace vcg::tri::mcf {
  *
  * With parameters.coarsen, and without vertices to hold and sheets, it is firstStage(): short edges
  * are merged, too long ones halved. Otherwise the stage has exactly the vertices of the surface:
- * held vertices and the rims of sheets stay where they are.
+ * held vertices and the rims of sheets stay where they are. Components that rest, see
+ * componentsAtRest(), are fixed from the start either way.
  *
  * @param surface  compact.
  * @param poles    of all its vertices, see medialPoles().
  * @param held     1 for the vertices to hold; empty if there are none.
+ * @param given    see sharedAmong() for more than 50 components.
  * @param onNote   receives what is held and kept; may be empty.
  * @throws InvalidParameter, InvalidInput, SolverError, Cancelled.
  * Complexity: O(V), with sheets as sheetness().
  */
 inline Stage startOfFlow(const SurfaceMesh& surface, const PoleSet& poles,
-	const std::vector<char>& held, const Parameters& parameters,
-	const Progress& progress = Progress(), const NoteCallback& onNote = {})
+	const std::vector<char>& held, const Parameters& given, const Progress& progress = Progress(),
+	const NoteCallback& onNote = {})
 {
-	if (held.empty() && !parameters.keepSheets && parameters.coarsen)
-		return firstStage(surface, parameters, &poles, progress);
+	if (held.empty() && !given.keepSheets && given.coarsen)
+		return firstStage(surface, given, &poles, progress);
 	const Progress begin = progress.cancelOnly();
 	const MeasuredSurface measured(surface, begin);
+	const Parameters parameters = sharedAmong(given, measured.diagonals());
 	Stage stage = initialStage(measured, poles, begin);
 	stage.epsilonLimit = epsilonLimits(measured, poles, parameters, begin);
+	const std::vector<char> rests = componentsAtRest(measured, begin);
+	for (size_t v = 0; v < stage.fixed.size(); ++v)
+		stage.fixed[v] = rests[stage.component[v]];
 	if (parameters.keepSheets) {
 		markSheets(stage, sheetness(surface, poles, progress.part(0, 0.4)),
 			parameters.sheetThreshold, progress.part(0.4, 0.5));
