@@ -488,8 +488,9 @@ private:
 		return false;
 	}
 
-	/// Wraps a sound surface. Keeps it, with a note, if the wrap cuts bodies, see isCutInWrap(), or
-	/// joins none where no noticeable part of the volume is enclosed more than once.
+	/// Wraps a sound surface. Keeps it, with a note, if the wrap fails, cuts bodies, see
+	/// isCutInWrap(), or joins none where no noticeable part of the volume is enclosed more than
+	/// once.
 	void wrapSound(const Progress& progress)
 	{
 		SolidSurface asItIs = std::exchange(solid, {});
@@ -502,19 +503,29 @@ private:
 			leftOut.hollow = std::make_shared<const SurfaceMesh>(*std::move(hollow));
 		const ClosedPieces bodies(mesh, progress.cancelOnly());
 		const int before = int(bodies.count()) - leftOut.cavities;
-		wrapIt(mesh.position, mesh.triangles(), {}, progress.part(0, 0.95));
+		const auto keepAsItIs = [&](const std::string& why) {
+			solid = std::move(asItIs);
+			solid.surface.notes.push_back(
+				"Bodies touch or cross each other. The surface is left as it is: " + why);
+		};
+		try {
+			wrapIt(mesh.position, mesh.triangles(), {}, progress.part(0, 0.95));
+		}
+		catch (const SolverError&) {
+			return keepAsItIs("a wrap of it would be too large.");
+		}
+		catch (const InvalidInput&) {
+			return keepAsItIs("a wrap of it would enclose nothing.");
+		}
 		const SurfaceMesh& wrapped = solid.surface.mesh;
 		const ClosedPieces pieces(wrapped, progress.cancelOnly());
 		const auto after = std::count_if(
 			pieces.volume.begin(), pieces.volume.end(), [](double v) { return v > 0; });
 		const bool isJoined = after < before || asItIs.report.overlap >= noticeableOverlap;
-		const bool isCut = isCutInWrap(mesh, bodies, wrapped, pieces, progress.part(0.95, 1));
-		if (isJoined && !isCut)
-			return;
-		solid = std::move(asItIs);
-		solid.surface.notes.push_back(isCut
-				? "Bodies touch or cross each other. The surface is left as it is: a wrap would cut thin ones."
-				: "Bodies touch each other. The surface is left as it is: a wrap would not join them.");
+		if (isCutInWrap(mesh, bodies, wrapped, pieces, progress.part(0.95, 1)))
+			keepAsItIs("a wrap would cut thin ones.");
+		else if (!isJoined)
+			keepAsItIs("a wrap would not join them.");
 	}
 
 	/// Whether bodies share walls, or the surface crosses itself and a noticeable part of the solid
@@ -700,8 +711,10 @@ private:
 		LeftOutPieces cavities;
 		std::tie(solid.report.piecesDropped, cavities) =
 			dropSmallPieces(made, spacing, progress.part(0.8, 0.85));
-		if (cavities.cavities > 0)
-			solid.report.leftOut = std::move(cavities);
+		if (LeftOutPieces& leftOut = solid.report.leftOut; leftOut.cavities > 0)
+			leftOut.cavities += cavities.cavities; // in the surface as given all are outside
+		else
+			leftOut = std::move(cavities);
 		solid.report.handles =
 			cutHandles(made.points, made.triangles, HandleLimits(), progress.part(0.85, 0.87));
 		CheckedSurface checked = checkedSurface(
