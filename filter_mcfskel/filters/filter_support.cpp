@@ -32,15 +32,15 @@ ParameterSpec targetLengthParameter()
 	return {ParameterKind::Length, "target_length", 0, "Target edge length",
 		"Length of the edges after resampling, mesh units or percent of the bounding box diagonal (of "
 		"each connected component). 0 chooses it from the mesh and says so in the log. Shorter edges "
-		"follow the surface more closely and take more time; sane are 0.3 to 1.5 %."};
+		"follow the surface more closely and take more time; recommended: 0.3 to 1.5 %."};
 }
 
 ParameterSpec resampleIterationsParameter()
 {
 	return {ParameterKind::Integer, "resample_iterations",
 		double(mcf::Parameters().resampleIterations), "Resampling rounds",
-		"Rounds of splitting, collapsing, flipping and smoothing. More make the triangles more even; 3 to "
-		"10 are sane."};
+		"Rounds of splitting, collapsing, flipping and smoothing. More make the triangles more even; "
+		"recommended: 3 to 10."};
 }
 
 ParameterSpec denoiseParameter()
@@ -63,7 +63,7 @@ std::vector<ParameterSpec> adaptiveParameters()
 		ParameterSpec {ParameterKind::Real, "relative_length", defaults.relativeLength,
 			"Edge length in local thicknesses",
 			"With 'adaptive': no edge is longer than this part of the local thickness, the radius of "
-			"the largest ball inside. 0.6 gives about ten vertices around a tube; sane are 0.4 to 1."}
+			"the largest ball inside. 0.6 gives about ten vertices around a tube; recommended: 0.4 to 1."}
 			.asAdvanced(),
 	};
 }
@@ -103,14 +103,14 @@ std::vector<ParameterSpec> weightParameters()
 	return {
 		{ParameterKind::Real, "w_l", defaults.wL, "Smoothness weight w_L",
 			"Weight of the smoothing, above 0; 1 is half the published one. A larger one "
-			"contracts in fewer steps and straightens the skeleton; sane are 0.5 to 4."},
+			"contracts in fewer steps and straightens the skeleton; recommended: 0.5 to 4."},
 		{ParameterKind::Real, "w_h", defaults.wH, "Velocity weight w_H",
 			"Weight that holds each vertex where it was, as published, above 0. A larger one "
-			"makes smaller steps, and more of them; sane are 10 to 50."},
+			"makes smaller steps, and more of them; recommended: 10 to 50."},
 		{ParameterKind::Real, "w_m", defaults.wM, "Medial weight w_M",
 			"Weight that draws each vertex to its medial pole, as published. A larger one "
 			"centres the skeleton better and keeps more branches; 0 is the mean curvature flow alone; "
-			"sane are 0 to 80."},
+			"recommended: 0 to 80."},
 	};
 }
 
@@ -120,7 +120,7 @@ ParameterSpec epsilonParameter()
 		"Shortest edge epsilon",
 		"Edges shorter than this are collapsed, mesh units or percent of the bounding box diagonal of "
 		"the surface (of each connected component). A larger one gives a coarser skeleton in less "
-		"time; sane are 0.1 to 0.5 %. 0 takes the default of 0.2 %."};
+		"time; recommended: 0.1 to 0.5 %. 0 takes the default of 0.2 %."};
 }
 
 ParameterSpec splitAngleParameter()
@@ -128,7 +128,7 @@ ParameterSpec splitAngleParameter()
 	return ParameterSpec {ParameterKind::Real, "split_angle", mcf::Parameters().splitAngle,
 		"Split angle",
 		"An edge is split if both angles opposite to it are wider than this, degrees. Smaller ones keep "
-		"more triangles during the flow; sane are 95 to 130."}
+		"more triangles during the flow; recommended: 95 to 130."}
 		.asAdvanced();
 }
 

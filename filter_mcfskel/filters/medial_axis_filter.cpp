@@ -67,7 +67,7 @@ FilterSpec medialAxisFilter()
 			 "Joins the poles by triangles; otherwise they are a cloud of points."},
 			{ParameterKind::Real, "min_angle", defaults.minAngle, "Minimum angle",
 				"Poles whose ball touches the surface in a narrower angle, seen from the pole, are left "
-				"out, degrees, 0 to 180. Noise makes narrow ones; sane are 30 to 120."},
+				"out, degrees, 0 to 180. Noise makes narrow ones; recommended: 30 to 120."},
 			{ParameterKind::Length, "min_radius", 0, "Minimum radius",
 				"Poles with a smaller ball are left out, mesh units or percent of the diagonal."},
 			ParameterSpec {ParameterKind::Real, "max_stretch", defaults.maxStretch,

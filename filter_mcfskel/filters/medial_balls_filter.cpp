@@ -82,7 +82,7 @@ FilterSpec medialBallsFilter()
 		FilterCategory::Remeshing, MeshModel::MM_NONE,
 		{{ParameterKind::Length, "voxel", 0.7, "Voxel",
 			 "Edge of the cubes, mesh units or percent of the diagonal, above 0. Smaller ones follow the "
-			 "balls more closely and take more memory; sane are 0.3 to 2 %."},
+			 "balls more closely and take more memory; recommended: 0.3 to 2 %."},
 			surfaceParameter("The surface that the balls reach up to.")},
 		medialBalls};
 }

@@ -82,10 +82,10 @@ FilterSpec pruneSkeletonFilter()
 			detailParameter(defaults.detail),
 			{ParameterKind::Length, "min_length", 0, "Shortest branch",
 				"Terminal branches shorter than this go, mesh units or percent of the diagonal; the "
-				"shortest first. 0: none; sane are up to 10 %."},
+				"shortest first. 0: none; recommended: up to 10 %."},
 			{ParameterKind::Length, "min_radius", 0, "Minimum radius",
 				"Terminal branches with a smaller mean radius go, mesh units or percent of the "
-				"diagonal; the thinnest first. 0: none; sane are up to 5 %."},
+				"diagonal; the thinnest first. 0: none; recommended: up to 5 %."},
 			{ParameterKind::Boolean, "merge_junctions", double(defaults.mergeJunctions),
 				"Merge close junctions",
 				"Junctions closer to each other than the radius of the larger one become one, in the "

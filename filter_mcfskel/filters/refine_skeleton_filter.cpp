@@ -65,7 +65,7 @@ FilterSpec refineSkeletonFilter()
 		FilterCategory::Remeshing, MeshModel::MM_NONE,
 		{surfaceParameter("The surface that the skeleton is refined in."),
 			{ParameterKind::Real, "smoothing", defaults.smoothing, "Smoothness",
-				"How smooth the branches become, against how well centred; at least 0, sane are 4 to "
+				"How smooth the branches become, against how well centred; at least 0; recommended: 4 to "
 				"400."},
 			detailParameter(defaults.detail),
 			ParameterSpec {ParameterKind::Real, "spur_prominence", defaults.spurProminence,

@@ -52,7 +52,7 @@ FilterSpec resampleSkeletonFilter()
 			 "0.1 %; edges as long as a branch bends leave the middle of the shape."},
 			{ParameterKind::Length, "smoothing", 0.5, "Smoothing length",
 				"Waves along a branch shorter than about six times this are flattened, mesh units or "
-				"percent of the diagonal. 0: no smoothing; sane are up to 2 %, more may leave the "
+				"percent of the diagonal. 0: no smoothing; recommended: up to 2 %, more may leave the "
 				"shape where it bends."}},
 		resampleSkeleton};
 }

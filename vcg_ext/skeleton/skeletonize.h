@@ -629,7 +629,7 @@ inline Skeletonization skeletonize(const SurfaceInput& input, const Parameters& 
 		}
 		result.inCavities = partOutside(lines, *input.hollow, progress.cancelOnly());
 		if (result.inCavities > 0)
-			note(detail::sentence(2, 100 * result.inCavities,
+			note(detail::sentence(3, 100 * result.inCavities,
 				" % of the skeleton lies in cavities, outside the solid."));
 	}
 	if (given.join && result.sheets)

@@ -564,7 +564,7 @@ private:
 		const bool isNoticeable = report.overlap >= noticeableOverlap;
 		if (isNoticeable && !isTooThin(mesh.position, faces, tree, progress.part(0.9, 1)))
 			return true;
-		notes.push_back(sentence(2, report.selfIntersections,
+		notes.push_back(sentence(3, report.selfIntersections,
 			report.selfIntersections == 1 ? " triangle crosses others; "
 										  : " triangles cross others; ",
 			100 * report.overlap,
