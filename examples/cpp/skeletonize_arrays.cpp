@@ -7,6 +7,7 @@
 #include <skeleton/skeletonize.h>
 
 #include <cstdio>
+#include <exception>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -23,9 +24,13 @@ try {
 	for (vcg::Point3d& p : points)
 		file >> p[0] >> p[1] >> p[2];
 	std::vector<mcf::Triangle> triangles(faces);
+	size_t corners = 3;
 	for (mcf::Triangle& t : triangles)
-		file >> edges >> t[0] >> t[1] >> t[2];
-	if (!file)
+		if (corners == 3)
+			file >> corners >> t[0] >> t[1] >> t[2];
+	if (corners != 3)
+		return std::fputs("the mesh has polygons: triangulate it\n", stderr), 1;
+	if (!file || points.empty())
 		return std::fputs("usage: skeletonize_arrays MESH.off [voronoi]\n", stderr), 2;
 
 	mcf::Parameters parameters;
@@ -40,6 +45,6 @@ try {
 		std::printf("l %d %d\n", a + 1, b + 1);
 	return 0;
 }
-catch (const mcf::Error& error) {
+catch (const std::exception& error) { // mcf::Error, or too little memory
 	return std::fprintf(stderr, "%s\n", error.what()), 1;
 }

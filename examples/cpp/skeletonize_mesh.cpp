@@ -9,6 +9,7 @@
 #include <wrap/io_trimesh/import.h>
 
 #include <cstdio>
+#include <exception>
 
 using namespace vcg;
 
@@ -45,8 +46,12 @@ try {
 	tri::MeanCurvatureSkeleton<MyMesh>::Do(mesh, skeleton, params);
 	std::printf("%d nodes, %d edges\n", skeleton.VN(), skeleton.EN());
 	const int parts = tri::io::Mask::IOM_EDGEINDEX | tri::io::Mask::IOM_VERTQUALITY;
-	return tri::io::Exporter<MyMesh>::Save(skeleton, argv[2], parts);
+	if (const int error = tri::io::Exporter<MyMesh>::Save(skeleton, argv[2], parts))
+		return std::fprintf(
+				   stderr, "%s: %s\n", argv[2], tri::io::Exporter<MyMesh>::ErrorMsg(error)),
+			   1;
+	return 0;
 }
-catch (const tri::mcf::Error& error) {
+catch (const std::exception& error) { // tri::mcf::Error, or too little memory
 	return std::fprintf(stderr, "%s\n", error.what()), 1;
 }
