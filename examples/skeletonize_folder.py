@@ -36,6 +36,8 @@ COLUMNS = ("mesh", "status", "seconds", "mesh_vertices", "mesh_faces", "skeleton
            "radius_max", "converged", "options", "error")
 #: The first argument of the process that does one mesh.
 CHILD = "--child"
+#: How names of files that are not UTF-8 get into the table, and out of it again.
+NAMES = "surrogateescape"
 Row = dict[str, Any]
 
 
@@ -63,6 +65,8 @@ def parse_arguments() -> argparse.Namespace:
         parser.error(f"there is no folder '{arguments.folder}'")
     if arguments.workers < 1:
         parser.error("--workers must be at least 1")
+    if not arguments.timeout > 0:
+        parser.error("--timeout must be more than 0")
     arguments.options = {}
     for option in arguments.option:
         name, _, text = option.partition("=")
@@ -118,9 +122,9 @@ def in_own_process(mesh: str, target: str, formats: list[str], options: dict[str
         try:
             run = subprocess.run([sys.executable, __file__, CHILD, str(job), str(answer)],
                                  stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=timeout)
-            if answer.is_file():
+            try:
                 row = json.loads(answer.read_text())
-            else:
+            except (OSError, ValueError):  # there is no answer, or half of one
                 row = {"status": "crashed", "error": f"the process ended with {run.returncode}"}
         except subprocess.TimeoutExpired:
             row = {"status": "failed", "error": f"given up after {timeout:g} seconds"}
@@ -167,9 +171,13 @@ def on_worker(job: tuple) -> Row:
 def rows_of(table: Path) -> list[Row]:
     if not table.is_file():
         return []
-    text = table.read_text(encoding="utf-8")
+    text = table.read_text(encoding="utf-8", errors=NAMES)
     # A run that was killed may have left half a line.
-    return list(csv.DictReader(io.StringIO(text[:text.rfind("\n") + 1])))
+    rows = csv.DictReader(io.StringIO(text[:text.rfind("\n") + 1]))
+    if rows.fieldnames and not {"mesh", "status"} <= set(rows.fieldnames):
+        raise SystemExit(f"error: '{table}' is not a table of this program: move it, or name another folder "
+                         "for the results")
+    return list(rows)
 
 
 def is_done(row: Row, target: Path, arguments: argparse.Namespace) -> bool:
@@ -190,7 +198,7 @@ def write_table(table: Path, rows: Iterable[Row]) -> None:
     """Replaces the table, or leaves it as it was, after any error and if the process is killed."""
     part = table.with_suffix(".part")
     try:
-        with open(part, "w", newline="", encoding="utf-8") as lines:
+        with open(part, "w", newline="", encoding="utf-8", errors=NAMES) as lines:
             writer = csv.DictWriter(lines, COLUMNS, extrasaction="ignore")
             writer.writeheader()
             writer.writerows(rows)
@@ -236,11 +244,15 @@ def number_text(value: Any) -> str:
 
 
 def meshes_of(folder: Path, results: Path) -> list[Path]:
-    """The meshes of a folder and its subfolders, but for the results if they lie in it."""
+    """The meshes of a folder and its subfolders, but for the results if they lie in it or beside the meshes."""
     found = []
+    is_shared = folder.resolve() == results
     for place, folders, files in os.walk(folder.resolve()):
         folders[:] = sorted(name for name in folders if Path(place, name).resolve() != results)
-        found += [Path(place, name) for name in sorted(files) if Path(name).suffix.lower() in MESHES]
+        names = {name for name in files if Path(name).suffix.lower() in MESHES}
+        if is_shared:  # mesh.off.ply beside mesh.off is its skeleton
+            names = {name for name in names if Path(name).stem not in names}
+        found += [Path(place, name) for name in names]
     return sorted(found)
 
 
@@ -287,7 +299,7 @@ def main() -> int:
     write_table(table, done.values())
     rows = (run_on_cluster(jobs, arguments.scheduler) if arguments.scheduler
             else run_here(jobs, arguments.workers))
-    with open(table, "a", newline="", encoding="utf-8") as lines, closing(rows), \
+    with open(table, "a", newline="", encoding="utf-8", errors=NAMES) as lines, closing(rows), \
             tqdm(total=len(meshes), initial=len(meshes) - len(jobs), unit="mesh",
                  disable=None) as bar:  # no bar but on a terminal
         writer = csv.DictWriter(lines, COLUMNS, extrasaction="ignore")
@@ -299,6 +311,7 @@ def main() -> int:
             bar.set_postfix_str(Path(row["mesh"]).name, refresh=False)
             bar.update()
     tried = [done[mesh] for mesh in meshes]
+    sys.stdout.reconfigure(errors="backslashreplace")  # names that the terminal cannot show
     print(summary(tried, folder))
     return 0 if all(row["status"] == "ok" for row in tried) else 1
 

@@ -109,6 +109,8 @@ def test_subfolders_and_names_that_meet(folder, environment):
     (["--option", "target_length=-1%"], "target_length='-1%' is not between 0% and 100%"),
     (["--option", "repair=all"], "repair='all' is none of 'auto', 'mend', 'off'"),
     (["--option", "w_l"], "expected NAME=VALUE"),
+    (["--option", "target_length=-1"], "target_length=-1 is no length"),
+    (["--timeout", "-1"], "--timeout must be more than 0"),
     (["--formats", "xyz"], "'vtp'"),
 ])
 def test_what_cannot_be_is_found_out_at_once(folder, environment, arguments, words):
@@ -122,6 +124,38 @@ def test_a_results_folder_that_cannot_be_is_found_out_at_once(folder, environmen
     done = run(folder, env=environment)
     assert done.returncode == 1 and "nothing can be written into" in done.stderr
     assert (folder.parent / "out").read_text() == "a file"
+
+
+def test_a_name_that_is_not_utf8_costs_the_others_nothing(folder, environment):
+    for name in ["capsule.off", "animal450.off", "flat.off"]:
+        (folder / name).unlink()
+    shutil.copy(folder / "torus.off", os.fsencode(folder) + b"/m\xfc.off")
+    for _ in range(2):  # the second run finds both in the table
+        done = run(folder, env=environment)
+        assert done.returncode == 1 and "Traceback" not in done.stderr
+        with open(folder.parent / "out" / "results.csv", newline="", errors="surrogateescape") as lines:
+            rows = {Path(row["mesh"]).name: row for row in csv.DictReader(lines)}
+        assert {name: row["status"] for name, row in rows.items()} == {"torus.off": "ok", "m\udcfc.off": "failed"}
+        assert "is not UTF-8" in rows["m\udcfc.off"]["error"]
+
+
+def test_skeletons_beside_their_meshes_are_no_meshes(folder, environment):
+    for name in ["capsule.off", "animal450.off", "flat.off"]:
+        (folder / name).unlink()
+    command = [sys.executable, str(SCRIPT), str(folder), str(folder), *COARSE, "--formats", "ply", "glb"]
+    for _ in range(2):
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=240)
+        assert done.returncode == 0, done.stdout
+    with open(folder / "results.csv", newline="") as lines:
+        assert [Path(row["mesh"]).name for row in csv.DictReader(lines)] == ["torus.off"]
+
+
+def test_a_table_of_somebody_else_is_left_alone(folder, environment):
+    (folder.parent / "out").mkdir()
+    (folder.parent / "out" / "results.csv").write_text("a,b\n1,2\n")
+    done = run(folder, env=environment)
+    assert done.returncode == 1 and "is not a table of this program" in done.stderr
+    assert (folder.parent / "out" / "results.csv").read_text() == "a,b\n1,2\n"
 
 
 def test_offers_every_format_that_the_package_writes(environment):
