@@ -5,7 +5,11 @@
 from __future__ import annotations
 
 import gzip
+import math
 import os
+import re
+import tokenize
+import zipfile
 import zlib
 from typing import Any, NamedTuple
 
@@ -41,7 +45,7 @@ def volume_of(values: Any, spacing: Any = None, origin: Any = None) -> Volume:
     try:
         step = np.broadcast_to(np.asarray(1 if spacing is None else spacing, float), 3)
         start = np.broadcast_to(np.asarray(0 if origin is None else origin, float), 3)
-    except ValueError:
+    except (TypeError, ValueError):
         raise ValueError("spacing and origin are one number, or one for each of the three axes") from None
     if not (np.isfinite(step).all() and (step > 0).all() and np.isfinite(start).all()):
         raise ValueError("spacing must be positive, and spacing and origin finite")
@@ -128,7 +132,8 @@ def read_volume(path: str | os.PathLike[str], spacing: Any = None) -> Volume:
 
     Args:
         path: The file.
-        spacing: Distance of the voxels' middles; by default the file's own, or 1.
+        spacing: Distance of the voxels' middles; by default the file's own, or 1. The directions of the
+            axes stay those of the file.
 
     Raises:
         ValueError: The file is none of these, or is damaged. OSError: it cannot be opened.
@@ -136,17 +141,24 @@ def read_volume(path: str | os.PathLike[str], spacing: Any = None) -> Volume:
     name = os.fspath(path).lower()
     if name.endswith(".nrrd"):
         volume = _read_nrrd(path)
-        return volume if spacing is None else volume_of(volume.values, spacing, volume.origin)
+        if spacing is None:
+            return volume
+        steps = volume_of(volume.values, spacing).directions
+        ways = volume.directions / np.linalg.norm(volume.directions, axis=1)[:, None]
+        return volume._replace(directions=steps @ ways)
     try:
         loaded = np.load(path, allow_pickle=False)
-    except (ValueError, EOFError, KeyError) as error:
+        return volume_of(loaded, spacing) if isinstance(loaded, np.ndarray) else _of_archive(loaded, spacing)
+    except (EOFError, KeyError, NotImplementedError, SyntaxError, tokenize.TokenError, zipfile.BadZipFile,
+            zlib.error) as error:
         raise ValueError(f"it is no array of numpy ({error})") from None
-    if isinstance(loaded, np.ndarray):
-        return volume_of(loaded, spacing)
+
+
+def _of_archive(loaded: Any, spacing: Any) -> Volume:
     with loaded:
         names = [name for name in loaded.files if name not in ("spacing", "origin")]
         if "volume" not in names and len(names) != 1:
-            raise ValueError("it has several arrays and none is named volume: " + ", ".join(names))
+            raise ValueError("none of its arrays is named volume: " + ", ".join(loaded.files))
         return volume_of(loaded["volume" if "volume" in names else names[0]],
                          loaded["spacing"] if spacing is None and "spacing" in loaded.files else spacing,
                          loaded["origin"] if "origin" in loaded.files else None)
@@ -174,6 +186,9 @@ def _read_nrrd(path: str | os.PathLike[str]) -> Volume:
         data = file.read()
     if "data file" in fields or "datafile" in fields:
         raise ValueError("its data are in another file: write it as one .nrrd")
+    for field in ("line skip", "lineskip", "byte skip", "byteskip"):
+        if fields.get(field, "0") != "0":
+            raise ValueError(f"its header has {field}, which is not supported: write it without")
     try:
         sizes = [int(word) for word in fields["sizes"].split()]
         kind = np.dtype(_NRRD_TYPES[fields["type"].lower()])
@@ -188,12 +203,12 @@ def _read_nrrd(path: str | os.PathLike[str]) -> Volume:
     elif encoding != "raw":
         raise ValueError(f"its encoding is {encoding}: raw and gzip are read")
     kind = kind.newbyteorder(">" if fields.get("endian", "little").lower() == "big" else "<")
-    if len(sizes) != 3 or min(sizes) < 1 or len(data) < int(np.prod(sizes)) * kind.itemsize:
+    if len(sizes) != 3 or min(sizes) < 1 or len(data) < math.prod(sizes) * kind.itemsize:
         raise ValueError("it has not three axes, or fewer data than its header says")
-    values = np.frombuffer(data, kind, int(np.prod(sizes))).reshape(sizes[::-1]).T
+    values = np.frombuffer(data, kind, math.prod(sizes)).reshape(sizes[::-1]).T
     try:
-        vectors = [[float(x) for x in word.strip("()").split(",")]
-                   for word in fields.get("space directions", "").replace(") (", ")|(").split("|") if word]
+        vectors = [[float(x) for x in word.split(",")]
+                   for word in re.findall(r"\(([^)]*)\)", fields.get("space directions", ""))]
         origin = [float(x) for x in fields.get("space origin", "(0,0,0)").strip("()").split(",")]
         spacing = [float(word) for word in fields["spacings"].split()] if "spacings" in fields else None
         volume = volume_of(values, spacing, origin)

@@ -58,6 +58,31 @@ def test_nrrd_says_where_voxels_are(tmp_path, encoding):
         volumes.read_volume(path)
 
 
+def test_a_spacing_keeps_the_directions_of_the_axes(tmp_path):
+    path = tmp_path / "box.nrrd"
+    path.write_bytes(b"NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 3 4\nencoding: raw\n"
+                     b"space directions: (-0.5,0,0)  (0, 0, 0.5) (0,1,0)\nspace origin: (7, 8, 9)\n\n" + bytes(24))
+    volume = volumes.read_volume(path, (1, 2, 3))
+    assert volume.directions.tolist() == [[-1, 0, 0], [0, 0, 2], [0, 3, 0]]
+    assert volume.origin.tolist() == [7, 8, 9]
+
+
+def test_files_that_are_damaged_are_told(tmp_path):
+    (tmp_path / "half.npz").write_bytes(b"PK\x03\x04" + bytes(50))
+    np.savez(tmp_path / "none.npz", spacing=1)
+    np.savez_compressed(tmp_path / "torus.npz", volume=torus())
+    content = bytearray((tmp_path / "torus.npz").read_bytes())
+    content[len(content) // 2] ^= 0xff
+    (tmp_path / "torus.npz").write_bytes(content)
+    (tmp_path / "skip.nrrd").write_bytes(b"NRRD0004\ntype: uchar\nsizes: 1 1 1\nencoding: raw\nbyte skip: 4\n\n12345")
+    for name, said in [("half", "no array of numpy"), ("none", "none of its arrays is named volume: spacing"),
+                       ("torus", "no array of numpy")]:
+        with pytest.raises(ValueError, match=said):
+            volumes.read_volume(tmp_path / f"{name}.npz")
+    with pytest.raises(ValueError, match="byte skip"):
+        volumes.read_volume(tmp_path / "skip.nrrd")
+
+
 @pytest.mark.parametrize("wrong, said", [
     (lambda: volumes.volume_of(np.zeros((3, 3))), "three axes"),
     (lambda: volumes.volume_of(np.zeros((3, 3, 3)), 0), "positive"),
