@@ -6,6 +6,8 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
+import threading
 import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,7 +16,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pymeshlab
 
-from ._run import SkeletonError, SkeletonWarning, apply, filter_options, open_mesh
+from ._run import INT_MAX, SkeletonError, SkeletonWarning, absolute, apply, filter_options, open_mesh
 
 if TYPE_CHECKING:
     from ._skeleton import Skeleton
@@ -62,6 +64,7 @@ def save(skeleton: Skeleton, path: Path, options: dict[str, Any]) -> None:
     for option, ending in OPTIONS_OF.items():
         if options.get(option) is not None and suffix != ending:
             raise SkeletonError(f"'{path}': {option} is for {ending} only.")
+    path = Path(absolute(str(path)))
     if len(skeleton.faces) and suffix == ".ply":
         return write_sheets(skeleton, path)
     if len(skeleton.faces) and not len(skeleton.edges):
@@ -112,7 +115,11 @@ def _warn(text: str) -> None:
 
 
 def write_sheets(skeleton: Skeleton, path: Path) -> None:
-    """The PLY of the filter Save Skeleton, and an element `face` with the triangles of the sheets."""
+    """The PLY of the filter Save Skeleton, and an element `face` with the triangles of the sheets.
+
+    As the filter does it, a link stays and what it leads to is written, a file keeps its permissions, and a
+    read-only one its content.
+    """
     vertex = np.zeros(len(skeleton.nodes), [(axis, "<f8") for axis in "xyz"]
                       + [("quality", "<f4"), ("mcfskel_radius", "<f8")])
     for k, axis in enumerate("xyz"):
@@ -130,18 +137,35 @@ def write_sheets(skeleton: Skeleton, path: Path) -> None:
     content = b"".join(["\n".join(header).encode() + b"\n", vertex.tobytes(), face.tobytes(),
                         skeleton.edges.astype("<i4").tobytes(),
                         skeleton.correspondence.astype("<i4").tobytes()])
-    part = path.with_name(f".{path.name}.{os.getpid()}")
     try:
-        part.write_bytes(content)
-        os.replace(part, path)
+        _replace(Path(os.path.realpath(path)), content)
     except OSError as error:
-        part.unlink(missing_ok=True)
         raise SkeletonError(f"Cannot write '{path}': {error.strerror}") from None
+
+
+def _replace(path: Path, content: bytes) -> None:
+    if path.exists() and not path.is_file():  # a pipe, or a folder, of which the error tells
+        path.write_bytes(content)
+        return
+    part = path.with_name(f".mcfskel.{os.getpid()}.{threading.get_ident()}")
+    try:
+        with open(part, "wb") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())
+        if path.exists():
+            open(path, "r+b").close()  # os.replace() would replace even a read-only file
+            shutil.copymode(path, part)
+        os.replace(part, path)
+    except BaseException:
+        part.unlink(missing_ok=True)
+        raise
 
 
 def load(path: Path) -> Parts:
     """Nodes, edges, radius, correspondence, faces, significance and bridges from a file."""
     suffix = suffix_of(path, READ)
+    full = Path(absolute(str(path)))
     if suffix in (".swc", ".cg"):
         layer = (layers := open_mesh(str(path))).current_mesh()
         radius = np.zeros(layer.vertex_number())
@@ -152,15 +176,17 @@ def load(path: Path) -> Parts:
         return checked(path, *parts)
     readers = {".json": read_json, ".graphml": read_graphml, ".vtp": read_vtp, ".ply": read_ply}
     try:
-        parts = readers[suffix](path)
+        return checked(path, *readers[suffix](full))
     except OSError as error:
         raise SkeletonError(f"Cannot read '{path}': {error.strerror}") from None
-    except SkeletonError as error:
-        raise SkeletonError(f"'{path}' cannot be read: {error}") from None
-    except (ValueError, TypeError, KeyError, ElementTree.ParseError) as error:
-        what = f"{error.args[0]!r} is missing" if isinstance(error, KeyError) else str(error)
-        raise SkeletonError(f"'{path}' cannot be read: {what}.") from None
-    return checked(path, *parts)
+    except SkeletonError:
+        raise
+    except KeyError as error:
+        raise SkeletonError(f"'{path}' cannot be read: {error.args[0]!r} is missing.") from None
+    except (IndexError, OverflowError):
+        raise SkeletonError(f"'{path}' cannot be read: it is cut short, or a number is out of range.") from None
+    except (ValueError, TypeError, AttributeError, RecursionError, ElementTree.ParseError) as error:
+        raise SkeletonError(f"'{path}' cannot be read: {str(error).rstrip('.')}.") from None
 
 
 def checked(path: Path, nodes: Any, edges: Any, radius: Any, correspondence: Any, faces: Any,
@@ -178,6 +204,10 @@ def checked(path: Path, nodes: Any, edges: Any, radius: Any, correspondence: Any
     middle = np.asarray(middle, bool)
     if not len(nodes):
         fail("it has no nodes")
+    for name, values in [("radius", radius), ("significance", significance),
+                         ("correspondence", correspondence), ("mark of bridges", middle)]:
+        if values.ndim != 1:
+            fail(f"the {name} of a node is more than one number")
     if len(radius) != len(nodes):
         fail(f"there are {len(nodes)} nodes, but {len(radius)} have a radius")
     if not np.isfinite(nodes).all():
@@ -201,10 +231,12 @@ def checked(path: Path, nodes: Any, edges: Any, radius: Any, correspondence: Any
 
 def correspondence_of(sources: list[list[int]], count: int | None) -> np.ndarray:
     """For each surface vertex its node, from the surface vertices of each node."""
+    if count is not None and not 0 <= count <= INT_MAX:
+        raise ValueError(f"there cannot be {count} surface vertices")
     if not any(sources):
         return np.full(count or 0, -1)
     vertices = np.concatenate([np.asarray(ids, np.int64) for ids in sources])
-    if vertices.min() < 0 or (count is not None and vertices.max() >= count):
+    if vertices.min() < 0 or vertices.max() >= (INT_MAX if count is None else count):
         raise ValueError("a surface vertex does not exist")
     if len(np.unique(vertices)) < len(vertices):
         raise ValueError("a surface vertex belongs to two nodes")

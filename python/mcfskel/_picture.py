@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from ._skeleton import Skeleton
+    from ._skeleton import Skeleton, Surface
 
 WIDTH = 480
 MARGIN = 12
@@ -27,7 +27,7 @@ THIN, THICK = np.array([0.13, 0.30, 0.72]), np.array([0.91, 0.33, 0.05])
 def svg(skeleton: Skeleton) -> str:
     """The picture as the text of an SVG, seen along the direction in which the shape is thinnest."""
     surface = skeleton.surface
-    points = skeleton.nodes if surface is None else surface.vertices
+    points = skeleton.nodes if surface is None else corners_of(surface)
     if not len(points):
         return ""
     axes = _view(points)
@@ -55,8 +55,13 @@ def svg(skeleton: Skeleton) -> str:
     return "".join(parts) + "</svg>"
 
 
+def corners_of(surface: Surface) -> np.ndarray:
+    """The vertices that a face has; others may lie anywhere, and be no numbers."""
+    return surface.vertices[np.unique(surface.faces)]
+
+
 def _view(points: np.ndarray) -> np.ndarray:
-    """Rows: right, up, towards the viewer. Up is the widest of y and z where that is upright enough."""
+    """Rows: right, up, towards the viewer. Up is y, or z where the view is along y."""
     centred = points - points.mean(axis=0)
     _, directions = np.linalg.eigh(centred.T @ centred)
     towards = directions[:, 0] * np.sign(directions[np.argmax(np.abs(directions[:, 0])), 0])

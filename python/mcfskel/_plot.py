@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._convert import needed
+from ._picture import corners_of
 from ._run import SkeletonError
 
 if TYPE_CHECKING:
@@ -20,8 +21,8 @@ MOST_TRIANGLES = 20_000
 
 def plot(skeleton: Skeleton, backend: str, ax: Any, surface: bool) -> Any:
     backends = {"matplotlib": with_matplotlib, "pyvista": with_pyvista, "trimesh": with_trimesh}
-    if backend not in backends:
-        raise SkeletonError(f"backend='{backend}' is none of {', '.join(backends)}.")
+    if not isinstance(backend, str) or backend not in backends:
+        raise SkeletonError(f"backend={backend!r} is none of {', '.join(backends)}.")
     if ax is not None and backend != "matplotlib":
         raise SkeletonError("ax is for backend='matplotlib' only.")
     shown = skeleton.surface if surface else None
@@ -38,16 +39,18 @@ def with_matplotlib(skeleton: Skeleton, surface: Any, ax: Any = None) -> Any:
             ax.add_collection3d(art.Poly3DCollection(
                 surface.vertices[surface.faces], facecolor=(0.6, 0.7, 0.8, 0.12)))
         else:
-            ax.scatter(*surface.vertices[::len(surface.vertices) // 5000 or 1].T, s=1,
+            points = corners_of(surface)
+            ax.scatter(*points[::len(points) // 5000 or 1].T, s=1,
                        color=(0.6, 0.7, 0.8, 0.3))
     if len(skeleton.faces):
         ax.add_collection3d(art.Poly3DCollection(
             skeleton.nodes[skeleton.faces], facecolor=(0.2, 0.4, 0.7, 0.4)))
-    lines = art.Line3DCollection(skeleton.nodes[skeleton.edges], linewidth=2, cmap="viridis")
-    lines.set_array(skeleton.radius[skeleton.edges].mean(axis=1))
-    ax.add_collection3d(lines)
-    ax.figure.colorbar(lines, ax=ax, shrink=0.6, label="radius")
-    points = skeleton.nodes if surface is None else surface.vertices
+    if len(skeleton.edges):
+        lines = art.Line3DCollection(skeleton.nodes[skeleton.edges], linewidth=2, cmap="viridis")
+        lines.set_array(skeleton.radius[skeleton.edges].mean(axis=1))
+        ax.add_collection3d(lines)
+        ax.figure.colorbar(lines, ax=ax, shrink=0.6, label="radius")
+    points = skeleton.nodes if surface is None else corners_of(surface)
     if len(points):
         low, high = points.min(axis=0), points.max(axis=0)
         margin = 0.02 * max(float((high - low).max()), 1e-300)

@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 import ctypes
-import math
 import os
 import re
 import threading
@@ -24,6 +23,8 @@ LENGTHS = ("target_length", "epsilon", "bone_tolerance")
 #: The options that are one of several: pymeshlab holds them as numbers.
 CHOICES = ("pole_method", "preset", "repair", "soma", "units")
 INT_MAX = np.iinfo(np.int32).max
+#: Held while pymeshlab reads: it makes the file's folder the current one of all threads for that time.
+_FOLDER = threading.Lock()
 
 
 class SkeletonError(ValueError):
@@ -69,7 +70,7 @@ def _option(name: str, value: Any, default: Any) -> Any:
     if isinstance(value, np.generic) or (isinstance(value, np.ndarray) and value.ndim == 0):
         value = value.item()
     if isinstance(value, (pymeshlab.PercentageValue, pymeshlab.PureValue)):
-        if isinstance(default, float):
+        if name in LENGTHS:
             return value
         raise SkeletonError(f"{name} is no length: write a {_kind(default)}, not {value!r}.")
     if name in LENGTHS:
@@ -77,19 +78,16 @@ def _option(name: str, value: Any, default: Any) -> Any:
     if name in CHOICES and isinstance(value, str):
         return value
     if isinstance(default, bool):
-        if isinstance(value, bool) or value in (0, 1):
+        if isinstance(value, (bool, int, float)) and value in (0, 1):
             return bool(value)
     elif isinstance(default, int):
-        if (isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
-                and value == int(value)):
+        if _is_number(value) and (isinstance(value, int) or value.is_integer()):
             if abs(value) > INT_MAX:
-                raise SkeletonError(f"{name}={value!r} is too large.")
+                raise SkeletonError(f"{name}={_real(name, value):.15g} is too large.")
             return int(value)
     elif isinstance(default, float):
-        if isinstance(value, (int, float)) and not isinstance(value, bool):
-            return float(value)
-        if isinstance(value, str) and value.strip().endswith("%"):
-            return _length(name, value)
+        if _is_number(value):
+            return _real(name, value)
     else:
         return value
     raise SkeletonError(f"{name}={value!r} is no {_kind(default)}.")
@@ -101,8 +99,19 @@ def _kind(default: Any) -> str:
     return "whole number" if isinstance(default, int) else "number"
 
 
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def _real(name: str, value: float) -> float:
+    try:
+        return float(value)
+    except OverflowError:
+        raise SkeletonError(f"{name} is too large: a whole number of more than 308 digits.") from None
+
+
 def _length(name: str, value: Any) -> Any:
-    if isinstance(value, str):
+    if isinstance(value, str) and value.strip().endswith("%"):
         try:
             percent = float(value.strip().removesuffix("%"))
         except ValueError:
@@ -111,8 +120,8 @@ def _length(name: str, value: Any) -> Any:
             if not 0 <= percent <= 100:
                 raise SkeletonError(f"{name}={value!r} is not between 0% and 100%.")
             return pymeshlab.PercentageValue(percent)
-    elif isinstance(value, (int, float)) and not isinstance(value, bool):
-        return pymeshlab.PureValue(float(value))
+    elif _is_number(value):
+        return pymeshlab.PureValue(_real(name, value))
     raise SkeletonError(f"{name}={value!r} is no length: write 0.01 (mesh units) or '0.2%' (of the "
                         "bounding box diagonal).")
 
@@ -132,26 +141,58 @@ def open_mesh(path: str) -> pymeshlab.MeshSet:
     Raises:
         SkeletonError: There is no such file, or it cannot be read.
     """
-    if os.path.isdir(path):
+    full = absolute(path)
+    if os.path.isdir(full):
         raise SkeletonError(f"'{path}' is a folder, not a mesh.")
-    if not os.path.isfile(path):
+    if not os.path.isfile(full):
         raise SkeletonError(f"There is no file '{path}'.")
     layers = pymeshlab.MeshSet()
-    folder = os.getcwd()
-    try:
-        _guarded(lambda: layers.load_new_mesh(os.path.abspath(path)), {"path": path})
-    except SkeletonError as error:
-        text = str(error)
-        if text.startswith("Unknown format"):
-            text = "its name does not end like a mesh's: .off, .ply, .obj, .stl, .glb, .gltf, .dae, ..."
-        else:  # what comes before says again which file it is
-            text = text.rpartition("Error details: ")[2]
-        raise SkeletonError(f"'{path}' cannot be read: {text}") from None
-    finally:
-        os.chdir(folder)  # where a failed reading in pymeshlab leaves it is the file's folder
+    with _FOLDER:
+        folder = os.getcwd()
+        try:
+            _guarded(lambda: layers.load_new_mesh(full), {"path": path})
+        except SkeletonError as error:
+            text = str(error)
+            if text.startswith("Unknown format"):
+                text = "its name does not end like a mesh's: .off, .ply, .obj, .stl, .glb, .gltf, .dae, ..."
+            else:  # what comes before says again which file it is
+                text = text.rpartition("Error details: ")[2]
+            raise SkeletonError(f"'{path}' cannot be read: {text}") from None
+        finally:
+            os.chdir(folder)  # where a failed reading in pymeshlab leaves it is the file's folder
+    _place(layers)
     if layers.mesh_number() > 1:
         apply(layers, "generate_by_merging_visible_meshes", {"mergevertices": False})
     return layers
+
+
+def absolute(path: str) -> str:
+    """The absolute form of a path, for pymeshlab.
+
+    Raises:
+        SkeletonError: pymeshlab cannot be given its name, which is not UTF-8 or has a zero byte.
+    """
+    try:
+        if b"\0" in path.encode():
+            raise SkeletonError(f"{path!r} has a zero byte: it is no path of a file.")
+    except UnicodeEncodeError:
+        raise SkeletonError(f"The path {path!a} is not UTF-8, as pymeshlab needs it: rename it.") from None
+    if os.path.isabs(path):
+        return path
+    with _FOLDER:
+        return os.path.abspath(path)
+
+
+def _place(layers: pymeshlab.MeshSet) -> None:
+    """Moves the vertices of layers that have a matrix, as of a glTF node, to where it puts them."""
+    for layer in list(layers):
+        matrix = layer.transform_matrix()
+        if np.array_equal(matrix, np.eye(4)):
+            continue
+        layers.set_current_mesh(layer.id())
+        apply(layers, "apply_matrix_freeze", {"alllayers": False})
+        if np.linalg.det(matrix[:3, :3]) < 0 and layer.face_number():
+            apply(layers, "meshing_invert_face_orientation", {"forceflip": True, "onlyselected": False})
 
 
 def _guarded(action: Callable[[], Any], options: dict[str, Any]) -> Any:

@@ -284,7 +284,8 @@ def _is_to_be_refined(values: dict[str, Any]) -> bool:
 def check_options(**options: Any) -> None:
     """Checks options of ``skeletonize()`` before there is a mesh: their names, kinds, choices and ranges.
 
-    How long a length in mesh units may be depends on the mesh, and whether vertices are selected, too.
+    ``spacing`` and ``level``, which are of voxels only, are not among them. How long a length in mesh units may
+    be depends on the mesh, and so does whether vertices are selected.
 
     Raises:
         SkeletonError: One does not exist, or its value is of the wrong kind or out of its range; the text
@@ -293,6 +294,9 @@ def check_options(**options: Any) -> None:
     layers = pymeshlab.MeshSet()
     layers.create_octahedron()
     values = filter_options("skeletonize()", options, layers.filter_parameter_values(FILTER))
+    for name, value in values.items():
+        if isinstance(value, pymeshlab.PureValue) and not 0 <= value.value() < np.inf:
+            raise SkeletonError(f"{name}={value.value():g} is no length: it must be at least 0, and finite.")
     values = {name: value for name, value in values.items()
               if name != "fix_selected" and not isinstance(value, pymeshlab.PureValue)}
     # The filter checks them before it begins; an octahedron as it is takes no time.
@@ -317,9 +321,12 @@ def _document(vertices: Any, faces: Any, normals: Any = None, spacing: Any = Non
     """A document with the mesh as its current layer."""
     is_path = isinstance(vertices, (str, os.PathLike))
     volume = None
-    if is_path and os.fspath(vertices).lower().endswith(VOLUME_FILES) and os.path.isfile(vertices):
+    level_given, level = level is not None, _level(level)
+    if is_path and os.fspath(vertices).lower().endswith(VOLUME_FILES):
         try:
             volume = read_volume(vertices, spacing)
+        except FileNotFoundError:
+            raise SkeletonError(f"There is no file '{os.fspath(vertices)}'.") from None
         except ValueError as error:
             raise SkeletonError(f"'{os.fspath(vertices)}' cannot be read: {error}.") from None
         except OSError as error:
@@ -333,11 +340,11 @@ def _document(vertices: Any, faces: Any, normals: Any = None, spacing: Any = Non
         if faces is not None or normals is not None:
             raise SkeletonError("Voxels have neither faces nor normals: give them alone.")
         try:
-            return _layer(*voxel_surface(volume, 0.5 if level is None else level))
+            return _layer(*voxel_surface(volume, level))
         except ValueError as error:
             raise SkeletonError(f"{error}.") from None
-    for name, value in (("spacing", spacing), ("level", level)):
-        if value is not None:
+    for name, is_given in (("spacing", spacing is not None), ("level", level_given)):
+        if is_given:
             raise SkeletonError(f"{name} is an option of voxels, and these are none.")
     if normals is not None:
         if faces is not None or is_path:
@@ -363,6 +370,17 @@ def _document(vertices: Any, faces: Any, normals: Any = None, spacing: Any = Non
         raise SkeletonError("faces: a face has a vertex that is not one of the "
                             f"{len(points)} vertices.")
     return _layer(points, triangles)
+
+
+def _level(level: Any) -> float:
+    """The level of voxels: 0.5 where none is given."""
+    try:
+        value = 0.5 if level is None else float(level)
+    except (TypeError, ValueError, OverflowError):
+        value = np.nan
+    if isinstance(level, str) or not np.isfinite(value):
+        raise SkeletonError(f"level={level!r} is no finite number.")
+    return value
 
 
 def _layer(points: np.ndarray, triangles: np.ndarray) -> pymeshlab.MeshSet:

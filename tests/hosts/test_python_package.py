@@ -405,6 +405,45 @@ def test_sheets_are_kept(run):
     assert not answer["tips"][1]
 
 
+def test_a_file_of_sheets_replaces_what_it_may(run, tmp_path):
+    (tmp_path / "real.ply").write_text("old")
+    (tmp_path / "real.ply").chmod(0o640)
+    (tmp_path / "link.ply").symlink_to("real.ply")
+    os.mkfifo(tmp_path / "pipe.ply")
+    answer = run("""
+        import mcfskel, os, threading
+        triangle = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], float)
+        s = mcfskel.Skeleton(triangle, np.empty((0, 2), int), np.ones(3), np.zeros(2, int), {}, np.array([[0, 1, 2]]))
+        s.save("link.ply")
+        piped = []
+        reader = threading.Thread(target=lambda: piped.append(open("pipe.ply", "rb").read()))
+        reader.start()
+        s.save("pipe.ply")
+        reader.join()
+        answer = {"faces": mcfskel.load("real.ply").faces.tolist(), "link": os.path.islink("link.ply"),
+                  "mode": os.stat("real.ply").st_mode & 0o777, "same": piped[0] == open("real.ply", "rb").read(),
+                  "files": sorted(os.listdir("."))}
+    """)
+    assert answer == {"faces": [[0, 1, 2]], "link": True, "mode": 0o640, "same": True,
+                      "files": ["link.ply", "pipe.ply", "real.ply"]}
+
+
+def test_pictures_of_what_has_no_edges_and_of_stray_vertices(run):
+    answer = run("""
+        import mcfskel, matplotlib
+        matplotlib.use("Agg")
+        s = mcfskel.skeletonize(MESHES + "/torus.off", target_length="3%", refine=False)
+        stray = np.vstack([s.surface.vertices, [[np.nan] * 3]])
+        s = mcfskel.skeletonize(stray, s.surface.faces, target_length="3%", refine=False)
+        sheet = mcfskel.Skeleton(np.eye(3), np.empty((0, 2), int), np.ones(3), np.empty(0, int), {},
+                                 np.array([[0, 1, 2]]))
+        limits = s.plot().get_xlim()
+        sheet.plot().figure.savefig("sheet.png")
+        answer = ["<image" in s._repr_html_(), bool(np.isfinite(limits).all()), "<path" in sheet._repr_html_()]
+    """)
+    assert answer == [True, True, True]
+
+
 def test_ctrl_c_ends_a_job(run):
     answer = run("""
         import mcfskel, os, signal, threading, time
@@ -513,6 +552,12 @@ ERRORS = {
     "mesh, epsilon='-1%'": "epsilon='-1%' is not between 0% and 100%",
     "mesh, epsilon='150%'": "epsilon='150%' is not between 0% and 100%",
     "mesh, epsilon=-1": "Parameter epsilon must be between",
+    "mesh, epsilon='0.5'": "epsilon='0.5' is no length: write 0.01 (mesh units) or '0.2%'",
+    "mesh, epsilon=10**400": "epsilon is too large",
+    "mesh, w_m='20%'": "w_m='20%' is no number",
+    "mesh, w_m=10**400": "w_m is too large",
+    "mesh, max_iterations=10**400": "max_iterations is too large",
+    "mesh, refine=np.array([1, 2])": "is no truth value",
     "mesh, w_h=float('nan')": "Parameter w_h must be",
     "mesh, w_l='a'": "w_l='a' is no number",
     "mesh, resample='no'": "resample='no' is no truth value",
@@ -535,6 +580,11 @@ ERRORS = {
     "5": "vertices and faces",
     "'none.off'": "There is no file 'none.off'",
     "'.'": "is a folder",
+    "'a\\0.off'": "zero byte",
+    "os.fsdecode(b'm\\xfc.off')": "is not UTF-8",
+    "'none.npy', spacing=2": "There is no file 'none.npy'",
+    "np.ones((3, 3, 3)), level='0.5'": "level='0.5' is no finite number",
+    "np.ones((3, 3, 3)), level=float('-inf')": "level=-inf is no finite number",
     "'text.off'": "'text.off' cannot be read: Invalid file",
     "'text.ply'": "'text.ply' cannot be read: Header not found",
     "'text.xyzw'": "does not end like a mesh's: .off, .ply",
@@ -555,6 +605,23 @@ FILES = {
     "twice.json": ('{"nodes": [{"id": 0, "position": [0, 0, 0], "surface_vertices": [1]},'
                    ' {"id": 1, "position": [1, 0, 0], "surface_vertices": [1]}], "edges": []}',
                    "belongs to two nodes"),
+    "list.json": ("[1]", "cannot be read"),
+    "null.json": ('{"nodes": [{"id": 0, "position": [0, 0, 0]}], "edges": [], "graph": null}', "cannot be read"),
+    "ragged.json": ('{"nodes": [{"id": 0, "position": [0, 0, 0]}, {"id": 1, "position": [0]}], "edges": []}',
+                    "cannot be read"),
+    "radii.json": ('{"nodes": [{"id": 0, "position": [0, 0, 0], "radius": [1, 2]}], "edges": []}',
+                   "the radius of a node is more than one number"),
+    "far.json": ('{"nodes": [{"id": 0, "position": [0, 0, 0], "surface_vertices": [100000000000000]}],'
+                 ' "edges": []}', "a surface vertex does not exist"),
+    "huge.json": ('{"nodes": [{"id": 0, "position": [0, 0, 0], "surface_vertices": [1%s]}], "edges": []}'
+                  % ("0" * 30), "out of range"),
+    "deep.json": ("[" * 100_000, "cannot be read"),
+    "far.vtp": ('<VTKFile><PolyData><Piece><Points><DataArray format="ascii">0 0 0 1 0 0</DataArray></Points><Lines>'
+                '<DataArray Name="connectivity" format="ascii">0 1</DataArray>'
+                '<DataArray Name="offsets" format="ascii">9 10</DataArray></Lines></Piece></PolyData></VTKFile>',
+                "out of range"),
+    "short.ply": ("ply\nformat binary_little_endian 1.0\ncomment mcfskel skeleton 1\nelement vertex\nend_header\n",
+                  "cut short"),
     "bad.graphml": ("<graphml>", "cannot be read"),
     "bad.ply": ("ply\nend_header\n", "no PLY file of a skeleton"),
     "empty.cg": ("", "Line 1"),
@@ -571,7 +638,8 @@ def test_errors_are_one_sentence_with_the_cure(run, tmp_path):
     calls = [f"mcfskel.skeletonize({arguments})" for arguments in ERRORS]
     calls += [f"mcfskel.load({name!r})" for name in [*FILES, 5]]
     calls += [f"skeleton.save({arguments})" for arguments in SAVED]
-    calls += ["skeleton.branch_measures(sections='a')"]
+    calls += ["skeleton.branch_measures(sections='a')", "mcfskel.check_options(epsilon=-1)",
+              "mcfskel.check_options(target_length=np.nan)", "skeleton.plot(backend=['x'])"]
     answer = run(f"""
         import mcfskel, os, trimesh
         mesh = trimesh.load(MESHES + "/torus.off", process=False)
@@ -587,7 +655,8 @@ def test_errors_are_one_sentence_with_the_cure(run, tmp_path):
         answer += [os.getcwd() == here, len(mcfskel.skeletonize(mesh, target_length="1.5%").nodes)]
     """)
     words = [*ERRORS.values(), *(word for _, word in FILES.values()), "path=5 is no path", *SAVED.values(),
-             "sections='a' is no whole number"]
+             "sections='a' is no whole number", "epsilon=-1 is no length", "target_length=nan is no length",
+             "backend=['x'] is none of"]
     for call, text, word in zip(calls, answer, words):
         assert word in text and "\n" not in text, (call, text, word)
     assert answer[-2] is True
@@ -658,6 +727,53 @@ def test_a_file_is_read_as_meshlab_reads_it(run):
                   bool(np.array_equal(s.surface.vertices, mesh.vertex_matrix()))]
     """)
     assert answer == [True, True, True]
+
+
+def test_a_mesh_is_where_its_node_of_a_scene_puts_it(run):
+    answer = run("""
+        import mcfskel, trimesh
+        mesh = trimesh.load(MESHES + "/capsule.off", process=False)
+        box = mesh.bounds
+        answer = []
+        for x in (10, -10):  # mirrored, too: it still faces outward
+            place = np.diag([x, 10, 10, 1.0])
+            place[:3, 3] = [100, 0, 0]
+            scene = trimesh.Scene()
+            scene.add_geometry(mesh, transform=place)
+            scene.export("placed.glb")
+            s = mcfskel.skeletonize("placed.glb", target_length="3%", repair="off")
+            there = np.sort(trimesh.transform_points(box, place), axis=0)
+            answer.append([bool(np.allclose([s.surface.vertices.min(axis=0), s.surface.vertices.max(axis=0)], there,
+                                            atol=1e-3)),
+                           bool(((s.nodes > there[0]) & (s.nodes < there[1])).all()),
+                           float(s.radius.max() / (there[1] - there[0]).min())])
+    """)
+    for surface, inside, radius in answer:
+        assert surface and inside and 0.4 < radius < 0.6
+
+
+def test_reading_in_threads_leaves_the_folder_as_it_was(run):
+    answer = run("""
+        import os, shutil
+        from concurrent.futures import ThreadPoolExecutor
+        from mcfskel._run import SkeletonError, open_mesh
+        for k in range(4):
+            os.mkdir(str(k))
+            shutil.copy(MESHES + "/torus.off", f"{k}/torus.off")
+            open(f"{k}/bad.off", "w").write("no mesh")
+        here = os.getcwd()
+
+        def read(i):
+            try:
+                return open_mesh(f"{i % 4}/{'bad' if i % 2 else 'torus'}.off").mesh_number()
+            except SkeletonError as error:
+                return "no file" if "There is no file" in str(error) else "refused"
+
+        with ThreadPoolExecutor(4) as threads:
+            answer = sorted(set(map(str, threads.map(read, range(200)))))
+        answer.append(os.getcwd() == here)
+    """)
+    assert answer == ["1", "refused", True]
 
 
 def test_without_a_plugin_the_import_says_what_to_do(python, tmp_path):
