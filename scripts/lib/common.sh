@@ -25,11 +25,12 @@ die() {
 	exit 1
 }
 
-# Runs a command quietly; its output is shown only if it fails.
+# Runs a command quietly; its output is shown only if it fails. In a shell of its own, so that a function
+# that dies is heard.
 quietly() {
 	local output
 	output="$(mktemp)"
-	if ! "$@" >"$output" 2>&1; then
+	if ! ("$@") >"$output" 2>&1; then
 		cat "$output" >&2
 		rm -f "$output"
 		return 1
@@ -51,15 +52,19 @@ as_root() {
 need_packages() {
 	command -v dpkg-query >/dev/null ||
 		die "this system has no dpkg; install the equivalents of these Debian packages: $*"
-	local name missing=()
+	local name native states missing=()
+	native="$(dpkg --print-architecture)"
 	for name in "$@"; do
-		[ "$(dpkg-query -W -f='${db:Status-Status}' "$name" 2>/dev/null)" = installed ] ||
-			missing+=("$name")
+		# One line for each architecture that it is there for.
+		states="$(dpkg-query -W -f='${Architecture} ${db:Status-Status}\n' "$name" 2>/dev/null || true)"
+		grep -qxE "($native|all) installed" <<<"$states" || missing+=("$name")
 	done
 	[ "${#missing[@]}" -gt 0 ] || return 0
 	say "installing ${missing[*]}"
 	local apt=(env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=300 -qq)
 	# A machine's package lists may be absent or old: refresh them only when they do not serve.
+	[ "$(id -u)" -eq 0 ] || command -v sudo >/dev/null ||
+		die "Debian packages are missing, and it takes root or sudo to install them: ${missing[*]}"
 	quietly as_root "${apt[@]}" install -y --no-install-recommends "${missing[@]}" 2>/dev/null && return 0
 	quietly as_root "${apt[@]}" update
 	quietly as_root "${apt[@]}" install -y --no-install-recommends "${missing[@]}" ||
