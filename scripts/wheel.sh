@@ -53,6 +53,8 @@ carried=(libmeshlab-common.so 'libQt5*' libgomp.so.1)
 mkdir -p "${1:-$ROOT/out/wheels}"
 folder="$(cd "${1:-$ROOT/out/wheels}" && pwd)"
 plugin="${MCFSKEL_PLUGIN:-$(build_host pymeshlab)}"
+[ -f "$plugin" ] || die "there is no plugin '$plugin'; see MCFSKEL_PLUGIN"
+plugin="$(realpath -s -- "$plugin")" # setup.py works in a folder of its own
 python="$(python_env requirements-wheel.txt)"
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT

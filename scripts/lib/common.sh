@@ -9,9 +9,12 @@
 # A failure inside $(...) is a failure.
 shopt -s inherit_errexit
 
+# A user's CDPATH would have cd say where it went, into every path that is found by it.
+unset CDPATH
 ROOT="$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)"
 # Downloads are shared by all checkouts, so they live outside of them.
-CACHE="${MCFSKEL_CACHE:-${XDG_CACHE_HOME:-$HOME/.cache}/mcfskel}"
+# Absolute, since some commands work in other folders.
+CACHE="$(realpath -ms -- "${MCFSKEL_CACHE:-${XDG_CACHE_HOME:-$HOME/.cache}/mcfskel}")"
 JOBS="${MCFSKEL_JOBS:-$(nproc)}"
 export ROOT CACHE JOBS
 

@@ -14,7 +14,7 @@ meshlab_sources() {
 	local release="$1" folder="$CACHE/meshlab-$1"
 	if [ -n "${MESHLAB_SRC:-}" ]; then
 		is_meshlab_tree "$MESHLAB_SRC" || die "MESHLAB_SRC=$MESHLAB_SRC is no MeshLab source tree"
-		echo "$MESHLAB_SRC"
+		realpath -s -- "$MESHLAB_SRC"
 		return
 	fi
 	with_lock "meshlab-$release" fetch_meshlab "$release" "$folder" >&2
@@ -32,7 +32,7 @@ fetch_meshlab() {
 	mkdir -p "$CACHE"
 	temporary="$(mktemp -d "$CACHE/fetch.XXXXXX")"
 	# shellcheck disable=SC2064
-	trap "rm -rf '$temporary'" EXIT
+	trap "rm -rf $(printf %q "$temporary")" EXIT
 	if ! clone_meshlab "$release" "$temporary/tree"; then
 		say "MeshLab $release: no clone could be made; taking Debian's source package"
 		rm -rf "$temporary/tree"

@@ -5,6 +5,9 @@
 
 # shellcheck shell=bash
 
+# Modules that a user has for another Python would be taken before an environment's own.
+unset PYTHONPATH PYTHONHOME
+
 # The shared libraries that the pymeshlab wheel expects from the system: OpenGL's loaders for the
 # module itself, and fonts and X for its Qt. They are needed on machines without a display as well.
 PYMESHLAB_PACKAGES=(libgl1 libopengl0 libegl1 libglib2.0-0 libfontconfig1 libfreetype6
