@@ -122,7 +122,7 @@ done
 for kind in "${kinds[@]}"; do
 	[ "$kind" != thread ] || [ -f "$ARCHER" ] || die "no $ARCHER: the thread sanitizer needs it"
 	if [ "$what" != tests ]; then
-		build "$kind" sanitize_jobs
+		locked "$ROOT/build/sanitize-$kind" build "$kind" sanitize_jobs
 		program="$ROOT/build/sanitize-$kind/tests/sanitize_jobs"
 		# shellcheck disable=SC2053
 		if [[ many_bodies == $pattern ]]; then
@@ -133,7 +133,7 @@ for kind in "${kinds[@]}"; do
 		done
 	fi
 	if [ "$what" != jobs ]; then
-		build "$kind" unit_tests
+		locked "$ROOT/build/sanitize-$kind" build "$kind" unit_tests
 		# A sanitizer allocates memory itself: a test that refuses all of it cannot run.
 		run "$kind" unit_tests "$ROOT/build/sanitize-$kind/tests/unit_tests" \
 			--gtest_filter="$filter:-ForEachBlock.DoesWithOneThreadWhereTheSystemRefusesMore"

@@ -87,7 +87,7 @@ esac
 need_packages "${UPSTREAM_PACKAGES[@]}" >&2
 sources="$(meshlab_sources "$RELEASE")"
 if [ -n "$build" ]; then
-	build_patch "$sources" "$2" "$3"
+	locked "$ROOT/build/upstream" build_patch "$sources" "$2" "$3"
 	exit
 fi
 folder="${1:-$ROOT/out/upstream}"

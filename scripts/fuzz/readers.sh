@@ -71,7 +71,7 @@ for name in "${chosen[@]}"; do
 	[[ " ${TARGETS[*]} " == *" $name "* ]] || die "no such target: '$name'; there are: ${TARGETS[*]}"
 done
 need_packages "${FUZZ_PACKAGES[@]}"
-build_targets
+locked "$FOLDER" build_targets
 rm -rf "$FINDINGS"
 say "fuzzing ${#chosen[@]} targets, $minutes minutes each"
 for name in "${chosen[@]}"; do

@@ -12,6 +12,13 @@ BENCH_PACKAGES=(g++ cmake ninja-build libeigen3-dev libqhull-dev libcgal-dev lib
 build_bench() {
 	local folder="$ROOT/build/bench" sources
 	sources="$(meshlab_sources 2025.07)"
+	locked "$folder" build_bench_in "$folder" "$sources" "$@" >&2
+	echo "$folder/tests/bench"
+}
+
+build_bench_in() {
+	local folder="$1" sources="$2"
+	shift 2
 	quietly cmake -S "$ROOT" -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release \
 		-DMCFSKEL_PLUGIN=OFF -DMCFSKEL_BENCH=ON -DMESHLAB_SRC="$sources" ||
 		die "could not configure the bench"
@@ -19,7 +26,6 @@ build_bench() {
 		say "building the programs of the bench"
 		quietly ninja -C "$folder" -j "$JOBS" "$@" || die "could not build the bench"
 	fi
-	echo "$folder/tests/bench"
 }
 
 # Prints the interpreter of the bench's own Python environment, which holds the peers from PyPI.

@@ -32,11 +32,13 @@ headers_of() {
 	esac
 }
 
-# build_host HOST [CMAKE_OPTION...]: configures and builds; prints the path of the plugin. A unity
-# build: most of the time of compiling goes into templates that several files instantiate.
+# build_host HOST [CMAKE_OPTION...]: configures and builds, with options all that they add, too; prints the
+# path of the plugin.
 build_host() {
-	local host="$1" built_as="$1" target=all plugin=filter_mcfskel folder sources
+	local host="$1" built_as="$1" target=filter_mcfskel plugin=filter_mcfskel folder sources
 	shift
+	# CMake remembers options: without any, an earlier run's tests are not built once more.
+	[ $# -eq 0 ] || target=all
 	# The same interface as that of today's pymeshlab, so most of the plugin is the same.
 	if [ "$host" = pymeshlab-2023.12 ]; then
 		built_as=pymeshlab target=filter_mcfskel_2023.12 plugin=filter_mcfskel/2023.12
@@ -44,12 +46,20 @@ build_host() {
 	folder="$ROOT/build/$built_as"
 	need_packages "${BUILD_PACKAGES[@]}" >&2
 	sources="$(meshlab_sources "$(headers_of "$built_as")")"
-	quietly cmake -S "$ROOT" -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release \
-		-DMESHLAB_HOST="$built_as" -DMESHLAB_SRC="$sources" -DCMAKE_UNITY_BUILD=ON "$@" ||
+	locked "$folder" build_in "$folder" "$host" "$target" -DMESHLAB_HOST="$built_as" \
+		-DMESHLAB_SRC="$sources" "$@" >&2
+	echo "$folder/$plugin/libfilter_mcfskel.so"
+}
+
+# build_in FOLDER HOST TARGET CMAKE_OPTION...: a unity build, since most of the time of compiling goes into
+# templates that several files instantiate.
+build_in() {
+	local folder="$1" host="$2" target="$3"
+	shift 3
+	quietly cmake -S "$ROOT" -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON "$@" ||
 		die "could not configure for $host"
 	if ! ninja -C "$folder" -n "$target" | grep -q 'no work to do'; then
 		say "building for $host"
 		quietly ninja -C "$folder" -j "$JOBS" "$target" || die "could not build for $host"
 	fi
-	echo "$folder/$plugin/libfilter_mcfskel.so"
 }

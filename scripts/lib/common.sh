@@ -63,11 +63,11 @@ need_packages() {
 		grep -qxE "($native|all) installed" <<<"$states" || missing+=("$name")
 	done
 	[ "${#missing[@]}" -gt 0 ] || return 0
+	[ "$(id -u)" -eq 0 ] || command -v sudo >/dev/null ||
+		die "Debian packages are missing, and it takes root or sudo to install them: ${missing[*]}"
 	say "installing ${missing[*]}"
 	local apt=(env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=300 -qq)
 	# A machine's package lists may be absent or old: refresh them only when they do not serve.
-	[ "$(id -u)" -eq 0 ] || command -v sudo >/dev/null ||
-		die "Debian packages are missing, and it takes root or sudo to install them: ${missing[*]}"
 	quietly as_root "${apt[@]}" install -y --no-install-recommends "${missing[@]}" 2>/dev/null && return 0
 	quietly as_root "${apt[@]}" update
 	quietly as_root "${apt[@]}" install -y --no-install-recommends "${missing[@]}" ||
@@ -82,13 +82,21 @@ publish() {
 	mv "$1" "$2"
 }
 
-# with_lock NAME COMMAND...: keeps two runs from preparing the same thing at once.
+# with_lock NAME COMMAND...: keeps two runs from preparing the same thing in the cache at once.
 with_lock() {
-	local name="$1"
+	locked "$CACHE/$1" "${@:2}"
+}
+
+# locked PATH COMMAND...: runs a command that writes PATH while no other run does.
+locked() {
+	local path="$1"
 	shift
-	mkdir -p "$CACHE"
+	mkdir -p "$(dirname "$path")"
 	(
-		flock 9
+		flock -w 20 9 || {
+			say "waiting for another run to finish with $path"
+			flock 9
+		}
 		"$@"
-	) 9>"$CACHE/$name.lock"
+	) 9>"$path.lock"
 }
