@@ -21,11 +21,14 @@ END
 *) die "unknown option '$1'; see --help" ;;
 esac
 
-need_packages clang-format-14
+need_packages clang-format-14 git
 cd "$ROOT"
-mapfile -t sources < <(git ls-files '*.h' '*.cpp')
+# Not of <(...), whose failure would go unseen.
+listed="$(git ls-files '*.h' '*.cpp')" || die "the sources are listed by git, which fails here; see above"
+mapfile -t sources <<<"${listed:?no sources}"
 if [ "${1:-}" = --check ]; then
-	complaints="$(clang-format-14 --dry-run "${sources[@]}" 2>&1 | sed -n 's/:.*clang-format-violations.*//p' | sort -u)"
+	said="$(clang-format-14 --dry-run "${sources[@]}" 2>&1)" || die "clang-format: $said"
+	complaints="$(sed -n 's/:.*clang-format-violations.*//p' <<<"$said" | sort -u)"
 	[ -z "$complaints" ] || die "not formatted; run scripts/format.sh:"$'\n'"$complaints"
 	exit 0
 fi

@@ -13,13 +13,18 @@ set -euo pipefail
 case "${1:-}" in
 '') ;;
 -h | --help)
-	echo "usage: scripts/lint.sh"
+	cat <<END
+usage: scripts/lint.sh
+
+Runs clang-tidy with the checks of .clang-tidy over all headers of the library; any finding is an error.
+Installs it if need be.
+END
 	exit 0
 	;;
 *) die "unknown option '$1'; see --help" ;;
 esac
 
-need_packages clang-tidy-14 libeigen3-dev libqhull-dev
+need_packages clang-tidy-14 git libeigen3-dev libqhull-dev
 tree="$(meshlab_sources 2025.07)"
 vcg="$tree/src/vcglib"
 [ -d "$vcg" ] || vcg="$tree/vcglib"

@@ -13,7 +13,7 @@ set -euo pipefail
 . "$ROOT/scripts/lib/build.sh"
 
 RELEASE=2025.07
-UPSTREAM_PACKAGES=(clang-format git libglu1-mesa-dev)
+UPSTREAM_PACKAGES=(clang-format git libglu1-mesa-dev python3)
 
 usage() {
 	cat <<END
@@ -79,9 +79,11 @@ case "${1:-}" in
 	fi
 	build=1
 	;;
--*)
-	usage >&2
-	exit 2
+*)
+	if [ $# -gt 1 ] || [[ "${1:-}" == -* ]]; then
+		usage >&2
+		exit 2
+	fi
 	;;
 esac
 need_packages "${UPSTREAM_PACKAGES[@]}" >&2

@@ -17,9 +17,13 @@ TEST_HOSTS=(meshlab-2020.09 meshlab-2025.07 pymeshlab-2023.12 pymeshlab-2022.2)
 
 # host_folder HOST: gets the host and prints the folder that has its programs under bin/.
 host_folder() {
+	local python
 	case "$1" in
-	pymeshlab) dirname "$(dirname "$(python_env)")" ;;
-	pymeshlab-*) dirname "$(dirname "$(python_env "requirements-$1.txt")")" ;;
+	pymeshlab*)
+		# By itself: as an argument of dirname its failure would go unseen.
+		if [ "$1" = pymeshlab ]; then python="$(python_env)"; else python="$(python_env "requirements-$1.txt")"; fi
+		echo "${python%/bin/python}"
+		;;
 	meshlab-2020.09) packaged_meshlab "$ROOT/build/$1/host" ;;
 	meshlab-2025.07) built_meshlab 2025.07 ;;
 	*) die "unknown host '$1'" ;;
