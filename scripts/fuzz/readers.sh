@@ -74,6 +74,10 @@ need_packages "${FUZZ_PACKAGES[@]}"
 locked "$FOLDER" build_targets
 rm -rf "$FINDINGS"
 say "fuzzing ${#chosen[@]} targets, $minutes minutes each"
+# Each in a process group of its own: whoever stops this script stops what it has started.
+set -m
+trap 'jobs -p | while read -r group; do kill -- "-$group" 2>/dev/null || true; done' EXIT
+trap 'exit 130' INT TERM
 for name in "${chosen[@]}"; do
 	while [ "$(jobs -rp | wc -l)" -ge 2 ]; do
 		wait -n
