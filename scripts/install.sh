@@ -85,7 +85,8 @@ pymeshlab_folder() {
 		print(importlib.metadata.version("pymeshlab"))
 		print(importlib.util.find_spec("pymeshlab").submodule_search_locations[0])' 2>/dev/null) ||
 		die "'$python' has no pymeshlab: pip install pymeshlab, or name another with --python"
-	[[ "$version" == "${wanted:-2025.7}".* ]] ||
+	# A release's first wheel has no .postN.
+	[[ "$version." == "${wanted:-2025.7}".* ]] ||
 		die "'$python' has pymeshlab $version, which $host is not"
 	echo "$folder/lib/plugins"
 }

@@ -60,6 +60,17 @@ def a_python(folder: Path, version: str) -> Path:
     return packages / "pymeshlab/lib/plugins"
 
 
+def test_the_first_wheel_of_a_release_is_that_release(tmp_path):
+    for version, host_name, fits in [("2025.7", "pymeshlab", True), ("2025.7.post1", "pymeshlab", True),
+                                     ("2023.12", "pymeshlab-2023.12", True), ("2025.71", "pymeshlab", False),
+                                     ("2023.12", "pymeshlab", False)]:
+        folder = tmp_path / f"{version}-{host_name}"
+        a_python(folder, version)
+        run = install(host_name, "--uninstall", "--python", folder / "bin/python")
+        assert (run.returncode == 0) == fits, run.stderr
+        assert ("was not installed" if fits else f"has pymeshlab {version}, which") in run.stderr
+
+
 def test_pymeshlab_has_one_in_its_package(tmp_path, plugin):
     place = a_python(tmp_path, "2025.7.post1")
     check_both_ways(place, plugin, "pymeshlab", "--python", tmp_path / "bin/python")
