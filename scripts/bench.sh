@@ -21,17 +21,22 @@ for argument in "$@"; do
 	esac
 done
 need_packages "${BENCH_PACKAGES[@]}"
+# Mistakes are told before anything is built.
+/usr/bin/python3 "$ROOT/scripts/bench/bench_options.py" "$@"
 python="$(bench_python)"
 host=()
 for argument in "$@"; do
-	# Also as in --only host and --only kept.
-	if [ "$argument" = --host ] || [ "$argument" = host ] || [ "$argument" = kept ]; then
+	case "$argument" in
+	# The latter are what follows --only.
+	--host | --only=host | --only=kept | host | kept)
 		# shellcheck source=lib/python_env.sh
 		. "$ROOT/scripts/lib/python_env.sh"
 		plugin="$("$ROOT/scripts/build.sh" pymeshlab | tail -n 1)"
 		host_python="$(python_env)"
 		host=(--plugin "$plugin" --host-python "$host_python")
-	fi
+		break
+		;;
+	esac
 done
 programs="$(build_bench)"
 exec "$python" "$ROOT/scripts/bench/bench.py" --programs "$programs" "${host[@]}" "$@"

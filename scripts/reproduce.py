@@ -116,7 +116,8 @@ def report_of(command: list[str]) -> dict:
     environment = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
     if done.returncode:
-        raise SystemExit(f"error: {' '.join(command)}: {done.stderr.strip().splitlines()[-1]}")
+        said = done.stderr.strip().splitlines() or [f"ended with status {done.returncode}"]
+        raise SystemExit(f"error: {' '.join(command)}: {said[-1]}")
     return json.loads(done.stdout.strip().splitlines()[-1])
 
 
@@ -154,7 +155,7 @@ def letters(folder: Path) -> Path:
         places.append(points)
         faces.append(triangles + count)
         count += len(points)
-    return path if path.exists() else write_mesh(path, np.vstack(places), np.vstack(faces))
+    return write_mesh(path, np.vstack(places), np.vstack(faces))
 
 
 class Reference:

@@ -21,6 +21,8 @@ for argument in "$@"; do
 	esac
 done
 need_packages "${BENCH_PACKAGES[@]}"
+# Mistakes are told before anything is built.
+/usr/bin/python3 "$ROOT/scripts/reproduce_options.py" "$@"
 python="$(bench_python)"
 programs="$(build_bench mcfskel_cli)"
 exec "$python" "$ROOT/scripts/reproduce.py" --program "$programs/mcfskel_cli" "$@"

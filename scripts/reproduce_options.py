@@ -30,6 +30,8 @@ def parse_arguments() -> argparse.Namespace:
     options = parser.parse_args()
     if missing := [str(p) for p in options.meshes if not p.is_file()]:
         parser.error("no such mesh: " + ", ".join(missing))
+    if options.docs and not (options.docs / "paper.md").is_file():
+        parser.error(f"argument --docs: there is no paper.md in {options.docs}, whose tables are replaced")
     return options
 
 

@@ -26,6 +26,7 @@ def parse_arguments() -> argparse.Namespace:
         prog="scripts/bench.sh",
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,  # scripts/bench.sh looks for some of them
     )
     parser.add_argument("meshes", nargs="*", type=Path, metavar="MESH", help="default: meshes/")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write all figures")
@@ -79,6 +80,8 @@ def parse_arguments() -> argparse.Namespace:
     missing = [str(mesh) for mesh in arguments.meshes if not mesh.is_file()]
     if missing:
         parser.error("no such mesh: " + ", ".join(missing))
+    if arguments.json and not arguments.json.absolute().parent.is_dir():
+        parser.error(f"argument --json: there is no folder {arguments.json.parent}")
     return arguments
 
 

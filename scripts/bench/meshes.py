@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from pathlib import Path
 
 import numpy as np
@@ -20,10 +21,12 @@ def meshes_in(folder: Path) -> list[Path]:
 def subdivided(mesh: Path, times: int, folder: Path) -> Path:
     """The mesh with every triangle cut into four, so many times, at its edges' mid-points.
 
-    Written as binary PLY with positions in double precision; made once.
+    Written as binary PLY with positions in double precision; made once. Meshes of one name have folders of
+    their own, by their content.
     """
-    target = folder / f"{mesh.stem}_x{4 ** times}.ply"
-    if target.exists() and target.stat().st_mtime > mesh.stat().st_mtime:
+    content = hashlib.sha256(mesh.read_bytes()).hexdigest()[:16]
+    target = folder / content / f"{mesh.stem}_x{4 ** times}.ply"
+    if target.exists():
         return target
     points, triangles = read_mesh(mesh)
     for _ in range(times):
