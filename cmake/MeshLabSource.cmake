@@ -10,6 +10,7 @@ if(NOT EXISTS "${MESHLAB_SRC}/src/common/mlexception.h")
 		"alone needs none: -DMCFSKEL_PLUGIN=OFF")
 endif()
 
-# The plugin shares meshes with its host: no other VCG will do.
+# The plugin shares meshes with its host: no other VCG will do, and none of an earlier MESHLAB_SRC.
+unset(VCG_INCLUDE_DIR CACHE)
 find_path(VCG_INCLUDE_DIR vcg/complex/complex.h
 	PATHS "${MESHLAB_SRC}/src/vcglib" "${MESHLAB_SRC}/vcglib" NO_DEFAULT_PATH REQUIRED)

@@ -8,6 +8,8 @@ find_path(VCG_INCLUDE_DIR vcg/complex/complex.h
 	DOC "The folder of vcglib, with vcg/ and wrap/ in it")
 if(NOT VCG_INCLUDE_DIR)
 	message(FATAL_ERROR "No headers of VCG: set VCG_INCLUDE_DIR to the folder of vcglib")
+elseif(NOT EXISTS "${VCG_INCLUDE_DIR}/vcg/complex/complex.h")
+	message(FATAL_ERROR "No headers of VCG in '${VCG_INCLUDE_DIR}': set VCG_INCLUDE_DIR to the folder of vcglib")
 endif()
 
 add_library(vcg INTERFACE)
