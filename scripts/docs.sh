@@ -16,8 +16,9 @@ case "${1:-}" in
 	cat <<END
 usage: scripts/docs.sh
 
-Builds out/site: the pages by MkDocs, whose links are checked, with the Python package by mkdocstrings, and under
-reference/ the library's headers by Doxygen. Installs them if need be. Open out/site/index.html.
+Builds the site in out/site: the pages and the reference of the Python package by MkDocs, which checks the links, and
+under reference/ the library's headers by Doxygen. Any warning is an error. Installs both if need be.
+The last line of the output is the page to open.
 END
 	exit 0
 	;;
