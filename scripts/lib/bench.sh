@@ -39,16 +39,24 @@ bench_python() {
 
 make_bench_python() {
 	local folder="$1" peer
-	[ ! -f "$folder/complete" ] || return 0
-	say "preparing Python for the bench"
-	rm -rf "$folder"
-	/usr/bin/python3 -m venv "$folder"
 	local pip=("$folder/bin/python" -m pip install --disable-pip-version-check)
-	quietly "${pip[@]}" -r "$ROOT/scripts/bench/requirements.txt" ||
-		die "could not install scripts/bench/requirements.txt"
-	# A peer that cannot be had is left out of the table; the bench does not depend on it.
+	if [ ! -f "$folder/complete" ]; then
+		say "preparing Python for the bench"
+		rm -rf "$folder"
+		/usr/bin/python3 -m venv "$folder"
+		quietly "${pip[@]}" -r "$ROOT/scripts/bench/requirements.txt" ||
+			die "could not install scripts/bench/requirements.txt"
+		grep -v '^#' "$ROOT/scripts/bench/requirements-peers.txt" >"$folder/missing"
+		touch "$folder/complete"
+	fi
+	[ -s "$folder/missing" ] || return 0
+	# A peer that cannot be had is left out of the table, and tried again in the next run: the network may have
+	# been down. The bench does not depend on it.
 	while read -r peer; do
-		quietly "${pip[@]}" "$peer" || say "could not install $peer: it will be missing in the table"
-	done < <(grep -v '^#' "$ROOT/scripts/bench/requirements-peers.txt")
-	touch "$folder/complete"
+		quietly "${pip[@]}" "$peer" </dev/null || {
+			say "could not install $peer: it will be missing in the table"
+			echo "$peer"
+		}
+	done <"$folder/missing" >"$folder/missing.part"
+	mv "$folder/missing.part" "$folder/missing"
 }
