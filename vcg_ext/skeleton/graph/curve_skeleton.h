@@ -7,6 +7,8 @@
 #ifndef VCG_MCF_CURVE_SKELETON_H
 #define VCG_MCF_CURVE_SKELETON_H
 
+#include <skeleton/core/disjoint_sets.h>
+
 #include <vcg/space/point3.h>
 
 #include <algorithm>
@@ -110,28 +112,13 @@ inline SkeletonStatistics statistics(const CurveSkeleton& skeleton)
 inline std::vector<int> componentOfNodes(
 	const CurveSkeleton& curve, const std::vector<int>& component)
 {
-	const std::vector<std::vector<int>> neighbours = curve.neighbours();
-	std::vector<int> part(curve.position.size(), -1);
-	int parts = 0;
-	for (int seed = 0; seed < int(part.size()); ++seed) {
-		if (part[seed] >= 0)
-			continue;
-		part[seed] = parts;
-		for (std::vector<int> stack(1, seed); !stack.empty();) {
-			const int v = stack.back();
-			stack.pop_back();
-			for (int w : neighbours[v])
-				if (part[w] < 0) {
-					part[w] = parts;
-					stack.push_back(w);
-				}
-		}
-		++parts;
-	}
-	std::vector<std::map<int, int>> votes(static_cast<size_t>(parts));
+	MergeForest parts(int(curve.position.size()));
+	for (const auto& [a, b] : curve.edges)
+		parts.join(a, b);
+	std::vector<std::map<int, int>> votes(curve.position.size()); // at the parts' representatives
 	for (size_t s = 0; s < curve.node.size(); ++s)
 		if (curve.node[s] >= 0)
-			++votes[part[curve.node[s]]][component[s]];
+			++votes[parts.find(curve.node[s])][component[s]];
 	std::vector<int> ofPart;
 	for (const std::map<int, int>& count : votes) {
 		const auto maximum = std::max_element(count.begin(), count.end(),
@@ -139,8 +126,8 @@ inline std::vector<int> componentOfNodes(
 		ofPart.push_back(maximum == count.end() ? -1 : maximum->first);
 	}
 	std::vector<int> ofNode;
-	for (int own : part)
-		ofNode.push_back(ofPart[own]);
+	for (int v = 0; v < int(curve.position.size()); ++v)
+		ofNode.push_back(ofPart[parts.find(v)]);
 	return ofNode;
 }
 

@@ -16,6 +16,7 @@
 #include <skeleton/core/ticker.h>
 #include <skeleton/input/soup_repair.h>
 #include <skeleton/mesh/surface_mesh.h>
+#include <skeleton/spatial/box_tree.h>
 #include <skeleton/spatial/triangle_tree.h>
 
 #include <algorithm>
@@ -73,37 +74,32 @@ public:
 			ticker(progress.cancelOnly(), repairing, double(ends.size()))
 	{
 		constexpr double rounding = 1e-6;
+		std::vector<Box3d> boxes;
 		for (size_t i = 0; i < ends.size(); ++i) {
 			const double reach = (1 + rounding) * reachOf(ends[i]);
 			if (!ends[i].isCutThrough || !std::isfinite(reach))
 				continue;
-			const int low = int(corners.size());
-			for (double side : {-reach, reach})
-				corners.push_back(ends[i].centre + Point3d(side, side, side));
-			boxes.push_back({low, low + 1, low + 1});
+			const Point3d corner(reach, reach, reach);
+			boxes.emplace_back(ends[i].centre - corner, ends[i].centre + corner);
 			limbs.push_back(int(i));
 		}
-		tree.emplace(corners, boxes, progress.cancelOnly());
+		tree.emplace(boxes, progress.cancelOnly());
 	}
-	LimbReaches(const LimbReaches&) = delete;
-	LimbReaches& operator=(const LimbReaches&) = delete;
 
 	/// Calls visit(number of the end) for each limb with some of a box within its reach, and for
 	/// some others. @throws Cancelled
 	template <class Visit>
 	void forEachReaching(const Box3d& box, const Visit& visit)
 	{
-		tree->forEachFaceIn(box, [&](int i) {
+		tree->forEachIn(box, [&](int i) {
 			ticker.tick();
 			visit(limbs[size_t(i)]);
 		});
 	}
 
 private:
-	std::vector<Point3d> corners;
-	std::vector<Triangle> boxes; ///< about the limbs, by two opposite corners
-	std::vector<int> limbs;      ///< the end of each box
-	std::optional<TriangleTree> tree;
+	std::vector<int> limbs; ///< the end of each box in the tree
+	std::optional<BoxTree> tree;
 	Ticker ticker;
 };
 

@@ -17,6 +17,7 @@
 #include <skeleton/input/check_input.h>
 #include <skeleton/mesh/components.h>
 #include <skeleton/mesh/surface_mesh.h>
+#include <skeleton/spatial/box_tree.h>
 #include <skeleton/spatial/triangle_tree.h>
 
 #include <vcg/space/box3.h>
@@ -151,25 +152,19 @@ inline std::vector<char> cavitiesAmong(const SurfaceMesh& mesh, const ClosedPiec
 				return false;
 		return true;
 	};
-	// Of the boxes of the pieces in `bySize`, each as a triangle between two of its corners.
-	std::vector<Point3d> corners;
-	std::vector<Triangle> boxes;
-	for (int piece : bySize) {
-		const int first = int(corners.size());
-		boxes.push_back({first, first + 1, first + 1});
-		corners.push_back(pieces.box[size_t(piece)].min);
-		corners.push_back(pieces.box[size_t(piece)].max);
-	}
-	const TriangleTree tree(corners, boxes, progress.part(0, 0.1));
+	std::vector<Box3d> boxes;
+	for (int piece : bySize)
+		boxes.push_back(pieces.box[size_t(piece)]);
+	const BoxTree tree(boxes, progress.part(0, 0.1));
 	std::vector<char> cavity(pieces.count(), 0);
 	std::vector<int> larger; // places in `bySize` of pieces with the box around
 	for (int i = 0; i < int(bySize.size()); ++i) {
 		progress.report(0.1 + 0.9 * i / double(bySize.size()), "Looking for cavities");
 		const size_t piece = size_t(bySize[size_t(i)]);
-		const Box3d& box = pieces.box[piece];
+		const Box3d& box = boxes[size_t(i)];
 		larger.clear();
-		tree.forEachFaceIn(Box3d(box.min, box.min), [&](int k) {
-			if (k < i && pieces.box[size_t(bySize[size_t(k)])].IsIn(box.max))
+		tree.forEachIn(Box3d(box.min, box.min), [&](int k) {
+			if (k < i && boxes[size_t(k)].IsIn(box.max))
 				larger.push_back(k);
 		});
 		std::sort(larger.begin(), larger.end(), std::greater<>());
