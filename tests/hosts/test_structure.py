@@ -95,6 +95,27 @@ def test_every_unit_test_is_built() -> None:
     assert sorted(listed) == sorted(there)
 
 
+def calls(arguments: str) -> set[str]:
+    """The types with which a function of these arguments can be called; the last may have defaults."""
+    types = [re.sub(r"\s*\w+$", "", re.sub(r"\s+", " ", argument.partition("=")[0]).strip())
+             for argument in arguments.split(",")]
+    needed = sum("=" not in argument for argument in arguments.split(",")) if arguments else 0
+    return {",".join(types[:count]) for count in range(needed, len(types) + 1)}
+
+
+def test_no_two_unit_tests_have_the_same_function() -> None:
+    # They are compiled many in one, and which ones changes with each test that is added.
+    function = re.compile(r"^(?!TEST)[\w:<>,*& ]+?[*& ](\w+)\(([^;{}]*)\)(?: const)?\n\{", re.M)
+    of_call: dict[tuple[str, str], set[str]] = {}
+    for test in (ROOT / "tests" / "unit").rglob("test_*.cpp"):
+        for name, arguments in function.findall(test.read_text()):
+            for types in calls(arguments):
+                of_call.setdefault((name, types), set()).add(test.name)
+    assert len(of_call) > 200
+    del of_call["coarse", ""]  # one is a template: another function
+    assert not {call: tests for call, tests in of_call.items() if len(tests) > 1}
+
+
 @pytest.mark.parametrize("workflow", sorted((ROOT / ".github" / "workflows").glob("*.yml")), ids=lambda p: p.name)
 def test_workflows_can_be_read_and_call_scripts_that_are_there(workflow: Path) -> None:
     jobs = yaml.safe_load(workflow.read_text())["jobs"]

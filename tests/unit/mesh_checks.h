@@ -163,6 +163,12 @@ inline PoleSet noPoles(const SurfaceMesh& mesh)
 	return poles;
 }
 
+/// The stage before the first iteration of plain mean curvature flow.
+inline Stage plainStage(const SurfaceMesh& mesh)
+{
+	return initialStage(mesh, noPoles(mesh));
+}
+
 /// Total genus of a closed mesh.
 inline int genus(const SurfaceMesh& mesh)
 {

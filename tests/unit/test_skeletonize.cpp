@@ -459,7 +459,7 @@ TEST(TransferredNodes, AreThoseOfTheNearestVertex)
 namespace {
 
 /// A thick tube along the x axis with a thin one at its end, whose last ball is at x = 2.
-shapes::Soup trunkWithTwig(double trunk, double twig)
+shapes::Soup twigOnTrunk(double trunk, double twig)
 {
 	std::vector<std::pair<double, double>> profile = {{-2, 0}};
 	for (int i = 1; i <= 12; ++i)
@@ -482,7 +482,7 @@ shapes::Soup trunkWithTwig(double trunk, double twig)
 TEST(Skeletonize, ATwigOfATenthOfAPercentIsFollowedToItsEndInItsMiddle)
 {
 	constexpr double trunk = 0.3, twig = 0.004; // of a diagonal of some 4.1
-	const shapes::Soup soup = trunkWithTwig(trunk, twig);
+	const shapes::Soup soup = twigOnTrunk(trunk, twig);
 	const Skeletonization result = skeletonize(soup.points, soup.triangles);
 	EXPECT_EQ(result.refined, 1);
 	const CurveSkeleton& curve = result.curve;
@@ -501,7 +501,7 @@ TEST(Skeletonize, ATwigOfATenthOfAPercentIsFollowedToItsEndInItsMiddle)
 
 TEST(Skeletonize, LengthsThatDoNotFollowTheThicknessAreThoseOfTheThickPart)
 {
-	const shapes::Soup soup = trunkWithTwig(0.3, 0.004);
+	const shapes::Soup soup = twigOnTrunk(0.3, 0.004);
 	Parameters uniform;
 	uniform.adaptive = false;
 	const Skeletonization plain = skeletonize(soup.points, soup.triangles, uniform);

@@ -21,17 +21,12 @@ using vcg::Point3d;
 namespace {
 
 /// Stage 0 of a surface without poles.
-Stage plainStage(const SurfaceMesh& mesh)
-{
-	return initialStage(mesh, checks::noPoles(mesh));
-}
-
 /// The stage after `iterations` steps of the plain flow.
 Stage stageAfter(const shapes::Soup& soup, int iterations)
 {
 	Parameters parameters;
 	parameters.maxIterations = iterations;
-	return contractToSkeleton(plainStage(soup.mesh()), parameters);
+	return contractToSkeleton(checks::plainStage(soup.mesh()), parameters);
 }
 
 void expectTopology(const Stage& stage, const CurveSkeleton& skeleton, int components, int genus)
@@ -90,7 +85,7 @@ TEST(CollapseToCurve, HolesOfThreeEdgesAreKept)
 		mesh.compact();
 		ASSERT_EQ(checks::genus(mesh), genus);
 		SCOPED_TRACE(testing::Message() << "seed " << seed);
-		const Stage stage = plainStage(mesh);
+		const Stage stage = checks::plainStage(mesh);
 		expectTopology(stage, collapseToCurve(stage), 1, genus);
 	}
 }
@@ -108,7 +103,7 @@ TEST(CollapseToCurve, HoldsForAnyPositions)
 			for (int k = 0; k < 3; ++k)
 				p[k] = seed % 2 ? double(random() % 1000) : double(random() % 3);
 		SCOPED_TRACE(testing::Message() << "seed " << seed);
-		const Stage stage = plainStage(mesh);
+		const Stage stage = checks::plainStage(mesh);
 		const CurveSkeleton skeleton = collapseToCurve(stage);
 		const SkeletonStatistics s = statistics(skeleton);
 		EXPECT_EQ(s.components, 1);
@@ -120,7 +115,7 @@ TEST(CollapseToCurve, HoldsForAnyPositions)
 TEST(CollapseToCurve, EveryNodeComesFromTheSurfaceBeforeAnySplit)
 {
 	for (const shapes::Soup& soup : {shapes::torus(), shapes::plate(3), shapes::capsule()})
-		EXPECT_EQ(nodesWithoutSurface(collapseToCurve(plainStage(soup.mesh()))), 0);
+		EXPECT_EQ(nodesWithoutSurface(collapseToCurve(checks::plainStage(soup.mesh()))), 0);
 }
 
 TEST(CollapseToCurve, ANodeWithoutSurfaceIsMadeOfSplitVerticesOnly)
@@ -206,7 +201,7 @@ TEST(CollapseToCurve, DoesNotZigzag)
 TEST(CollapseToCurve, RemovesSpurs)
 {
 	// In a capsule about the x axis, a stub whose ball lies within the one at its foot.
-	const Stage stage = plainStage(shapes::capsule(2, 0.35).mesh());
+	const Stage stage = checks::plainStage(shapes::capsule(2, 0.35).mesh());
 	CurveSkeleton skeleton;
 	skeleton.position = {{-1, 0, 0}, {0, 0, 0}, {1, 0, 0}, {0, 0.1, 0}};
 	skeleton.edges = {{0, 1}, {1, 2}, {1, 3}};
@@ -232,12 +227,12 @@ TEST(CollapseToCurve, RemovesSpurs)
 TEST(CollapseToCurve, IsTheSameWhateverTheScale)
 {
 	const SurfaceMesh mesh = shapes::plate(2).mesh();
-	const CurveSkeleton skeleton = collapseToCurve(plainStage(mesh));
+	const CurveSkeleton skeleton = collapseToCurve(checks::plainStage(mesh));
 	for (double factor : {std::ldexp(1.0, -30), std::ldexp(1.0, 30)}) { // exact in floating point
 		SurfaceMesh scaled = mesh;
 		for (Point3d& p : scaled.position)
 			p *= factor;
-		const CurveSkeleton other = collapseToCurve(plainStage(scaled));
+		const CurveSkeleton other = collapseToCurve(checks::plainStage(scaled));
 		EXPECT_EQ(other.edges, skeleton.edges);
 		EXPECT_EQ(other.node, skeleton.node);
 	}
@@ -251,7 +246,7 @@ TEST(CollapseToCurve, TwoRunsAreBitEqual)
 
 TEST(CollapseToCurve, ProgressGoesForwardAndCancels)
 {
-	const Stage stage = plainStage(shapes::sphere(4).mesh());
+	const Stage stage = checks::plainStage(shapes::sphere(4).mesh());
 	int last = -1, calls = 0;
 	collapseToCurve(stage, 1e-4, Progress([&](int percent, const char*) {
 		EXPECT_GE(percent, last);

@@ -57,7 +57,7 @@ Wrong found(const std::function<void(Stage&)>& change)
 	return {Part::Stage, 0, 0, ""};
 }
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double infinite = std::numeric_limits<double>::infinity();
 
 } // namespace
 
@@ -85,7 +85,7 @@ TEST(CheckStage, NamesTheVertexThatIsWrongAndHowManyAre)
 		EXPECT_EQ(wrong.row, v) << wrong.reason;
 		EXPECT_EQ(wrong.count, count) << wrong.reason;
 	};
-	for (double x : {std::nan(""), infinity, -infinity, 1e228, -1e37, 1e6}) {
+	for (double x : {std::nan(""), infinite, -infinite, 1e228, -1e37, 1e6}) {
 		atVertex(5, 2, [&](Stage& s) { s.mesh.position[5][1] = s.mesh.position[8][2] = x; });
 		atVertex(5, 1, [&](Stage& s) {
 			s.pole[5][0] = x;
@@ -93,7 +93,7 @@ TEST(CheckStage, NamesTheVertexThatIsWrongAndHowManyAre)
 		});
 	}
 	atVertex(6, 1, [](Stage& s) { s.poleRadius[6] = std::nan(""); });
-	atVertex(6, 1, [](Stage& s) { s.poleRadius[6] = infinity; });
+	atVertex(6, 1, [](Stage& s) { s.poleRadius[6] = infinite; });
 	atVertex(7, 1, [](Stage& s) { s.fixed[7] = 2; });
 	atVertex(7, 1, [](Stage& s) { s.sheet[7] = -1; });
 	atVertex(7, 1, [](Stage& s) {
@@ -118,7 +118,7 @@ TEST(CheckStage, PolesOfVerticesThatHaveNoneMayBeAnywhere)
 	Stage stage = twoBodies();
 	stage.sheet[5] = 0;
 	stage.poleRadius[5] = -1;
-	for (double x : {std::nan(""), infinity, 1e36, -1e228}) {
+	for (double x : {std::nan(""), infinite, 1e36, -1e228}) {
 		stage.pole[5] = Point3d(x, x, x);
 		EXPECT_NO_THROW(checkStage(stage));
 		EXPECT_NO_THROW(checkStage(step(stage, Parameters())));
@@ -151,16 +151,16 @@ TEST(CheckStage, RefusesMeasuresThatAreNoLengthsAreasOrVolumes)
 		const Wrong wrong = found(change);
 		EXPECT_EQ(wrong.part, Part::Stage) << wrong.reason;
 	};
-	for (double value : {0.0, -1.0, std::nan(""), infinity, 1e-300}) {
+	for (double value : {0.0, -1.0, std::nan(""), infinite, 1e-300}) {
 		component([&](Stage& s) { s.diagonal[1] = value; });
 		component([&](Stage& s) { s.initialArea[1] = value; });
 		whole([&](Stage& s) { s.initialVolume = value; });
 	}
-	for (double value : {-1.0, std::nan(""), infinity})
+	for (double value : {-1.0, std::nan(""), infinite})
 		component([&](Stage& s) { s.area[1] = value; });
-	for (double value : {std::nan(""), infinity, -infinity})
+	for (double value : {std::nan(""), infinite, -infinite})
 		whole([&](Stage& s) { s.volume = value; });
-	for (double value : {0.0, -1.0, std::nan(""), infinity, 0.11})
+	for (double value : {0.0, -1.0, std::nan(""), infinite, 0.11})
 		whole([&](Stage& s) { s.epsilon = value; });
 	// The unit of length has to be that of the surface, or splits would not end.
 	for (double factor : {0.01, 0.4, 2.5, 100.0})

@@ -16,12 +16,6 @@ using vcg::Point3d;
 
 namespace {
 
-Stage plainStage(const shapes::Soup& soup)
-{
-	const SurfaceMesh mesh = soup.mesh();
-	return initialStage(mesh, checks::noPoles(mesh));
-}
-
 std::vector<int> allVertices(const Stage& stage)
 {
 	std::vector<int> all(stage.fixed.size());
@@ -85,7 +79,7 @@ TEST(NeighbourhoodEuler, StaysInItsOwnSheet)
 TEST(FixDegenerateVertices, TakesTimeInProportionToTheNeighbourhoodsAndCanBeCancelled)
 {
 	// Each of the 3000 vertices sees all of the others.
-	Stage stage = plainStage(shapes::torus(1, 0.3, 60, 50));
+	Stage stage = checks::plainStage(shapes::torus(1, 0.3, 60, 50).mesh());
 	const double everything = 2;
 	int asked = 0;
 	EXPECT_EQ(fixDegenerateVertices(stage, allVertices(stage), everything,
@@ -102,12 +96,12 @@ TEST(FixDegenerateVertices, TakesTimeInProportionToTheNeighbourhoodsAndCanBeCanc
 
 TEST(FixDegenerateVertices, FixesAThinTubeAndNotAThickOne)
 {
-	Stage thin = plainStage(shapes::torus(1, 0.0005, 500, 5));
+	Stage thin = checks::plainStage(shapes::torus(1, 0.0005, 500, 5).mesh());
 	EXPECT_EQ(
 		fixDegenerateVertices(thin, allVertices(thin), 1e-4), 0); // each vertex sees itself only
 	EXPECT_EQ(fixDegenerateVertices(thin, allVertices(thin), 0.002), thin.mesh.vertexCount());
 	EXPECT_EQ(fixedCount(thin), thin.mesh.vertexCount());
-	Stage thick = plainStage(shapes::torus());
+	Stage thick = checks::plainStage(shapes::torus().mesh());
 	EXPECT_EQ(fixDegenerateVertices(thick, allVertices(thick), 0.006), 0);
 	EXPECT_EQ(fixedCount(thick), 0);
 }
@@ -115,7 +109,7 @@ TEST(FixDegenerateVertices, FixesAThinTubeAndNotAThickOne)
 TEST(FixDegenerateVertices, FixesABodyOfTheSizeOfAPoint)
 {
 	for (const shapes::Soup& soup : {shapes::tetrahedron(), shapes::octahedron(), shapes::box()}) {
-		Stage stage = plainStage(soup);
+		Stage stage = checks::plainStage(soup.mesh());
 		for (Point3d& p : stage.mesh.position)
 			p *= 1e-4;
 		EXPECT_EQ(
@@ -125,7 +119,7 @@ TEST(FixDegenerateVertices, FixesABodyOfTheSizeOfAPoint)
 
 TEST(FixDegenerateVertices, LooksAtCandidatesOnlyAndCountsNewOnes)
 {
-	Stage stage = plainStage(shapes::torus(1, 0.0005, 500, 5));
+	Stage stage = checks::plainStage(shapes::torus(1, 0.0005, 500, 5).mesh());
 	stage.fixed[3] = 1;
 	EXPECT_EQ(fixDegenerateVertices(stage, {1, 3, 5}, 0.006), 2);
 	EXPECT_TRUE(stage.fixed[1] && stage.fixed[3] && stage.fixed[5]);
@@ -135,7 +129,8 @@ TEST(FixDegenerateVertices, LooksAtCandidatesOnlyAndCountsNewOnes)
 TEST(FixDegenerateVertices, MeasuresByTheComponentsOwnDiagonal)
 {
 	// The same thin ring, small beside a large body, is as degenerate as alone.
-	Stage stage = plainStage(shapes::joined(
-		{shapes::scaled(shapes::sphere(2), 1000), shapes::torus(1, 0.0005, 500, 5)}));
+	Stage stage = checks::plainStage(
+		shapes::joined({shapes::scaled(shapes::sphere(2), 1000), shapes::torus(1, 0.0005, 500, 5)})
+			.mesh());
 	EXPECT_EQ(fixDegenerateVertices(stage, allVertices(stage), 0.006), 2500);
 }

@@ -17,11 +17,6 @@ using namespace vcg::tri::mcf;
 
 namespace {
 
-Stage plainStage(const SurfaceMesh& mesh)
-{
-	return initialStage(mesh, checks::noPoles(mesh));
-}
-
 /// What a full factor of a matrix has room for between the first entry of each row and its diagonal.
 long envelope(const SymmetricRows& A)
 {
@@ -41,7 +36,7 @@ TEST(EliminationOrder, HasEachFreeVertexOnceTheLastOnesFirst)
 {
 	for (const shapes::Soup& soup :
 		{shapes::tetrahedron(), shapes::box(), shapes::torus(), shapes::plate(2)}) {
-		Stage stage = plainStage(soup.mesh());
+		Stage stage = checks::plainStage(soup.mesh());
 		for (size_t v = 0; v < stage.fixed.size(); v += 5)
 			stage.fixed[v] = 1;
 		std::vector<int> expected;
@@ -62,7 +57,7 @@ TEST(EliminationOrder, HasTheComponentsOneAfterTheOther)
 {
 	const shapes::Soup torus = shapes::torus(1, 0.3, 20, 10);
 	shapes::Soup both = shapes::joined({torus, shapes::moved(torus, {5, 0, 0})});
-	const Stage stage = plainStage(shapes::shuffled(both).mesh());
+	const Stage stage = checks::plainStage(shapes::shuffled(both).mesh());
 	ASSERT_EQ(stage.diagonal.size(), 2u);
 	std::vector<int> component;
 	for (int v : eliminationOrder(stage))
@@ -75,7 +70,7 @@ TEST(EliminationOrder, WhatFollowsInItIsSeldomNextOnTheMesh)
 {
 	SurfaceMesh mesh = shapes::torus(1, 0.3, 60, 20).mesh();
 	renumberBreadthFirst(mesh);
-	const std::vector<int> order = eliminationOrder(plainStage(mesh));
+	const std::vector<int> order = eliminationOrder(checks::plainStage(mesh));
 	const auto neighbours = [&](size_t i, size_t j) {
 		return mesh.findHalfEdge(order[i], order[j]) >= 0;
 	};

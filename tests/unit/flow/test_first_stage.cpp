@@ -25,7 +25,7 @@ shapes::Soup denseScene()
 		shapes::moved(shapes::scaled(shapes::torus(1, 0.3, 240, 80), 10), {40, 0, 0})});
 }
 
-Parameters coarse()
+Parameters coarseFlow()
 {
 	Parameters parameters;
 	parameters.epsilon = 0.02;
@@ -37,7 +37,7 @@ Parameters coarse()
 TEST(FirstStage, KeepsTheTopologyAndASubsetOfTheVertices)
 {
 	const SurfaceMesh surface = denseScene().mesh();
-	const Stage stage = firstStage(surface, coarse());
+	const Stage stage = firstStage(surface, coarseFlow());
 	EXPECT_EQ(checks::stageError(stage), "");
 	EXPECT_EQ(stage.mesh.eulerCharacteristic(), surface.eulerCharacteristic());
 	EXPECT_LT(stage.mesh.vertexCount(), surface.vertexCount() / 4);
@@ -49,7 +49,7 @@ TEST(FirstStage, KeepsTheTopologyAndASubsetOfTheVertices)
 TEST(FirstStage, EachVertexOfTheSurfaceKeepsANodeNearby)
 {
 	const SurfaceMesh surface = denseScene().mesh();
-	const Stage stage = firstStage(surface, coarse());
+	const Stage stage = firstStage(surface, coarseFlow());
 	const std::vector<int> component = connectedComponents(surface);
 	std::vector<int> merged(stage.mesh.vertexSlots(), 0);
 	ASSERT_EQ(stage.node.size(), size_t(surface.vertexSlots()));
@@ -114,7 +114,7 @@ TEST(FirstStage, TakesThePolesThatAreKnown)
 		poles.centre.push_back(surface.position[v] / 2.0);
 		poles.radius.push_back(v % 3 == 0 ? -1 : surface.position[v].Norm() / 2);
 	}
-	const Stage stage = firstStage(surface, coarse(), &poles);
+	const Stage stage = firstStage(surface, coarseFlow(), &poles);
 	int without = 0;
 	for (int v = 0; v < stage.mesh.vertexSlots(); ++v) {
 		ASSERT_EQ(stage.pole[v], stage.mesh.position[v] / 2.0);
@@ -127,7 +127,7 @@ TEST(FirstStage, TakesThePolesThatAreKnown)
 TEST(FirstStage, FractionsAreOfTheSurfaceItself)
 {
 	const SurfaceMesh surface = denseScene().mesh();
-	const Stage stage = firstStage(surface, coarse());
+	const Stage stage = firstStage(surface, coarseFlow());
 	EXPECT_DOUBLE_EQ(stage.initialVolume, surface.volume());
 	EXPECT_NEAR(stage.initialArea[0] + stage.initialArea[1], surface.area(), 1e-9 * surface.area());
 	EXPECT_NEAR(stage.diagonal[0], std::sqrt(12.0), 1e-6);
@@ -149,7 +149,7 @@ TEST(FirstStage, CanBeCancelledAtAnyReport)
 {
 	const SurfaceMesh surface = denseScene().mesh();
 	int reports = 0, last = 0;
-	firstStage(surface, coarse(), nullptr, Progress([&](int percent, const char*) {
+	firstStage(surface, coarseFlow(), nullptr, Progress([&](int percent, const char*) {
 		EXPECT_GE(percent, last);
 		last = percent;
 		return ++reports > 0;
@@ -158,7 +158,7 @@ TEST(FirstStage, CanBeCancelledAtAnyReport)
 	for (int stopAt = 1; stopAt <= reports; stopAt += 1 + reports / 20) {
 		int count = 0;
 		const Progress progress([&](int, const char*) { return ++count < stopAt; });
-		EXPECT_THROW(firstStage(surface, coarse(), nullptr, progress), Cancelled);
+		EXPECT_THROW(firstStage(surface, coarseFlow(), nullptr, progress), Cancelled);
 		EXPECT_EQ(count, stopAt);
 	}
 }

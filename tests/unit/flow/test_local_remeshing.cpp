@@ -20,7 +20,7 @@ using vcg::Point3d;
 
 namespace {
 
-Stage stageWithPoles(const shapes::Soup& soup)
+Stage stageWithBalls(const shapes::Soup& soup)
 {
 	const SurfaceMesh mesh = soup.mesh();
 	return initialStage(mesh, shrinkingBallPoles(mesh));
@@ -29,7 +29,7 @@ Stage stageWithPoles(const shapes::Soup& soup)
 /// A stage in which edges are short and angles wide, as after a contraction.
 Stage contractedStage(const shapes::Soup& soup)
 {
-	Stage stage = stageWithPoles(soup);
+	Stage stage = stageWithBalls(soup);
 	contract(stage, Parameters());
 	return stage;
 }
@@ -89,7 +89,7 @@ TEST(CollapseShortEdges, UsesEachComponentsOwnDiagonal)
 {
 	// A body that is small in a large scene keeps the edges that it would keep alone.
 	const auto verticesLeft = [](double scale) {
-		Stage stage = stageWithPoles(
+		Stage stage = stageWithBalls(
 			shapes::joined({shapes::plate(3), shapes::scaled(shapes::torus(), scale)}));
 		MergeForest forest(stage.mesh.vertexSlots());
 		collapseShortEdges(stage, 0.05, forest);
@@ -147,7 +147,7 @@ TEST(CollapseShortEdges, AnEdgeGoesToItsMiddle)
 	const Point3d middle = (soup.points[a] + soup.points[b]) / 2.0;
 	soup.points[a] = middle + (soup.points[a] - middle) * 1e-4;
 	soup.points[b] = middle + (soup.points[b] - middle) * 1e-4;
-	Stage stage = stageWithPoles(soup);
+	Stage stage = stageWithBalls(soup);
 	MergeForest forest(stage.mesh.vertexSlots());
 	EXPECT_TRUE(collapseShortEdges(stage, 0.002, forest).empty());
 	EXPECT_EQ(stage.mesh.vertexCount(), int(soup.points.size()) - 1);
@@ -178,7 +178,7 @@ TEST(CollapseShortEdges, TheClosestPoleIsKept)
 	soup.points[b] = soup.points[a] + (soup.points[b] - soup.points[a]) * 1e-4;
 	for (const bool closerAtA : {true, false})
 		for (const bool missingAtOther : {true, false}) {
-			Stage one = stageWithPoles(soup);
+			Stage one = stageWithBalls(soup);
 			const int closer = closerAtA ? a : b, other = closerAtA ? b : a;
 			one.pole[closer] = soup.points[a] * 0.5;
 			one.pole[other] = missingAtOther ? soup.points[a] : Point3d(soup.points[a] * 0.1);
@@ -197,14 +197,14 @@ TEST(CollapseShortEdges, NeverCollapsesTheSmallestMeshes)
 {
 	for (const shapes::Soup& soup :
 		{shapes::tetrahedron(), shapes::scaled(shapes::tetrahedron(), 1e-6)}) {
-		Stage stage = stageWithPoles(soup);
+		Stage stage = stageWithBalls(soup);
 		for (Point3d& p : stage.mesh.position)
 			p = p * 1e-6; // all edges are short
 		MergeForest forest(4);
 		EXPECT_EQ(collapseShortEdges(stage, 0.002, forest), std::vector<int>({0, 1, 2, 3}));
 		EXPECT_EQ(stage.mesh.vertexCount(), 4);
 	}
-	Stage octahedron = stageWithPoles(shapes::octahedron());
+	Stage octahedron = stageWithBalls(shapes::octahedron());
 	for (Point3d& p : octahedron.mesh.position)
 		p = p * 1e-6;
 	MergeForest forest(6);
@@ -214,7 +214,7 @@ TEST(CollapseShortEdges, NeverCollapsesTheSmallestMeshes)
 
 TEST(CollapseShortEdges, CoincidentVerticesAllMerge)
 {
-	Stage stage = stageWithPoles(shapes::sphere(3));
+	Stage stage = stageWithBalls(shapes::sphere(3));
 	for (Point3d& p : stage.mesh.position)
 		p = Point3d(1, 2, 3);
 	MergeForest forest(stage.mesh.vertexSlots());
@@ -265,7 +265,7 @@ TEST(SplitWideAngles, PutsTheNewVertexUnderTheWiderAngle)
 	shapes::Soup soup;
 	soup.points = {{-1, 0, 0}, {1, 0, 0}, {0.3, 0.2, 0.05}, {-0.2, -0.3, 0.05}, {0, 0, -1}};
 	soup.triangles = {{0, 1, 2}, {1, 0, 3}, {1, 4, 2}, {2, 4, 0}, {0, 4, 3}, {3, 4, 1}};
-	Stage stage = stageWithPoles(soup);
+	Stage stage = stageWithBalls(soup);
 	MergeForest forest(stage.mesh.vertexSlots());
 	splitWideAngles(stage, Parameters(), forest);
 	ASSERT_EQ(stage.mesh.vertexCount(), 6);
@@ -281,7 +281,7 @@ TEST(SplitWideAngles, LeavesEvenTrianglesAlone)
 {
 	for (const shapes::Soup& soup :
 		{shapes::sphere(3), shapes::octahedron(), shapes::tetrahedron(), shapes::box()}) {
-		Stage stage = stageWithPoles(soup);
+		Stage stage = stageWithBalls(soup);
 		MergeForest forest(stage.mesh.vertexSlots());
 		splitWideAngles(stage, Parameters(), forest);
 		EXPECT_EQ(stage.mesh.vertexCount(), int(soup.points.size()));

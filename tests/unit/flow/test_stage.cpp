@@ -20,19 +20,13 @@ using vcg::Point3d;
 
 namespace {
 
-Stage plainStage(const shapes::Soup& soup)
-{
-	const SurfaceMesh mesh = soup.mesh();
-	return initialStage(mesh, checks::noPoles(mesh));
-}
-
 } // namespace
 
 TEST(Stage, ZeroIsTheSurface)
 {
 	const shapes::Soup soup =
 		shapes::joined({shapes::box(1, 2, 3), shapes::moved(shapes::torus(), {5, 0, 0})});
-	const Stage stage = plainStage(soup);
+	const Stage stage = checks::plainStage(soup.mesh());
 	EXPECT_EQ(checks::stageError(stage), "");
 	EXPECT_EQ(stage.mesh.position, soup.points);
 	EXPECT_EQ(*stage.surface, soup.points);
@@ -48,8 +42,9 @@ TEST(Stage, ZeroIsTheSurface)
 
 TEST(Stage, MeasuresEachComponentByItself)
 {
-	const Stage stage = plainStage(
-		shapes::joined({shapes::box(1, 2, 3), shapes::moved(shapes::box(2, 2, 2), {9, 9, 9})}));
+	const Stage stage = checks::plainStage(
+		shapes::joined({shapes::box(1, 2, 3), shapes::moved(shapes::box(2, 2, 2), {9, 9, 9})})
+			.mesh());
 	ASSERT_EQ(stage.diagonal.size(), 2u);
 	EXPECT_DOUBLE_EQ(stage.diagonal[0], std::sqrt(14.0));
 	EXPECT_DOUBLE_EQ(stage.diagonal[1], std::sqrt(12.0));
@@ -60,7 +55,7 @@ TEST(Stage, MeasuresEachComponentByItself)
 
 TEST(Stage, FractionsAreOfTheWhole)
 {
-	Stage stage = plainStage(shapes::box());
+	Stage stage = checks::plainStage(shapes::box().mesh());
 	stage.area = {1.5};
 	stage.volume = 0.25;
 	stage.fixed = {1, 1, 0, 0, 0, 0, 0, 0};
@@ -82,7 +77,7 @@ TEST(Stage, RadiusIsTheMeanDistanceToTheMergedSurface)
 
 TEST(Stage, AVertexMadeByASplitHasItsNeighboursRadius)
 {
-	Stage stage = plainStage(shapes::octahedron());
+	Stage stage = checks::plainStage(shapes::octahedron().mesh());
 	// Three vertices have no surface vertex; the others stand for points at distance 2.
 	stage.surface = std::make_shared<const std::vector<Point3d>>(
 		std::vector<Point3d> {stage.mesh.position[0] + Point3d(2, 0, 0),
@@ -100,7 +95,7 @@ TEST(Stage, RadiiSpreadFromRingToRing)
 	for (int i = 1; i <= 20000; ++i)
 		profile.emplace_back(i, 1);
 	profile.emplace_back(20001, 0);
-	Stage stage = plainStage(shapes::revolved(profile, 3));
+	Stage stage = checks::plainStage(shapes::revolved(profile, 3).mesh());
 	std::fill(stage.node.begin(), stage.node.end(), 0);
 	int asked = 0;
 	const std::vector<double> radius =
@@ -116,7 +111,7 @@ TEST(Stage, RadiiSpreadFromRingToRing)
 
 TEST(Stage, EachRoundTakesTheMeanOfAllThatWereKnownBefore)
 {
-	Stage stage = plainStage(shapes::torus(1, 0.3, 40, 12));
+	Stage stage = checks::plainStage(shapes::torus(1, 0.3, 40, 12).mesh());
 	std::mt19937 random(1);
 	for (int& node : stage.node)
 		node = int(random() % 5) * 90;
@@ -144,7 +139,7 @@ TEST(Stage, EachRoundTakesTheMeanOfAllThatWereKnownBefore)
 
 TEST(Stage, RadiiOfASphereAtItsCentre)
 {
-	Stage stage = contractToSkeleton(plainStage(shapes::sphere(3)), Parameters());
+	Stage stage = contractToSkeleton(checks::plainStage(shapes::sphere(3).mesh()), Parameters());
 	for (double r : stageRadius(stage))
 		EXPECT_NEAR(r, 1, 0.05);
 }

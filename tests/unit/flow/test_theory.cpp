@@ -31,12 +31,6 @@ std::vector<Point3d> afterOneStep(Stage stage, double wL, double wH)
 	return stage.mesh.position;
 }
 
-Stage plainStage(const shapes::Soup& soup)
-{
-	const SurfaceMesh mesh = soup.mesh();
-	return initialStage(mesh, checks::noPoles(mesh));
-}
-
 /// A torus whose tube of radius 1 is nearly straight, on a regular grid.
 struct Tube
 {
@@ -68,7 +62,8 @@ TEST(Theory, OneStepShrinksATubeAsTheClosedFormSays)
 	const double eigenvalue = 2 * (b / a) * (2 - 2 * std::cos(step));
 	for (const auto& [wL, wH] : {std::pair {1.0, 20.0}, {1.0, 60.0}, {0.5, 20.0}}) {
 		const double expected = 1 / (1 + std::pow(wL * eigenvalue / (wH / 200), 2));
-		const double found = Tube::radius(afterOneStep(plainStage(tube.soup), wL, wH));
+		const double found =
+			Tube::radius(afterOneStep(checks::plainStage(tube.soup.mesh()), wL, wH));
 		EXPECT_NEAR(found, expected, 0.03 * expected) << "w_L " << wL << ", w_H " << wH;
 	}
 }
@@ -78,7 +73,7 @@ TEST(Theory, OneStepShrinksTheDirectionOfLargerCurvatureMore)
 	// Eq. 3: what moves along the normal by s loses the parts s k_1 and s k_2 of its lengths.
 	const Tube tube;
 	const std::vector<Point3d>& before = tube.soup.points;
-	const std::vector<Point3d> after = afterOneStep(plainStage(tube.soup), 1, 200);
+	const std::vector<Point3d> after = afterOneStep(checks::plainStage(tube.soup.mesh()), 1, 200);
 	const auto shrinks = [&](int i, int j) {
 		return 1 - vcg::Distance(after[i], after[j]) / vcg::Distance(before[i], before[j]);
 	};
@@ -105,7 +100,7 @@ TEST(Theory, OneStepMakesAnEllipsoidSlenderer)
 			profile.emplace_back(-3 * std::cos(angle), std::sin(angle));
 	profile.emplace_back(3, 0);
 	const shapes::Soup soup = shapes::revolved(profile, 24);
-	const std::vector<Point3d> after = afterOneStep(plainStage(soup), 1, 200);
+	const std::vector<Point3d> after = afterOneStep(checks::plainStage(soup.mesh()), 1, 200);
 	double width = 0, count = 0, height = 0, square = 0; // height: along the axis
 	for (size_t v = 0; v < after.size(); ++v) {
 		const Point3d& p = soup.points[v];
@@ -134,7 +129,7 @@ TEST(Theory, BetweenHeldEndsATubeBecomesAStraightEvenlyParametrisedCurve)
 	const double length = (rings - 1) * spacing;
 	for (Point3d& p : soup.points)
 		p[1] += std::sin(M_PI * p[0] / length);
-	Stage stage = plainStage(soup);
+	Stage stage = checks::plainStage(soup.mesh());
 	for (int v = 0; v < int(stage.fixed.size()); ++v) {
 		const bool inTheMiddle = v >= around && v < (rings - 1) * around;
 		stage.fixed[v] = !inTheMiddle; // the first and the last ring, and their centres

@@ -82,7 +82,7 @@ TEST(Noise, CleanSurfacesAreLeftAlone)
 constexpr int coarseAround = 150;
 
 /// A thin ring of seven sides, its vertices spread unevenly over the exact surface.
-SurfaceMesh coarseRing()
+SurfaceMesh noisyRing()
 {
 	const double minor = 0.05;
 	const int around = coarseAround, across = 7;
@@ -102,7 +102,7 @@ SurfaceMesh coarseRing()
 
 TEST(Noise, NeighboursTellNoiseFromFacets)
 {
-	const SurfaceMesh coarse = coarseRing();
+	const SurfaceMesh coarse = noisyRing();
 	// Facets deviate by more than a twentieth of an edge, as noise would.
 	const double edge = 2 * M_PI / coarseAround, diagonal = coarse.bounds().Diag();
 	const NoiseLevel ofFacets = levelOf(coarse);
@@ -186,7 +186,7 @@ TEST(Noise, OnlyTheNoisyComponentIsSmoothed)
 TEST(Noise, TheReportIsOfWhatIsSmoothed)
 {
 	// Facets of a clean surface deviate more than the noise of the other one.
-	const SurfaceMesh facets = coarseRing();
+	const SurfaceMesh facets = noisyRing();
 	const SurfaceMesh clean = meshOf(shapes::sphere(6));
 	const SurfaceMesh rough = noisy(clean, 5e-4 * clean.bounds().Diag());
 	const double ofFacets = measureNoise(facets).level, ofNoise = measureNoise(rough).level;

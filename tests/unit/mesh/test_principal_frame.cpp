@@ -23,7 +23,7 @@ PrincipalFrame frameOf(const SurfaceMesh& mesh)
 }
 
 /// A body without any symmetry.
-shapes::Soup pebble()
+shapes::Soup unevenPebble()
 {
 	return shapes::transformed(shapes::sphere(3), [](const Point3d& p) {
 		return Point3d(
@@ -55,7 +55,7 @@ TEST(PrincipalFrame, OfABoxIsItsOwn)
 
 TEST(PrincipalFrame, TurnsMovesAndGrowsWithTheShape)
 {
-	const shapes::Soup soup = pebble();
+	const shapes::Soup soup = unevenPebble();
 	const PrincipalFrame frame = frameOf(soup.mesh());
 	const std::function<Point3d(const Point3d&)> moves[] = {turned,
 		[](const Point3d& p) { return p * 1e-6; }, [](const Point3d& p) { return p * 1e6; },
@@ -74,7 +74,7 @@ TEST(PrincipalFrame, TurnsMovesAndGrowsWithTheShape)
 
 TEST(PrincipalFrame, DoesNotDependOnTheTriangles)
 {
-	const shapes::Soup soup = pebble();
+	const shapes::Soup soup = unevenPebble();
 	const PrincipalFrame frame = frameOf(soup.mesh()),
 						 finer = frameOf(shapes::subdivided(soup).mesh());
 	for (const Point3d& p : soup.points)
@@ -83,7 +83,7 @@ TEST(PrincipalFrame, DoesNotDependOnTheTriangles)
 
 TEST(PrincipalFrame, KeepsTheRatios)
 {
-	const PrincipalFrame frame = frameOf(pebble().mesh());
+	const PrincipalFrame frame = frameOf(unevenPebble().mesh());
 	const Point3d o = frame.in(Point3d(0, 0, 0));
 	const Point3d x = frame.in(Point3d(1, 0, 0)) - o, y = frame.in(Point3d(0, 1, 0)) - o,
 				  z = frame.in(Point3d(0, 0, 1)) - o;
@@ -93,7 +93,7 @@ TEST(PrincipalFrame, KeepsTheRatios)
 
 TEST(PrincipalFrame, OfAMirroredShapeIsMirrored)
 {
-	const shapes::Soup soup = pebble();
+	const shapes::Soup soup = unevenPebble();
 	const SurfaceMesh mesh = soup.mesh();
 	const PrincipalFrame frame = frameOf(mesh);
 	for (int k = 0; k < 3; ++k) {
@@ -134,7 +134,7 @@ TEST(PrincipalFrame, ShapesWithoutAxesTakeThoseOfTheCoordinates)
 TEST(PrincipalFrame, EachComponentHasItsOwn)
 {
 	const SurfaceMesh mesh = shapes::joined(
-		{pebble(), shapes::transformed(pebble(), [](const Point3d& p) {
+		{unevenPebble(), shapes::transformed(unevenPebble(), [](const Point3d& p) {
 			 return turned(p) * 3 + Point3d(20, 0, 0);
 		 })}).mesh();
 	int components = 0;
@@ -150,7 +150,7 @@ TEST(PrincipalFrame, EachComponentHasItsOwn)
 
 TEST(PrincipalFrame, PlacesThatWereRoundedAndMergedFindTheirGridPointAgain)
 {
-	const shapes::Soup soup = pebble();
+	const shapes::Soup soup = unevenPebble();
 	const Point3d far(3e4, -3e4, 3e4);
 	const PrincipalFrame near = frameOf(soup.mesh()),
 						 away = frameOf(shapes::moved(soup, far).mesh());

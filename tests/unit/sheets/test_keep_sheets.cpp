@@ -22,12 +22,6 @@ using vcg::Point3d;
 namespace {
 
 /// A stage as the flow leaves it, of a given shape: nothing has a pole.
-Stage stageOf(const shapes::Soup& soup)
-{
-	const SurfaceMesh mesh = soup.mesh();
-	return initialStage(mesh, checks::noPoles(mesh));
-}
-
 std::vector<char> all(const Stage& stage)
 {
 	return std::vector<char>(size_t(stage.mesh.vertexSlots()), 1);
@@ -81,7 +75,7 @@ std::string error(const MesoSkeleton& skeleton)
 TEST(KeepSheets, TwoWallsBecomeOneRectangle)
 {
 	const double thickness = 1e-3;
-	const Stage stage = stageOf(fine(shapes::box(1, 0.7, thickness), 5));
+	const Stage stage = checks::plainStage(fine(shapes::box(1, 0.7, thickness), 5).mesh());
 	const SheetCollapse result = collapseKeepingSheets(stage, all(stage), 0.005);
 	const MesoSkeleton& skeleton = result.skeleton;
 	EXPECT_EQ(error(skeleton), "");
@@ -98,7 +92,7 @@ TEST(KeepSheets, TwoWallsBecomeOneRectangle)
 TEST(KeepSheets, HeldVerticesOfASheetStayExactlyWhereTheyAre)
 {
 	const double thickness = 0.02; // as thick as the sites are apart
-	Stage stage = stageOf(fine(shapes::box(1, 0.7, thickness), 5));
+	Stage stage = checks::plainStage(fine(shapes::box(1, 0.7, thickness), 5).mesh());
 	std::vector<char> held(stage.held.size(), 0);
 	std::vector<int> chosen; // in the middle of a large face, in its corner, and at its edge
 	for (const Point3d& p :
@@ -123,7 +117,7 @@ TEST(KeepSheets, HeldVerticesOfASheetStayExactlyWhereTheyAre)
 
 TEST(KeepSheets, HolesOfASheetAreLoops)
 {
-	const Stage stage = stageOf(flattened(fine(shapes::plate(2, 4), 1), 0.002));
+	const Stage stage = checks::plainStage(flattened(fine(shapes::plate(2, 4), 1), 0.002).mesh());
 	const SheetCollapse result = collapseKeepingSheets(stage, all(stage), 0.004);
 	EXPECT_EQ(result.givenUp, 0);
 	EXPECT_EQ(result.skeleton.betti(), (BettiNumbers {1, 2, 0}));
@@ -132,7 +126,7 @@ TEST(KeepSheets, HolesOfASheetAreLoops)
 
 TEST(KeepSheets, WhatIsNoSheetBecomesACurve)
 {
-	const Stage stage = stageOf(fine(shapes::box(1, 0.3, 1e-3), 5));
+	const Stage stage = checks::plainStage(fine(shapes::box(1, 0.3, 1e-3), 5).mesh());
 	std::vector<char> right(stage.held.size());
 	for (size_t v = 0; v < right.size(); ++v)
 		right[v] = stage.mesh.position[v][0] > 0.5;
@@ -149,7 +143,7 @@ TEST(KeepSheets, WhatIsNoSheetBecomesACurve)
 
 TEST(KeepSheets, WithoutSheetsItIsTheCurveSkeleton)
 {
-	const Stage stage = stageOf(shapes::torus(1, 0.3, 24, 10));
+	const Stage stage = checks::plainStage(shapes::torus(1, 0.3, 24, 10).mesh());
 	const SheetCollapse result =
 		collapseKeepingSheets(stage, std::vector<char>(stage.held.size(), 0), 0.002);
 	const CurveSkeleton curve = collapseToCurve(stage, 0.002);
@@ -164,7 +158,7 @@ TEST(KeepSheets, WithoutSheetsItIsTheCurveSkeleton)
 TEST(KeepSheets, WallsFarApartOfARingAreGivenUp)
 {
 	// Marked as a sheet though it is none: its surface has two loops, and the ring one.
-	const Stage stage = stageOf(shapes::torus(1, 0.3, 120, 40));
+	const Stage stage = checks::plainStage(shapes::torus(1, 0.3, 120, 40).mesh());
 	const SheetCollapse result = collapseKeepingSheets(stage, all(stage), 0.005);
 	EXPECT_EQ(result.sheets, 1);
 	EXPECT_EQ(result.givenUp, 1);
@@ -177,7 +171,7 @@ TEST(KeepSheets, WallsFarApartOfARingAreGivenUp)
 
 TEST(KeepSheets, WallsFarApartOfABallKeepTheTopology)
 {
-	const Stage stage = stageOf(shapes::sphere(4));
+	const Stage stage = checks::plainStage(shapes::sphere(4).mesh());
 	const SheetCollapse result = collapseKeepingSheets(stage, all(stage), 0.005);
 	EXPECT_EQ(error(result.skeleton), "");
 	EXPECT_EQ(result.skeleton.betti(), (BettiNumbers {1, 0, 0}));
@@ -185,8 +179,10 @@ TEST(KeepSheets, WallsFarApartOfABallKeepTheTopology)
 
 TEST(KeepSheets, ABadSheetDoesNotSpoilAGoodOne)
 {
-	const Stage stage = stageOf(shapes::joined({fine(shapes::box(1, 0.7, 1e-3), 4),
-		shapes::moved(shapes::torus(1, 0.3, 120, 40), {5, 0, 0})}));
+	const Stage stage = checks::plainStage(
+		shapes::joined({fine(shapes::box(1, 0.7, 1e-3), 4),
+						   shapes::moved(shapes::torus(1, 0.3, 120, 40), {5, 0, 0})})
+			.mesh());
 	const SheetCollapse result = collapseKeepingSheets(stage, all(stage), 0.005);
 	EXPECT_EQ(result.sheets, 2);
 	EXPECT_EQ(result.givenUp, 1);
@@ -206,15 +202,15 @@ TEST(KeepSheets, EachComponentHasTheSheetsThatItHasAlone)
 		shapes::moved(shapes::sphere(2), Point3d(0, 5, 0))};
 	std::vector<SheetCollapse> alone;
 	for (const shapes::Soup& body : bodies) {
-		const Stage stage = stageOf(body);
+		const Stage stage = checks::plainStage(body.mesh());
 		alone.push_back(collapseKeepingSheets(stage, all(stage), 0.005));
 	}
 	ASSERT_EQ(alone[0].givenUp, 0);
 	ASSERT_EQ(alone[1].givenUp, 0);
 	for (const std::array<size_t, 3>& order : {std::array<size_t, 3> {0, 1, 2},
 			 std::array<size_t, 3> {2, 1, 0}, std::array<size_t, 3> {1, 0, 2}}) {
-		const Stage stage =
-			stageOf(shapes::joined({bodies[order[0]], bodies[order[1]], bodies[order[2]]}));
+		const Stage stage = checks::plainStage(
+			shapes::joined({bodies[order[0]], bodies[order[1]], bodies[order[2]]}).mesh());
 		const SheetCollapse together = collapseKeepingSheets(stage, all(stage), 0.005);
 		EXPECT_EQ(error(together.skeleton), "");
 		EXPECT_EQ(together.sheets, 3);
@@ -244,7 +240,8 @@ TEST(KeepSheets, EachComponentHasTheSheetsThatItHasAlone)
 TEST(KeepSheets, TheSameBitsTwiceAndTheSameShapeAtAnySize)
 {
 	const shapes::Soup soup = fine(shapes::box(1, 0.7, 1e-3), 4);
-	const Stage stage = stageOf(soup), large = stageOf(shapes::scaled(soup, 1024));
+	const Stage stage = checks::plainStage(soup.mesh()),
+				large = checks::plainStage(shapes::scaled(soup, 1024).mesh());
 	const MesoSkeleton a = collapseKeepingSheets(stage, all(stage), 0.005).skeleton,
 					   b = collapseKeepingSheets(stage, all(stage), 0.005).skeleton,
 					   c = collapseKeepingSheets(large, all(large), 0.005).skeleton;
@@ -256,7 +253,7 @@ TEST(KeepSheets, TheSameBitsTwiceAndTheSameShapeAtAnySize)
 
 TEST(KeepSheets, NeighbouringFacesAreTurnedAlike)
 {
-	const Stage stage = stageOf(fine(shapes::box(1, 0.7, 1e-3), 4));
+	const Stage stage = checks::plainStage(fine(shapes::box(1, 0.7, 1e-3), 4).mesh());
 	const MesoSkeleton skeleton = collapseKeepingSheets(stage, all(stage), 0.005).skeleton;
 	double up = 0, total = 0;
 	for (const auto& [a, b, c] : orientedFaces(skeleton)) {
@@ -270,7 +267,7 @@ TEST(KeepSheets, NeighbouringFacesAreTurnedAlike)
 
 TEST(SheetVertices, SmallPartsAreLeftOut)
 {
-	Stage stage = stageOf(fine(shapes::box(1, 0.7, 1e-3), 4));
+	Stage stage = checks::plainStage(fine(shapes::box(1, 0.7, 1e-3), 4).mesh());
 	EXPECT_GT(std::count(stage.sheet.begin(), stage.sheet.end(), 0), 0);
 	for (size_t v = 0; v < stage.sheet.size(); ++v) {
 		const Point3d& p = stage.mesh.position[v];

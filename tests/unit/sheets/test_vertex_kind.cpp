@@ -17,12 +17,6 @@ using vcg::Point3d;
 namespace {
 
 /// A stage of which nothing is fixed: its kinds must be told from its shape alone.
-Stage stageOf(const shapes::Soup& soup)
-{
-	const SurfaceMesh mesh = soup.mesh();
-	return initialStage(mesh, checks::noPoles(mesh));
-}
-
 double share(const std::vector<VertexKind>& kinds, VertexKind kind)
 {
 	return double(std::count(kinds.begin(), kinds.end(), kind)) / double(kinds.size());
@@ -51,23 +45,26 @@ shapes::Soup fineBox(double x, double y, double z)
 TEST(VertexKinds, ABodyIsVolume)
 {
 	for (const shapes::Soup& soup : {shapes::sphere(3), shapes::torus(), shapes::capsule()})
-		EXPECT_EQ(share(vertexKinds(stageOf(soup)), VertexKind::Volume), 1);
+		EXPECT_EQ(share(vertexKinds(checks::plainStage(soup.mesh())), VertexKind::Volume), 1);
 }
 
 TEST(VertexKinds, AClosedTubeIsACurve)
 {
-	EXPECT_EQ(share(vertexKinds(stageOf(shapes::torus(1, 0.001, 600, 4))), VertexKind::Curve), 1);
-	EXPECT_GT(areaShare(stageOf(fineBox(1, 1e-3, 1e-3)), VertexKind::Curve), 0.99);
+	EXPECT_EQ(share(vertexKinds(checks::plainStage(shapes::torus(1, 0.001, 600, 4).mesh())),
+				  VertexKind::Curve),
+		1);
+	EXPECT_GT(
+		areaShare(checks::plainStage(fineBox(1, 1e-3, 1e-3).mesh()), VertexKind::Curve), 0.99);
 }
 
 TEST(VertexKinds, AThinPlateIsASheet)
 {
-	EXPECT_GT(areaShare(stageOf(fineBox(1, 0.7, 1e-3)), VertexKind::Sheet), 0.99);
+	EXPECT_GT(areaShare(checks::plainStage(fineBox(1, 0.7, 1e-3).mesh()), VertexKind::Sheet), 0.99);
 }
 
 TEST(VertexKinds, APlateThatIsThickForEpsilonIsVolume)
 {
-	Stage stage = stageOf(fineBox(1, 0.7, 0.02));
+	Stage stage = checks::plainStage(fineBox(1, 0.7, 0.02).mesh());
 	EXPECT_GT(areaShare(stage, VertexKind::Volume), 0.95);
 	stage.epsilon = 0.02;
 	EXPECT_GT(areaShare(stage, VertexKind::Sheet), 0.95);
@@ -75,7 +72,7 @@ TEST(VertexKinds, APlateThatIsThickForEpsilonIsVolume)
 
 TEST(VertexKinds, AnEpsilonFarBelowTheEdgesTakesNeitherHoursNorAllMemory)
 {
-	Stage stage = stageOf(shapes::sphere(2));
+	Stage stage = checks::plainStage(shapes::sphere(2).mesh());
 	for (const double epsilon : {1e-15, 1e-108}) { // the latter is beyond single precision
 		stage.epsilon = epsilon;
 		EXPECT_EQ(share(vertexKinds(stage), VertexKind::Volume), 1) << epsilon;
@@ -85,15 +82,17 @@ TEST(VertexKinds, AnEpsilonFarBelowTheEdgesTakesNeitherHoursNorAllMemory)
 TEST(VertexKinds, TheSameAtAnySizeAndForEachBodyAsAlone)
 {
 	const shapes::Soup plate = fineBox(1, 0.7, 1e-3), body = shapes::sphere(3);
-	const std::vector<VertexKind> ofPlate = vertexKinds(stageOf(plate)),
-								  ofBody = vertexKinds(stageOf(body));
+	const std::vector<VertexKind> ofPlate = vertexKinds(checks::plainStage(plate.mesh())),
+								  ofBody = vertexKinds(checks::plainStage(body.mesh()));
 	std::vector<VertexKind> both = ofPlate;
 	both.insert(both.end(), ofBody.begin(), ofBody.end());
 	for (const double times : {1e-4, 1e-25, 1e25})
-		EXPECT_EQ(vertexKinds(stageOf(shapes::scaled(plate, times))), ofPlate) << times;
+		EXPECT_EQ(vertexKinds(checks::plainStage(shapes::scaled(plate, times).mesh())), ofPlate)
+			<< times;
 	for (const double times : {1.5, 1e3, 1e6})
-		EXPECT_EQ(vertexKinds(stageOf(shapes::joined(
-					  {plate, shapes::moved(shapes::scaled(body, times), {5 * times, 0, 0})}))),
+		EXPECT_EQ(vertexKinds(checks::plainStage(shapes::joined(
+					  {plate, shapes::moved(shapes::scaled(body, times), {5 * times, 0, 0})})
+													 .mesh())),
 			both)
 			<< times;
 }
@@ -102,7 +101,8 @@ TEST(VertexKinds, AWallOfAnotherBodyIsNone)
 {
 	// Two boxes face each other across a gap of far less than epsilon.
 	const shapes::Soup box = fineBox(1, 1, 1);
-	const Stage stage = stageOf(shapes::joined({box, shapes::moved(box, {1 + 1e-4, 0, 0})}));
+	const Stage stage =
+		checks::plainStage(shapes::joined({box, shapes::moved(box, {1 + 1e-4, 0, 0})}).mesh());
 	EXPECT_EQ(share(vertexKinds(stage), VertexKind::Volume), 1);
 }
 
@@ -118,8 +118,8 @@ TEST(VertexKinds, TheSameInAnyNumbering)
 	for (auto& t : turned.triangles)
 		for (int& v : t)
 			v = int(wedge.points.size()) - 1 - v;
-	const std::vector<VertexKind> kinds = vertexKinds(stageOf(wedge));
-	std::vector<VertexKind> ofTurned = vertexKinds(stageOf(turned));
+	const std::vector<VertexKind> kinds = vertexKinds(checks::plainStage(wedge.mesh()));
+	std::vector<VertexKind> ofTurned = vertexKinds(checks::plainStage(turned.mesh()));
 	std::reverse(ofTurned.begin(), ofTurned.end());
 	EXPECT_GT(share(kinds, VertexKind::Curve), 0.02);
 	EXPECT_GT(share(kinds, VertexKind::Sheet), 0.3);
@@ -128,7 +128,7 @@ TEST(VertexKinds, TheSameInAnyNumbering)
 
 TEST(VertexKinds, WhatTheFlowHasFixedIsNoVolume)
 {
-	Stage stage = stageOf(shapes::sphere(3));
+	Stage stage = checks::plainStage(shapes::sphere(3).mesh());
 	stage.fixed.assign(stage.fixed.size(), 1);
 	EXPECT_EQ(share(vertexKinds(stage), VertexKind::Volume), 0);
 	stage.held = stage.fixed;
