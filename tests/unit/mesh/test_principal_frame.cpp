@@ -118,6 +118,31 @@ TEST(PrincipalFrame, OfAMirroredShapeIsMirrored)
 	}
 }
 
+TEST(PrincipalFrame, PointsTheSameWayWhereItsAxesAreThoseOfTheCoordinates)
+{
+	// Wedges whose principal axes are x, y and z to the last bit, or of which two are not defined,
+	// and their mirror images.
+	const shapes::Soup boxes[] = {shapes::moved(shapes::box(8, 4, 2), {-4, -2, -1}),
+		shapes::moved(shapes::box(4, 4, 1), {-2, -2, -0.5})};
+	for (const shapes::Soup& box : boxes)
+		for (int k = 0; k < 3; ++k) {
+			double end[2];
+			for (const int way : {0, 1}) {
+				const double sign = way == 0 ? 1 : -1;
+				const shapes::Soup wedge = shapes::transformed(box, [&](Point3d p) {
+					for (int i = 0; i < 3; ++i)
+						if (i != k)
+							p[i] *= sign * p[k] > 0 ? 0.5 : 0.75;
+					return p;
+				});
+				Point3d tip(0, 0, 0);
+				tip[k] = sign;
+				end[way] = frameOf(wedge.mesh()).in(tip)[k];
+			}
+			EXPECT_NEAR(end[0], end[1], 1e-12);
+		}
+}
+
 TEST(PrincipalFrame, ShapesWithoutAxesTakeThoseOfTheCoordinates)
 {
 	for (const shapes::Soup& soup : {shapes::sphere(3), shapes::box(1, 1, 1), shapes::torus()}) {

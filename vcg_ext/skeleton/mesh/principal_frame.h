@@ -30,10 +30,11 @@ namespace vcg::tri::mcf {
  * The axes are the eigenvectors of the second moments S = int (x - m)(x - m)^T dA, m the centroid,
  * by falling eigenvalue. An axis points to where the third moment int (u . (x - m))^3 dA is
  * positive, or where that is 0, the sum of the cubes over the centroids of the triangles. So a
- * mirrored shape has the mirrored axes, which may be left-handed: see isMirrored(). Where two
- * eigenvalues are equal (a sphere, a cube, a torus), the coordinate axes are used. Axes along which
+ * mirrored shape has the mirrored axes, which may be left-handed: see isMirrored(). Axes along which
  * the shape is symmetric point the way of the nearest coordinate axis, but for the last of them,
- * which makes the axes right-handed: harmless, since all choices are alike.
+ * which makes the axes right-handed: harmless, since all choices are alike. Where two eigenvalues
+ * are equal (a sphere, a cube, a torus), the axes are those of the coordinates, which point to
+ * where the third moment is positive.
  *
  * The size is the diagonal of the bounding box along these axes. Unlike that of the axis-aligned
  * box, which changes by up to a factor of sqrt 3, it stays the same when the shape is turned; for
@@ -217,6 +218,8 @@ private:
 
 	Point3d origin = Point3d(0, 0, 0);
 	Axes axes = coordinateAxes();
+	bool isAligned = false; ///< the axes are those of the moments, not the coordinate axes for want
+							///< of different eigenvalues
 	double unit = 1, diagonal = 1, weight = 0;
 
 	static Axes coordinateAxes() { return {Point3d(1, 0, 0), Point3d(0, 1, 0), Point3d(0, 0, 1)}; }
@@ -296,6 +299,7 @@ private:
 		const double gap = minGap * value.sum();
 		if (!(value[1] - value[0] > gap && value[2] - value[1] > gap))
 			return;
+		isAligned = true;
 		for (int k = 0; k < 3; ++k)
 			for (int i = 0; i < 3; ++i)
 				axes[k][i] = solver.eigenvectors()(i, 2 - k);
@@ -305,12 +309,12 @@ private:
 	void orient(const Moments& m)
 	{
 		constexpr double minSkew = 1e-6, minSkewOfMiddles = 1e-8;
-		if (axes == coordinateAxes())
-			return;
 		int symmetric = -1;
 		for (int k = 0; k < 3; ++k) {
 			double towards = m.third[k];
 			if (std::abs(towards) <= minSkew * m.weight) {
+				if (!isAligned)
+					continue;
 				towards = m.thirdOfMiddles[k];
 				if (std::abs(towards) <= minSkewOfMiddles * m.cells) {
 					symmetric = k;
