@@ -48,7 +48,7 @@ Results surfaceParts(FilterRun& run)
 	mcf::detail::reportedLoop(
 		mesh.faceSlots(), run.progress.cancelOnly(), "Measuring the parts", [&](int f) {
 			if (const int part = parts.ofFace[size_t(f)]; part >= 0)
-				area[size_t(part)] += mesh.areaVector(f).Norm() / 2;
+				area[size_t(part)] += mesh.doubleAreaVector(f).Norm() / 2;
 		});
 	const std::vector<int> ofSlot = facePartsOfSlots(
 		target.layer.in(run.document), target.surface, parts.ofFace, run.progress.part(0.9, 1));

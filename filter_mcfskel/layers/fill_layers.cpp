@@ -23,7 +23,7 @@ void fillSurface(MeshModel& layer, const mcf::SurfaceMesh& mesh, const mcf::Prog
 			return;
 		for (int k = 0; k < 3; ++k)
 			face->V(k) = &layer.cm.vert[size_t(mesh.triangle(f)[size_t(k)])];
-		const vcg::Point3d normal = mesh.areaVector(f);
+		const vcg::Point3d normal = mesh.doubleAreaVector(f);
 		const double length = normal.Norm();
 		face->N() = toHost(length > 0 ? normal / length : normal);
 		++face;

@@ -260,7 +260,7 @@ inline double partLeftOut(const SurfaceMesh& surface, const PoleSet& poles,
 	});
 	double leftOut = 0, all = 0;
 	for (int f = 0; f < surface.faceSlots(); ++f) {
-		const double area = surface.areaVector(f).Norm();
+		const double area = surface.doubleAreaVector(f).Norm();
 		for (int v : surface.triangle(f))
 			if (poles.has(v) && poles.radius[v] > 0) {
 				const double length = area / poles.radius[v];

@@ -108,7 +108,7 @@ TEST(HeldVertices, AHeldPatchKeepsItsShape)
 		for (int f = 0; f < s.mesh.faceSlots(); ++f) {
 			const Triangle t = s.mesh.triangle(f);
 			if (s.held[t[0]] && s.held[t[1]] && s.held[t[2]])
-				area += s.mesh.areaVector(f).Norm() / 2;
+				area += s.mesh.doubleAreaVector(f).Norm() / 2;
 		}
 		return area;
 	};

@@ -170,7 +170,7 @@ TEST(MarkSheets, TheUsualThresholdTakesPlatesAndNoTubes)
 		for (int f = 0; f < mesh.faceSlots(); ++f) {
 			const Triangle t = mesh.triangle(f);
 			if (stage.sheet[t[0]] && stage.sheet[t[1]] && stage.sheet[t[2]])
-				area[mesh.position[t[0]][0] > 2] += mesh.areaVector(f).Norm() / 2;
+				area[mesh.position[t[0]][0] > 2] += mesh.doubleAreaVector(f).Norm() / 2;
 		}
 		return area;
 	};

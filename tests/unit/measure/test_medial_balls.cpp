@@ -81,7 +81,7 @@ TEST(MedialBalls, CornersOnTheSurfaceMakeNoDegenerateTriangles)
 	// Voxels of 1 and a radius of 4: the poles of the ball are corners of cubes.
 	const SurfaceMesh ball = solid(unionOfBalls({{0, 0, 0}}, {4}, 1));
 	for (int f = 0; f < ball.faceSlots(); ++f)
-		EXPECT_GT(ball.areaVector(f).Norm(), 0);
+		EXPECT_GT(ball.doubleAreaVector(f).Norm(), 0);
 }
 
 TEST(MedialBalls, ScaleDoesNotMatter)

@@ -110,7 +110,7 @@ std::vector<double> areas(const SurfaceMesh& mesh, const std::vector<int>& ofFac
 {
 	std::vector<double> area(parts, 0);
 	for (int f = 0; f < mesh.faceSlots(); ++f)
-		area[ofFace[f]] += mesh.areaVector(f).Norm() / 2;
+		area[ofFace[f]] += mesh.doubleAreaVector(f).Norm() / 2;
 	return area;
 }
 

@@ -200,7 +200,7 @@ TEST(SurfaceSamples, AsManyAsTheAreaAsksFor)
 	const auto samples = surfaceSamples(box, 28000);
 	for (const SurfaceSample& s : samples) {
 		onTop += std::abs(s.position[2] - 1) < 1e-12;
-		const Point3d n = box.areaVector(s.face);
+		const Point3d n = box.doubleAreaVector(s.face);
 		EXPECT_NEAR((s.position - box.position[box.triangle(s.face)[0]]) * n, 0, 1e-9);
 	}
 	EXPECT_EQ(samples.size(), 28000u);

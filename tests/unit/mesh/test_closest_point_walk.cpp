@@ -102,7 +102,7 @@ TEST(TrackSurface, DoesNotJumpToTheOppositeWall)
 		shapes::subdivided(shapes::subdivided(shapes::subdivided(shapes::box(1, 1, 0.01)))).mesh();
 	int top = -1;
 	for (int f = 0; f < plate.faceSlots(); ++f)
-		if (plate.areaVector(f)[2] > 0)
+		if (plate.doubleAreaVector(f)[2] > 0)
 			top = f;
 	const Point3d found = trackSurface(plate, {0.4, 0.6, -0.02}, top);
 	EXPECT_NEAR(found[2], 0.01, 1e-15);

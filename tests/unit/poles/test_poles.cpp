@@ -498,7 +498,7 @@ TEST(Poles, AtTrianglesWithoutAreaAreInside)
 		const SurfaceMesh mesh = soup.mesh();
 		const double size = mesh.bounds().Diag();
 		for (int f = 0; f < mesh.faceSlots(); ++f)
-			slivers += mesh.areaVector(f).Norm() < 1e-7 * size * size;
+			slivers += mesh.doubleAreaVector(f).Norm() < 1e-7 * size * size;
 		const PoleSet poles = medialPoles(mesh, PoleMethod::Balls);
 		const SolidTest solid(mesh.position, mesh.triangles());
 		for (int v = 0; v < mesh.vertexSlots(); ++v)

@@ -25,7 +25,7 @@ double minHeight(const SurfaceMesh& mesh)
 		double longest = 0;
 		for (int h = 3 * f; h < 3 * f + 3; ++h)
 			longest = std::max(longest, std::sqrt(mesh.squaredLength(h)));
-		minimum = std::min(minimum, mesh.areaVector(f).Norm() / longest);
+		minimum = std::min(minimum, mesh.doubleAreaVector(f).Norm() / longest);
 	}
 	return minimum;
 }

@@ -47,7 +47,7 @@ double distanceTo(const SurfaceMesh& surface, const Point3d& p, Point3d* normal 
 		if (squared < minimum) {
 			minimum = squared;
 			if (normal)
-				*normal = surface.areaVector(f);
+				*normal = surface.doubleAreaVector(f);
 		}
 	}
 	return std::sqrt(minimum);
@@ -226,7 +226,7 @@ TEST(Resample, VerticesLieOnTheInputAndNoFaceIsTurned)
 			Point3d normal;
 			distanceTo(surface,
 				(mesh.position[t[0]] + mesh.position[t[1]] + mesh.position[t[2]]) / 3.0, &normal);
-			const Point3d own = mesh.areaVector(f);
+			const Point3d own = mesh.doubleAreaVector(f);
 			// About zero where an edge is cut off.
 			turned += normal * own <= -0.1 * normal.Norm() * own.Norm();
 		}
@@ -288,7 +288,7 @@ TEST(Resample, ThinWallsStayApart)
 		double sphere = 1; // the largest within the outer wall's polygons
 		for (int f = 0; f < surface.faceSlots(); ++f) {
 			const Triangle t = surface.triangle(f);
-			Point3d normal = surface.areaVector(f);
+			Point3d normal = surface.doubleAreaVector(f);
 			if (std::all_of(t.begin(), t.end(),
 					[&](int v) { return surface.position[v].Norm() > 1 - 1e-6; }))
 				sphere = std::min(sphere, normal.Normalize() * surface.position[t[0]]);
@@ -308,8 +308,8 @@ TEST(Resample, ThinWallsStayApart)
 				continue;
 			const bool side = isOuter(t[0]);
 			mixed += side != isOuter(t[1]) || side != isOuter(t[2]);
-			turned += side != (mesh.areaVector(f) * middle > 0);
-			(side ? outer : inner) += mesh.areaVector(f).Norm() / 2;
+			turned += side != (mesh.doubleAreaVector(f) * middle > 0);
+			(side ? outer : inner) += mesh.doubleAreaVector(f).Norm() / 2;
 		}
 		EXPECT_EQ(mixed, 0) << "faces from wall to wall";
 		EXPECT_EQ(turned, 0);

@@ -30,7 +30,7 @@ double areaShare(const Stage& stage, VertexKind kind)
 	double sum = 0;
 	for (int f = 0; f < stage.mesh.faceSlots(); ++f)
 		for (int v : stage.mesh.triangle(f))
-			sum += kinds[v] == kind ? stage.mesh.areaVector(f).Norm() / 6 : 0;
+			sum += kinds[v] == kind ? stage.mesh.doubleAreaVector(f).Norm() / 6 : 0;
 	return sum / stage.mesh.area();
 }
 

@@ -21,8 +21,8 @@ struct TriangleMeasures
 	/// For each half-edge the cotangent of the opposite angle, clamped to [-100, 100], so that a
 	/// sliver cannot stiffen the system.
 	std::array<double, 3> cotangent;
-	/// As SurfaceMesh::areaVector().
-	Point3d areaVector;
+	/// As SurfaceMesh::doubleAreaVector().
+	Point3d doubleAreaVector;
 };
 
 inline TriangleMeasures measureTriangle(const SurfaceMesh& mesh, int face)
@@ -32,8 +32,8 @@ inline TriangleMeasures measureTriangle(const SurfaceMesh& mesh, int face)
 	const Point3d &a = mesh.position[t[0]], &b = mesh.position[t[1]], &c = mesh.position[t[2]];
 	const Point3d ab = b - a, bc = c - b, ca = a - c;
 	TriangleMeasures measures;
-	measures.areaVector = ca ^ ab;
-	const double doubleArea = measures.areaVector.Norm();
+	measures.doubleAreaVector = ca ^ ab;
+	const double doubleArea = measures.doubleAreaVector.Norm();
 	const double dot[3] = {-(bc * ca), -(ca * ab), -(ab * bc)};
 	for (int k = 0; k < 3; ++k)
 		measures.cotangent[k] = std::abs(dot[k]) < largestCotangent * doubleArea

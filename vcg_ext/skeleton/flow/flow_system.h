@@ -124,7 +124,7 @@ inline FlowSystem flowSystem(
 					cotangent[3 * f + k] = float(measures.cotangent[k]);
 			for (int k = 0; k < 3; ++k)
 				if (isMine(row[k])) {
-					normal[t[k]] += measures.areaVector;
+					normal[t[k]] += measures.doubleAreaVector;
 					M.start[row[k] + 1] += row[(k + 1) % 3] >= 0;
 				}
 		});

@@ -74,7 +74,7 @@ inline std::vector<char> coarseComponents(const MeasuredSurface& surface, double
 		const double length2 = std::max({mesh.squaredLength(3 * f), mesh.squaredLength(3 * f + 1),
 			mesh.squaredLength(3 * f + 2)});
 		if (length2 > fine[c] * fine[c] && length2 > thickness(t) * thickness(t))
-			coarseArea[c] += mesh.areaVector(f).Norm() / 2;
+			coarseArea[c] += mesh.doubleAreaVector(f).Norm() / 2;
 	});
 	std::vector<char> coarse;
 	for (int c = 0; c < surface.components(); ++c)

@@ -153,9 +153,9 @@ inline Extent measuredExtent(
 		if (!mesh.isFace(f))
 			continue;
 		const int v = mesh.triangle(f)[0];
-		const Point3d areaVector = mesh.areaVector(f);
-		doubleArea[component[v]] += areaVector.Norm();
-		sixVolumes[component[v]] += (mesh.position[v] - middle) * areaVector;
+		const Point3d doubleAreaVector = mesh.doubleAreaVector(f);
+		doubleArea[component[v]] += doubleAreaVector.Norm();
+		sixVolumes[component[v]] += (mesh.position[v] - middle) * doubleAreaVector;
 	}
 	Extent extent;
 	for (size_t c = 0; c < unit.size(); ++c) {

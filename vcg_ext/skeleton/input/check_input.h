@@ -66,7 +66,7 @@ inline std::vector<double> volumeErrorBound(
 	for (int f = 0; f < mesh.faceSlots(); ++f)
 		if (mesh.isFace(f))
 			for (int v : mesh.triangle(f))
-				areaVector[size_t(v)] += mesh.areaVector(f) / 2;
+				areaVector[size_t(v)] += mesh.doubleAreaVector(f) / 2;
 	std::vector<double> bound(size_t(components), 0);
 	for (int v = 0; v < mesh.vertexSlots(); ++v)
 		if (mesh.isVertex(v))
@@ -192,7 +192,7 @@ inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
 		middle[c] /= double(size[c]);
 	detail::reportedLoop(mesh.faceSlots(), progress.part(0.87, 0.9), what, [&](int f) {
 		const int first = mesh.origin(3 * f), c = component[first];
-		const Point3d n = mesh.areaVector(f);
+		const Point3d n = mesh.doubleAreaVector(f);
 		area[c] += n.Norm() / 2;
 		volume[c] += (mesh.position[first] - middle[c]) * n / 6;
 	});

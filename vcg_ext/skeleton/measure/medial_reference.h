@@ -137,7 +137,7 @@ inline MedialReference medialReference(const SurfaceMesh& surface, const Closest
 	std::vector<SurfaceSample> samples = surfaceSamples(surface, count, begin);
 	std::vector<Point3d> outward;
 	for (const SurfaceSample& sample : samples) {
-		const Point3d n = surface.areaVector(sample.face);
+		const Point3d n = surface.doubleAreaVector(sample.face);
 		outward.push_back(n / std::max(n.Norm(), 1e-300));
 	}
 	if (surface.vertexSlots() <= count) {

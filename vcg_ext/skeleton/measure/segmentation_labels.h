@@ -32,8 +32,9 @@ public:
 			label(std::move(label)), labels(labels)
 	{
 		fillArray(vertexArea, size_t(surface.vertexSlots()), 0.0, progress);
-		reportedLoop(surface.halfEdgeSlots(), progress, finding,
-			[&](int h) { vertexArea[surface.origin(h)] += surface.areaVector(h / 3).Norm(); });
+		reportedLoop(surface.halfEdgeSlots(), progress, finding, [&](int h) {
+			vertexArea[surface.origin(h)] += surface.doubleAreaVector(h / 3).Norm();
+		});
 	}
 
 	int ofVertex(int v) const { return label[v]; }
@@ -107,7 +108,7 @@ public:
 		reportedLoop(surface.faceSlots(), progress.part(0, 0.2), finding, [&](int f) {
 			const Triangle t = surface.triangle(f);
 			ofFace.push_back(label[t[1]] == label[t[2]] ? label[t[1]] : label[t[0]]);
-			area.push_back(surface.areaVector(f).Norm());
+			area.push_back(surface.doubleAreaVector(f).Norm());
 		});
 		const auto forEachNeighbour = [&](int f, const auto& visit) {
 			for (int k = 0; k < 3; ++k)

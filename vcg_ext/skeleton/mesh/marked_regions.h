@@ -27,7 +27,7 @@ inline std::vector<double> vertexAreas(
 	detail::reportedLoop(mesh.faceSlots(), progress, what, [&](int f) {
 		if (mesh.isFace(f))
 			for (int v : mesh.triangle(f))
-				area[v] += mesh.areaVector(f).Norm() / 6;
+				area[v] += mesh.doubleAreaVector(f).Norm() / 6;
 	});
 	return area;
 }

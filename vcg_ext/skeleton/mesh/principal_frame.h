@@ -71,7 +71,7 @@ public:
 				visit(size_t(component[t[0]]),
 					std::array<Point3d, 3> {
 						mesh.position[t[0]], mesh.position[t[1]], mesh.position[t[2]]},
-					mesh.areaVector(f).Norm() / 2);
+					mesh.doubleAreaVector(f).Norm() / 2);
 			});
 		};
 		return made(components, forEachPoint, forEachCell, progress);

@@ -182,7 +182,7 @@ public:
 	// Measures.
 
 	/// Twice the area times the unit normal of triangle f.
-	Point3d areaVector(int f) const
+	Point3d doubleAreaVector(int f) const
 	{
 		const Point3d& a = position[origins[3 * f]];
 		return (position[origins[3 * f + 1]] - a) ^ (position[origins[3 * f + 2]] - a);
@@ -196,7 +196,7 @@ public:
 		double longest = 0;
 		for (int h = 3 * f; h < 3 * f + 3; ++h)
 			longest = std::max(longest, squaredLength(h));
-		return areaVector(f).Norm() <= thinnest * diagonal * std::sqrt(longest);
+		return doubleAreaVector(f).Norm() <= thinnest * diagonal * std::sqrt(longest);
 	}
 
 	double squaredLength(int h) const
@@ -210,7 +210,7 @@ public:
 		double sum = 0;
 		detail::cancellableLoop(faceSlots(), cancel, [&](int f) {
 			if (isFace(f))
-				sum += areaVector(f).Norm();
+				sum += doubleAreaVector(f).Norm();
 		});
 		return sum / 2;
 	}
@@ -224,7 +224,7 @@ public:
 		double sum = 0;
 		detail::cancellableLoop(faceSlots(), cancel, [&](int f) {
 			if (isFace(f))
-				sum += (position[origins[3 * f]] - middle) * areaVector(f);
+				sum += (position[origins[3 * f]] - middle) * doubleAreaVector(f);
 		});
 		return sum / 6;
 	}
@@ -249,7 +249,7 @@ public:
 		detail::reportedLoop(faceSlots(), progress.part(0, 0.8), measuring, [&](int f) {
 			if (!isFace(f))
 				return;
-			const Point3d n = areaVector(f);
+			const Point3d n = doubleAreaVector(f);
 			for (int k = 0; k < 3; ++k)
 				normals[origins[3 * f + k]] += n;
 		});

@@ -68,7 +68,7 @@ inline std::vector<SurfaceSample> surfaceSamples(
 		const double at = (i + 0.5) / count * total;
 		while (upToHere <= at && face + 1 < surface.faceSlots()) {
 			ticker.tick();
-			upToHere += surface.areaVector(++face).Norm() / 2;
+			upToHere += surface.doubleAreaVector(++face).Norm() / 2;
 		}
 		const auto [x, y] = detail::evenPoint<2>(size_t(i));
 		const double u = std::sqrt(x);

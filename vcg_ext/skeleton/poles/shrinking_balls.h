@@ -195,14 +195,14 @@ inline OsculatingNormals osculatingNormals(const SurfaceMesh& mesh, const Progre
 	fillArray(found.leadsInside, vertices, char(1), progress);
 	reportedLoop(mesh.faceSlots(), progress.part(0, 0.4), what, [&](int f) {
 		const Triangle t = mesh.triangle(f);
-		const Point3d areaVector = mesh.areaVector(f);
+		const Point3d doubleAreaVector = mesh.doubleAreaVector(f);
 		std::array<double, 3> squared; // length of the edge that starts at a corner
 		for (int k = 0; k < 3; ++k)
 			squared[k] = SquaredDistance(mesh.position[t[k]], mesh.position[t[(k + 1) % 3]]);
 		for (int k = 0; k < 3; ++k) {
 			const double one = squared[k], other = squared[(k + 2) % 3];
 			if (one > 0 && other > 0)
-				found.normal[t[k]] += areaVector / one / other;
+				found.normal[t[k]] += doubleAreaVector / one / other;
 		}
 	});
 	reportedLoop(mesh.vertexSlots(), progress.part(0.4, 0.5), what, [&](int v) {
@@ -211,10 +211,10 @@ inline OsculatingNormals osculatingNormals(const SurfaceMesh& mesh, const Progre
 		found.normal[v] = isDefined ? Point3d(found.normal[v] / length) : Point3d(0, 0, 0);
 	});
 	reportedLoop(mesh.faceSlots(), progress.part(0.5, 1), what, [&](int f) {
-		const Point3d areaVector = mesh.areaVector(f);
-		const double minimum = byFar * byFar * areaVector.SquaredNorm();
+		const Point3d doubleAreaVector = mesh.doubleAreaVector(f);
+		const double minimum = byFar * byFar * doubleAreaVector.SquaredNorm();
 		for (int v : mesh.triangle(f)) {
-			const double along = areaVector * found.normal[v];
+			const double along = doubleAreaVector * found.normal[v];
 			found.leadsInside[v] &= (along > 0) & (along * along > minimum);
 		}
 	});

@@ -108,7 +108,7 @@ struct ClosedPieces
 			const Triangle t = mesh.triangle(f);
 			const size_t piece = size_t(ofVertex[size_t(t[0])]);
 			const Point3d& origin = mesh.position[size_t(vertices[piece][0])];
-			volume[piece] += (mesh.position[size_t(t[0])] - origin) * mesh.areaVector(f) / 6;
+			volume[piece] += (mesh.position[size_t(t[0])] - origin) * mesh.doubleAreaVector(f) / 6;
 			faces[piece].push_back(t);
 		});
 	}

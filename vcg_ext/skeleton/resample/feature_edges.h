@@ -191,7 +191,7 @@ private:
 		detail::reportedLoop(surface.faceSlots(), progress, findingCreases, [&](int f) {
 			if (!surface.isFace(f))
 				return;
-			const Point3d n = surface.areaVector(f);
+			const Point3d n = surface.doubleAreaVector(f);
 			const double length = n.Norm();
 			if (length > 0)
 				normals[f] = n / length;

@@ -295,7 +295,7 @@ private:
 		const auto restore = [&](int f) {
 			const Triangle t = mesh.triangle(f);
 			const Point3d& a = old[t[0]];
-			if (!turnsOver((old[t[1]] - a) ^ (old[t[2]] - a), mesh.areaVector(f)))
+			if (!turnsOver((old[t[1]] - a) ^ (old[t[2]] - a), mesh.doubleAreaVector(f)))
 				return;
 			for (int v : t)
 				if (mesh.position[v] != old[v]) {

@@ -57,7 +57,7 @@ inline double expectedVertices(const MeasuredSurface& surface,
 		for (int v : t)
 			if (field[v] < length)
 				added += (1 / (field[v] * field[v]) - 1 / (length * length)) / 3;
-		expected += mesh.areaVector(f).Norm() / 2 * added / areaOfVertex;
+		expected += mesh.doubleAreaVector(f).Norm() / 2 * added / areaOfVertex;
 	}
 	return expected;
 }

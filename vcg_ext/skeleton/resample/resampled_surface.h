@@ -73,7 +73,7 @@ inline double resolvedPart(const SurfaceMesh& mesh, const SizingField& field,
 	for (int f = 0; f < mesh.faceSlots(); ++f) {
 		if (!mesh.isFace(f))
 			continue;
-		const double area = mesh.areaVector(f).Norm();
+		const double area = mesh.doubleAreaVector(f).Norm();
 		for (int v : mesh.triangle(f)) {
 			if (!std::isfinite(field[v]))
 				continue;

@@ -102,11 +102,11 @@ public:
 			const Triangle t = mesh.triangle(f);
 			const std::array<Point3d, 3> corners = {
 				mesh.position[t[0]], mesh.position[t[1]], mesh.position[t[2]]};
-			const Point3d areaVector = mesh.areaVector(f);
-			const double length = areaVector.Norm();
+			const Point3d doubleAreaVector = mesh.doubleAreaVector(f);
+			const double length = doubleAreaVector.Norm();
 			Piece whole {{0, 0, 0}, float(length / 2 / unit / unit), {0, 0, 0}, f};
 			if (length > 0)
-				whole.normal = Point3f::Construct(areaVector / length);
+				whole.normal = Point3f::Construct(doubleAreaVector / length);
 			addPieces(unsorted, whole, corners, longest, halvings);
 		});
 		const PointsByCell sorted(

@@ -403,7 +403,7 @@ private:
 
 	Point3d unitNormal(int face) const
 	{
-		const Point3d n = surface.areaVector(face);
+		const Point3d n = surface.doubleAreaVector(face);
 		const double length = n.Norm();
 		return length > 0 ? n / length : n;
 	}

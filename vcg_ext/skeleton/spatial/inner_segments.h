@@ -140,8 +140,8 @@ private:
 	bool leavesInwards(int v, const Point3d& direction) const
 	{
 		bool behindAll = true;
-		mesh.forEachOutgoing(
-			v, [&](int h) { behindAll = behindAll && direction * mesh.areaVector(h / 3) < 0; });
+		mesh.forEachOutgoing(v,
+			[&](int h) { behindAll = behindAll && direction * mesh.doubleAreaVector(h / 3) < 0; });
 		return behindAll || isInsideCone(v, direction / direction.Norm());
 	}
 
@@ -159,7 +159,7 @@ private:
 		mesh.forEachOutgoing(v, [&](int h) {
 			const Point3d a = unit(mesh.position[mesh.target(h)] - apex);
 			const Point3d b = unit(mesh.position[mesh.apex(h)] - apex);
-			const Point3d n = unit(mesh.areaVector(h / 3));
+			const Point3d n = unit(mesh.doubleAreaVector(h / 3));
 			apexNormal += n * std::atan2((a ^ b).Norm(), a * b);
 			const double height = d * n, ahead = d * a;
 			const bool aboveTriangle = (a ^ d) * n > 0 && (d ^ b) * n > 0;
@@ -169,7 +169,7 @@ private:
 			}
 			if (ahead > 0 && 1 - ahead * ahead < nearest) {
 				nearest = 1 - ahead * ahead;
-				normal = n + unit(mesh.areaVector(mesh.twin(h) / 3));
+				normal = n + unit(mesh.doubleAreaVector(mesh.twin(h) / 3));
 			}
 		});
 		return d * (nearest < 1 ? normal : apexNormal) < 0;
