@@ -123,6 +123,23 @@ TEST(Wrap, ClosesALargeHole)
 	EXPECT_LT(highest, 1);
 }
 
+TEST(Wrap, LeavesOutTheFinsAlongTheBordersOfASheet)
+{
+	// Seven of the twelve triangles of a box: walls stand out that enclose less and less.
+	shapes::Soup soup;
+	soup.points = {{-3, -0.5, -0.5}, {-3, -0.5, 0.5}, {-3, 0.5, -0.5}, {-3, 0.5, 0.5},
+		{3, -0.5, -0.5}, {3, -0.5, 0.5}, {3, 0.5, -0.5}, {3, 0.5, 0.5}};
+	soup.triangles = {{1, 0, 4}, {2, 4, 0}, {1, 3, 0}, {3, 1, 5}, {3, 2, 0}, {3, 7, 2}, {7, 6, 2}};
+	const WrappedSurface surface = wrapped(soup, 0.03);
+	const SurfaceMesh mesh(surface.points, surface.triangles);
+	int pieces = 0;
+	connectedComponents(mesh, &pieces);
+	// Horns may be cut off, but none is torn.
+	EXPECT_LE(pieces, 3);
+	EXPECT_EQ(mesh.vertexCount() - mesh.faceCount() / 2, 2 * pieces);
+	EXPECT_GT(volumeOf(surface.points, surface.triangles), 2.5);
+}
+
 TEST(Wrap, UnitesBodiesThatRunIntoEachOther)
 {
 	const shapes::Soup soup = shapes::joined(

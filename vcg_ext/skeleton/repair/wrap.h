@@ -37,7 +37,7 @@ struct WrappedSurface
 namespace detail {
 
 /**
- * Extracts the surface { w = 1/2 } from the tetrahedra of a lattice.
+ * Extracts the surface { w = 1/2 } from the tetrahedra of a lattice, without its fins.
  *
  * w is evaluated at the nodes near the triangles, where it jumps, and then, until there are no new
  * ones, at those of all tetrahedra around edges where w - 1/2 changes its sign: so the surface is
@@ -56,7 +56,8 @@ public:
 	WrappedSurface run(const Progress& progress)
 	{
 		addNodesNearTriangles(progress.part(0, 0.15));
-		evaluate(progress.part(0.15, 0.6));
+		evaluate(progress.part(0.15, 0.55));
+		leaveOutFins(progress.part(0.55, 0.6));
 		placeVertices(progress.part(0.6, 0.9));
 		connect(progress.part(0.9, 1));
 		return std::move(surface);
@@ -180,6 +181,50 @@ private:
 			limitNodes();
 			from = to;
 		}
+	}
+
+	/**
+	 * Takes what is inside of fins for outside. Along the border of an open sheet { w > 1/2 } is a
+	 * wedge of an angle of 2 pi (w - 1/2), w taken on the inner side; where that is sharp, there
+	 * may be a fin as thin as the lattice, which would tear it to shreds. What is left is near
+	 * nodes that are inside by a clear margin, or with all of their neighbours, or beyond which the
+	 * solid goes on.
+	 */
+	void leaveOutFins(const Progress& progress)
+	{
+		constexpr double clearly = 0.6; // a wedge of 36 degrees
+		constexpr int reach = 2;        // edges of the lattice
+		std::vector<char> isLeft(size_t(lattice.size()), 0);
+		std::vector<int> front, next;
+		reportedLoop(lattice.size(), progress, wrapping, [&](int node) {
+			if (!isInside(node))
+				return;
+			bool isWithin = true, isComplete = true;
+			for (int d = 0; d < Lattice::directions; ++d) {
+				const int other = lattice.neighbour(node, d);
+				isComplete = isComplete && other >= 0;
+				isWithin = isWithin && (other < 0 || isInside(other));
+			}
+			if (isWithin || !isComplete || value[size_t(node)] >= clearly) {
+				isLeft[size_t(node)] = 1;
+				front.push_back(node);
+			}
+		});
+		for (int step = 0; step < reach; ++step) {
+			next.clear();
+			for (int node : front)
+				for (int d = 0; d < Lattice::directions; ++d)
+					if (const int other = lattice.neighbour(node, d);
+						other >= 0 && isInside(other) && !isLeft[size_t(other)]) {
+						isLeft[size_t(other)] = 1;
+						next.push_back(other);
+					}
+			front.swap(next);
+		}
+		// All neighbours of these nodes exist: the tetrahedra around the new changes are complete.
+		for (int node = 0; node < lattice.size(); ++node)
+			if (isInside(node) && !isLeft[size_t(node)])
+				value[size_t(node)] = 1 - value[size_t(node)];
 	}
 
 	/// Where the surface meets the edge from `node` to `other`, in [0, 1].
@@ -307,7 +352,8 @@ private:
  * two-manifold, oriented outward, of any number of pieces. Its vertices lie on the triangles where
  * these bound the solid, to 3 % of a lattice edge, and across holes near { w = 1/2 }.
  *
- * Parts thinner than about the spacing may be torn or missed. Cavities are separate pieces.
+ * Parts thinner than about the spacing may be torn or missed, and such fins along the borders of
+ * open sheets are left out. Cavities are separate pieces.
  *
  * @param tree      of the triangles. @param winding  their winding number.
  * @param spacing   of the lattice, mesh units, > 0: about the edge length of the result.
