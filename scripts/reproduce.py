@@ -35,7 +35,8 @@ from scipy.spatial import cKDTree  # noqa: E402
 from tables import markdown, number  # noqa: E402
 
 SPACING = 0.001
-MEASURES = ROOT / "scripts/bench/quality.py"
+#: What judges a result: when any of it changes, results are judged again.
+JUDGES = (Path(__file__).resolve(), *(ROOT / f"scripts/bench/{name}.py" for name in ("curve", "meshes", "quality")))
 SHEET = np.array([86, 180, 233]) / 255
 # Table 1 of the paper: vertices; its distances to its reference, of ATC08 and of the paper.
 PAPER = {"cuboid": ("Cuboid", 37_000, 0.02820, 0.00449), "animal": ("Dragon", 72_000, 0.01589, 0.00769),
@@ -79,13 +80,14 @@ class Work:
         end = "\r" if sys.stderr.isatty() else "\n"
         print(f"[{bar:<24}] {100 * part:3.0f} % {seconds:5.0f} s  {what:<40.40}", end=end, file=sys.stderr, flush=True)
 
-    def kept(self, what: str, key: tuple, source: Path, make: Callable[[Path], dict]) -> dict:
-        """What make(path) returned, now or in an earlier run with the same source.
+    def kept(self, what: str, key: tuple, source: Path | tuple[Path, ...], make: Callable[[Path], dict]) -> dict:
+        """What make(path) returned, now or in an earlier run with the same source: the files that make() depends on.
 
         path: what the names of the files begin with that it may write.
         """
         self.show(what)
-        name = hashlib.sha256(repr((digest(source), key)).encode()).hexdigest()[:16]
+        sources = [digest(file) for file in ([source] if isinstance(source, Path) else source)]
+        name = hashlib.sha256(repr((sources, key)).encode()).hexdigest()[:16]
         report = self.folder / f"{name}.json"
         if not report.exists():
             found = make(self.folder / name)
@@ -217,7 +219,7 @@ def table_1(work: Work, shapes: dict[str, Path], options: argparse.Namespace) ->
             return {n: reference[0].distances(read_curve(Path(f"{r['path']}.obj"))) for n, r in runs.items()}
 
         curves = [digest(Path(f"{run['path']}.obj")) for run in runs.values()]
-        result = work.kept(f"{name}: distances", ("judged", digest(mesh), *curves, options.quick), Path(__file__),
+        result = work.kept(f"{name}: distances", ("judged", digest(mesh), *curves, options.quick), JUDGES,
                            judged)
         phases = {"DS06": ("geodesic", "erosion"), "ATC08": ("contraction", "conversion"),
                   "paper": ("poles", "contraction", "conversion"),
@@ -388,7 +390,7 @@ def figure_7(work: Work, found: dict, folder: Path, options: argparse.Namespace)
         np.save(f"{path}.npy", shape.medial_axis(QUICK_AXIS) * shape.diagonal + shape.origin)
         return {}
 
-    at = work.kept("slab: medial axis", ("axis", digest(noisy)), MEASURES, axis)
+    at = work.kept("slab: medial axis", ("axis", digest(noisy)), JUDGES, axis)
     sheets = work.run("slab: sheets", noisy, "--keep-sheets")
     curve = work.run("slab: curve", noisy)
     faces, _ = with_sheets(Path(f"{sheets['path']}.obj"))
@@ -441,7 +443,7 @@ def switches(work: Work, options: argparse.Namespace) -> str:
                     shapes[of] = Reference(of, QUICK_AXIS)
                 return measure(shapes[of].shape, shapes[of].axis, read_curve(path))
 
-            found = work.kept(f"{mesh.stem}: {title}", ("switch", digest(path), digest(of)), MEASURES, judged)
+            found = work.kept(f"{mesh.stem}: {title}", ("switch", digest(path), digest(of)), JUDGES, judged)
             rows.append({**found, "iterations": run["iterations"], "contraction": run["seconds"]["contraction"]["cpu"]})
         mean = {key: float(np.mean([row[key] for row in rows])) for key in
                 ("iterations", "contraction", "tips", "spurs", "medial", "reconstruction", "turning", "inside")}
@@ -491,7 +493,7 @@ def steady_states(work: Work, options: argparse.Namespace) -> str:
                     "walls": float(areas.sum() / (shape.areas.sum() / shape.diagonal ** 2 / 2)),
                     "curves": float(lengths.sum())}
 
-        found = work.kept(f"{name}: steady state", ("steady", digest(path), digest(mesh)), Path(__file__), judged)
+        found = work.kept(f"{name}: steady state", ("steady", digest(path), digest(mesh)), JUDGES, judged)
         # What has nothing flat is contracted to a curve.
         betti = (run.get("b0", run["components"]), run.get("b1", run["cycles"]), run.get("b2", 0))
         sheets, given_up = run.get("sheets", 0), run.get("sheets_given_up", 0)

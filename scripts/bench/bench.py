@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import datetime
+import hashlib
 import json
 import os
 import platform
@@ -112,6 +113,11 @@ def run_studies(arguments: argparse.Namespace, meshes: list[Path], folder: Path)
     return 0
 
 
+def folder_name(mesh: Path) -> str:
+    """Of a mesh's skeletons: meshes of one name in several folders have one each."""
+    return f"{mesh.stem}-{hashlib.sha256(str(mesh.resolve()).encode()).hexdigest()[:8]}"
+
+
 def main() -> int:
     arguments = parse_arguments()
     work = ROOT / "build" / "bench" / "work"
@@ -131,7 +137,7 @@ def main() -> int:
         everything[job] = []
         for mesh in meshes:
             print(f"{job}: {mesh.name}", file=sys.stderr, flush=True)
-            folder = work / job / mesh.stem
+            folder = work / job / folder_name(mesh)
             runs = arguments.host_runs if job in THROUGH_HOST else arguments.runs
             outcomes = run_interleaved(programs, mesh, folder, runs, arguments.timeout)
             everything[job].append((mesh, outcomes))

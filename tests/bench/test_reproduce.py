@@ -39,6 +39,18 @@ def test_what_is_kept_is_not_made_again(tmp_path: Path):
     assert len(made) == 3
 
 
+def test_what_is_judged_is_judged_again_when_a_judge_changes(tmp_path: Path):
+    files = (tmp_path / "one.py", tmp_path / "two.py")
+    made = []
+    for text in ("", "", "changed"):
+        for file in files:
+            file.write_text("")
+        files[1].write_text(text)
+        reproduce.Work(files[0], tmp_path / "kept", 1).kept("job", (), files, lambda path: made.append(path) or {})
+    assert len(made) == 2
+    assert {file.name for file in reproduce.JUDGES} >= {"reproduce.py", "quality.py", "curve.py"}
+
+
 def test_lengths_are_of_each_component(tmp_path: Path):
     one = trimesh.creation.icosphere(3)
     other = one.copy()
