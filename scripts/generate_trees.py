@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Generate trees with a known centreline: FAMILY_SEED.off and FAMILY_SEED.npz (nodes, edges).
+"""Generate trees and tubes with a known centreline: FAMILY_SEED.off and FAMILY_SEED.npz (nodes, edges).
 
 `nodes` (n, 4) holds x, y, z and radius, `edges` (m, 2) pairs of them: round cones, of which the surface is
 the union. Each mesh is checked to have the genus that its centreline has cycles. Needs
@@ -13,11 +13,12 @@ from pathlib import Path
 
 import numpy as np
 
-from meshgen.trees import FAMILIES, subdivided, surface_of
+from meshgen.families import FAMILIES
+from meshgen.trees import subdivided, surface_of
 
 
 def generate(family: str, seed: int, folder: Path) -> str | None:
-    """Write one tree; returns a line about it, None where the union has another topology."""
+    """Write one shape; returns a line about it, None where the union has another topology."""
     line = FAMILIES[family](seed)
     vertices, faces, genus = surface_of(subdivided(line))
     nodes, edges = line.arrays()

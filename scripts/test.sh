@@ -47,18 +47,6 @@ with_python() {
 	fi
 }
 
-# newer_python: a Python of 3.12 or newer, if there is one; VMTK needs it.
-newer_python() {
-	local python
-	for python in python3.12 python3.13 "${PYENV_ROOT:-$HOME/.pyenv}"/versions/3.1[23]*/bin/python3; do
-		if "$python" --version >/dev/null 2>&1; then
-			echo "$python"
-			return
-		fi
-	done
-	echo python3.12 # which says that there is none
-}
-
 # Besides GoogleTest what Blender's module expects from the system.
 need_packages libgtest-dev libsm6 libxext6 libxfixes3 libxi6 libxkbcommon0 libxrender1
 python="$(python_env)"

@@ -18,11 +18,13 @@ from scipy.spatial import cKDTree
 class Curve:
     """A graph embedded in space.
 
-    points: (n, 3) positions; edges: (m, 2) indices, as read, so with any duplicates and loops.
+    points: (n, 3) positions; edges: (m, 2) indices, as read, so with any duplicates and loops; radii: (n,) of
+    the nodes' balls, if known.
     """
 
     points: np.ndarray
     edges: np.ndarray
+    radii: np.ndarray | None = None
     _links: list[list[int]] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -32,6 +34,9 @@ class Curve:
         for a, b in self.simple_edges:
             self._links[a].append(int(b))
             self._links[b].append(int(a))
+
+    def neighbours(self, node: int) -> list[int]:
+        return self._links[node]
 
     @cached_property
     def simple_edges(self) -> np.ndarray:
@@ -129,7 +134,18 @@ class Curve:
         return np.concatenate(angles) if angles else np.zeros(0)
 
     def transformed(self, origin: np.ndarray, unit: float) -> Curve:
-        return Curve((self.points - origin) / unit, self.edges)
+        radii = None if self.radii is None else self.radii / unit
+        return Curve((self.points - origin) / unit, self.edges, radii)
+
+    def joined(self, part: float = 1e-7) -> Curve:
+        """With nodes in one place made one: to that part of the diagonal. Programs write lines one by one."""
+        if not len(self.points):
+            return self
+        size = float(np.linalg.norm(np.ptp(self.points, axis=0))) or 1.0
+        places = np.round((self.points - self.points.min(axis=0)) / (part * size))
+        _, first, place = np.unique(places, axis=0, return_index=True, return_inverse=True)
+        radii = None if self.radii is None else self.radii[first]
+        return Curve(self.points[first], place.ravel()[self.edges], radii)
 
 
 def mean_distance(one: Curve, other: Curve, spacing: float) -> float:
@@ -144,9 +160,12 @@ def mean_distance(one: Curve, other: Curve, spacing: float) -> float:
 
 
 def read_curve(path: Path) -> Curve:
-    """Reads OBJ ("l" lines of any length), .cg (lines "v" and "e") or PLY (element edge)."""
-    if path.suffix.lower() == ".ply":
-        return _read_ply(path)
+    """Reads OBJ ("l" lines of any length), .cg (lines "v" and "e"), PLY (element edge), SWC or .vtp (lines)."""
+    read = {".ply": _read_ply, ".swc": _read_swc, ".vtp": _read_vtp}.get(path.suffix.lower(), _read_lines)
+    return read(path)
+
+
+def _read_lines(path: Path) -> Curve:
     points: list[list[float]] = []
     edges: list[tuple[int, int]] = []
     for line in path.read_text().splitlines():
@@ -160,6 +179,34 @@ def read_curve(path: Path) -> Curve:
     return Curve(np.array(points), np.array(edges))
 
 
+def _read_swc(path: Path) -> Curve:
+    """Lines `id type x y z radius parent`."""
+    rows = np.loadtxt(path, comments="#", ndmin=2)
+    place = {int(id_): k for k, id_ in enumerate(rows[:, 0])}
+    edges = [(place[int(parent)], k) for k, parent in enumerate(rows[:, 6]) if parent >= 0]
+    return Curve(rows[:, 2:5], np.array(edges), rows[:, 5])
+
+
+def _read_vtp(path: Path) -> Curve:
+    """The radius under any of the names that VMTK and its users give it."""
+    from vtk import vtkXMLPolyDataReader
+    from vtk.util.numpy_support import vtk_to_numpy
+
+    reader = vtkXMLPolyDataReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    data = reader.GetOutput()
+    points = vtk_to_numpy(data.GetPoints().GetData())
+    lines = data.GetLines()
+    ends = vtk_to_numpy(lines.GetOffsetsArray())
+    nodes = vtk_to_numpy(lines.GetConnectivityArray())
+    edges = [pair for a, b in zip(ends, ends[1:]) for pair in zip(nodes[a:b], nodes[a + 1:b])]
+    names = [data.GetPointData().GetArrayName(k) for k in range(data.GetPointData().GetNumberOfArrays())]
+    radii = [n for n in ("MaximumInscribedSphereRadius", "Radius", "radius") if n in names]
+    return Curve(points, np.array(edges),
+                 vtk_to_numpy(data.GetPointData().GetArray(radii[0])).astype(float) if radii else None)
+
+
 def _read_ply(path: Path) -> Curve:
     from plyfile import PlyData
 
@@ -169,4 +216,6 @@ def _read_ply(path: Path) -> Curve:
     if "edge" not in data:
         return Curve(points, np.zeros((0, 2)))
     edge = data["edge"]
-    return Curve(points, np.column_stack([edge["vertex1"], edge["vertex2"]]))
+    names = [p.name for p in vertex.properties]
+    radii = np.asarray(vertex["mcfskel_radius"], float) if "mcfskel_radius" in names else None
+    return Curve(points, np.column_stack([edge["vertex1"], edge["vertex2"]]), radii)

@@ -5,6 +5,7 @@
 
 pygel     local separators at several scales (Baerentzen and Rotenberg 2021), from PyGEL3D
 skeletor  its implementation of mean curvature skeletons, without splits and medial term
+compas_cgal  CGAL's mean curvature skeletons, as packed by compas_cgal
 atc08     mesh contraction (Au et al. 2008), all three steps: see atc08.py
 """
 
@@ -43,12 +44,20 @@ def skeletor(mesh: trimesh.Trimesh) -> tuple[np.ndarray, np.ndarray]:
     return np.array(skeleton.vertices), np.array(skeleton.edges, int).reshape(-1, 2)
 
 
+def compas_cgal(mesh: trimesh.Trimesh) -> tuple[np.ndarray, np.ndarray]:
+    from compas_cgal.skeletonization import mesh_skeleton
+
+    ends = np.array(mesh_skeleton((mesh.vertices, mesh.faces)), float).reshape(-1, 3)
+    points, place = np.unique(ends, axis=0, return_inverse=True)
+    return points, place.reshape(-1, 2)
+
+
 def mesh_contraction(mesh: trimesh.Trimesh) -> tuple[np.ndarray, np.ndarray]:
     skeleton, _, _ = atc08(np.asarray(mesh.vertices, float), np.asarray(mesh.faces, int))
     return skeleton.points, skeleton.edges
 
 
-PEERS = {"pygel": pygel, "skeletor": skeletor, "atc08": mesh_contraction}
+PEERS = {"pygel": pygel, "skeletor": skeletor, "compas_cgal": compas_cgal, "atc08": mesh_contraction}
 
 
 def parse_arguments() -> argparse.Namespace:

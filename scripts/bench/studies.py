@@ -21,6 +21,7 @@ from damage import DAMAGES, damaged
 from meshes import read_mesh, subdivided, write_mesh
 from quality import Shape, measure
 from stability import NEAR, matched, variants
+from truth import read_truth, score
 
 SPACING = 0.001  # of the diagonal, at which skeletons are compared
 SIZES = (3_000, 400_000)  # vertices of the copies in the study of the resolution
@@ -198,69 +199,22 @@ def to_curve(points: np.ndarray, curve: Curve, certain: np.ndarray) -> tuple[np.
 
 
 def trees(bench: Bench, mesh: Path) -> str:
-    """Tips, junctions and places against the centreline of a tree of scripts/generate_trees.py.
-
-    A tip is found if a tip of the skeleton is within its radius, or 0.05 % of the diagonal; asked for are
-    those whose branch is longer than the radius at its root. A tip of the skeleton is false if it is three
-    radii and 0.2 % away from all of the tree's.
-    """
+    """Tips, junctions and places against the centreline of a shape of scripts/generate_trees.py: see truth.Score."""
     file = mesh.with_suffix(".npz")
     head = ["mesh", "found", "missing", "false", "junctions", "cycles", "to truth, %", "from truth, %",
             "to truth, radii", "us a vertex"]
     if not file.is_file():
         return table(head, [])
-    with np.load(file) as data:
-        nodes, edges = data["nodes"], data["edges"]
-    truth = Curve(nodes[:, :3], edges)
-    radii, size = nodes[:, 3], diagonal(read_mesh(mesh)[0])
-    run = bench.run(mesh)
-    report, curve = run.report, run.curve
-    tips = np.array([t for t in np.flatnonzero(truth.degree == 1) if is_asked_for(truth, radii, t)])
-    ends = curve.points[curve.degree == 1]
-    gaps = np.linalg.norm(truth.points[tips][:, None] - ends, axis=2)
-    found = int((gaps.min(axis=1) <= np.maximum(radii[tips], 0.0005 * size)).sum()) if len(ends) else 0
-    own = np.flatnonzero(truth.degree == 1)
-    near = np.linalg.norm(ends[:, None] - truth.points[own], axis=2)
-    false = int((near > np.maximum(3 * radii[own], 0.002 * size)).all(axis=1).sum())
-    spots, there = curve.sampled(SPACING * size)[0], truth.sampled(SPACING * size)[0]
-    away, where = nearest_on(spots, truth)
-    back, _ = nearest_on(there, curve)
-    local = radii[truth.edges[where]].mean(axis=1)
-    vertices = report["input_vertices"] + report["vertices"]
+    truth, run = read_truth(file), bench.run(mesh)
+    found = score(truth, run.curve)
+    vertices = run.report["input_vertices"] + run.report["vertices"]
     seconds = sum(phase["wall"] if isinstance(phase, dict) else phase
-                  for phase in report["seconds"].values())
+                  for phase in run.report["seconds"].values())
     return table(head, [[
-        mesh.stem, str(found), str(len(tips) - found), str(false),
-        f"{report['junctions']} of {int((truth.degree > 2).sum())}", f"{report['cycles']} of {truth.cycles}",
-        f"{100 * away.mean() / size:.4f}", f"{100 * back.mean() / size:.4f}",
-        f"{(away / local).mean():.3f}", f"{1e6 * seconds / vertices:.1f}"]])
-
-
-def is_asked_for(tree: Curve, radii: np.ndarray, tip: int) -> bool:
-    """Whether the branch of a tip is longer than the radius where it begins."""
-    length, before, at = 0.0, -1, int(tip)
-    while tree.degree[at] <= 2:
-        onward = [w for w in tree._links[at] if w != before]
-        if not onward:
-            break
-        length += float(np.linalg.norm(tree.points[onward[0]] - tree.points[at]))
-        before, at = at, onward[0]
-    return length > radii[at]
-
-
-def nearest_on(points: np.ndarray, curve: Curve, together: int = 256) -> tuple[np.ndarray, np.ndarray]:
-    """Distance of each point to the nearest edge of a curve, and which edge that is."""
-    a = curve.points[curve.edges[:, 0]]
-    step = curve.points[curve.edges[:, 1]] - a
-    squared = np.maximum((step**2).sum(axis=1), 1e-300)
-    gaps, edges = [], []
-    for first in range(0, len(points), together):
-        some = points[first:first + together, None] - a
-        along = ((some * step).sum(axis=2) / squared).clip(0, 1)
-        gap = np.linalg.norm(some - along[..., None] * step, axis=2)
-        edges.append(gap.argmin(axis=1))
-        gaps.append(gap.min(axis=1))
-    return np.concatenate(gaps), np.concatenate(edges)
+        mesh.stem, str(len(found.tips_found)), str(len(truth.tips) - len(found.tips_found)), str(found.tips_false),
+        f"{found.junctions} of {found.true_junctions}", f"{found.cycles} of {found.true_cycles}",
+        f"{100 * found.to_truth:.4f}", f"{100 * found.from_truth:.4f}",
+        f"{found.to_truth_radii:.3f}", f"{1e6 * seconds / vertices:.1f}"]])
 
 
 def damage(bench: Bench, mesh: Path) -> str:

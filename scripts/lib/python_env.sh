@@ -37,3 +37,15 @@ make_python_env() {
 		-r "$requirements" || die "could not install $requirements"
 	touch "$folder/complete"
 }
+
+# newer_python: a Python of 3.12 or newer, if there is one; VMTK needs it.
+newer_python() {
+	local python
+	for python in python3.12 python3.13 "${PYENV_ROOT:-$HOME/.pyenv}"/versions/3.1[23]*/bin/python3; do
+		if "$python" --version >/dev/null 2>&1; then
+			echo "$python"
+			return
+		fi
+	done
+	echo python3.12 # which says that there is none
+}

@@ -9,6 +9,7 @@
 
 #include <skeleton/input/check_input.h>
 #include <skeleton/core/parameters.h>
+#include <skeleton/io/vtp.h>
 #include <skeleton/refine/refine.h>
 #include <skeleton/resample/resampled_surface.h>
 #include <skeleton/skeletonize.h>
@@ -17,9 +18,11 @@
 
 #include <chrono>
 #include <exception>
+#include <fstream>
 #include <functional>
 #include <iostream>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -30,7 +33,7 @@ namespace {
 const char* const usage =
 	"usage: mcfskel_cli MESH [options]\n"
 	"  --preset NAME             default or paper: the paper's algorithm and nothing else\n"
-	"  --skeleton FILE           write the skeleton, as OBJ\n"
+	"  --skeleton FILE           write the skeleton, as OBJ, or with its radii as .vtp\n"
 	"  --significance FILE       write that of each node of a refined skeleton, a line each\n"
 	"  --surface FILE            write the surface that was contracted\n"
 	"  --stage FILE              write the last stage of the contraction\n"
@@ -106,6 +109,13 @@ mcf::Preset preset(const std::string& name)
 	throw std::invalid_argument("unknown preset " + name);
 }
 
+bool isVtp(const std::string& file)
+{
+	const std::string ending = ".vtp";
+	return file.size() > ending.size()
+		&& file.compare(file.size() - ending.size(), ending.size(), ending) == 0;
+}
+
 Options parse(int argc, char** argv)
 {
 	Options options;
@@ -171,6 +181,8 @@ Options parse(int argc, char** argv)
 	}
 	if (options.mesh.empty())
 		throw std::invalid_argument("no mesh given");
+	if (options.parameters.keepSheets && isVtp(options.skeleton))
+		throw std::invalid_argument(".vtp has no sheets");
 	return options;
 }
 
@@ -292,7 +304,13 @@ void addSkeleton(const mcf::Skeletonization& result, const Options& options, ben
 		bench::writeNumbers(result.curve.significance, options.significance);
 	if (!options.stage.empty())
 		bench::writeMesh(stage.mesh, options.stage);
-	if (!options.skeleton.empty())
+	if (isVtp(options.skeleton)) {
+		std::ofstream out(options.skeleton);
+		mcf::writeVtp(out, result.curve);
+		if (!out.flush())
+			throw std::runtime_error("cannot write " + options.skeleton);
+	}
+	else if (!options.skeleton.empty())
 		bench::writeObj(curve, options.skeleton);
 }
 

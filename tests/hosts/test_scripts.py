@@ -204,7 +204,8 @@ class TestBuilding:
 class TestMistakesAreToldFirst:
     @pytest.mark.parametrize("command", [
         ("bench.sh", "--runs", "many"), ("bench.sh", "nothing.off"), ("bench.sh", "--json", "nowhere/figures.json"),
-        ("bench.sh", "--hos"), ("reproduce.sh", "nothing.off"), ("reproduce.sh", "--docs", "nowhere"),
+        ("bench.sh", "--hos"), ("benchmark.sh", "--program", "mine"), ("benchmark.sh", "--families", "cubes"),
+        ("reproduce.sh", "nothing.off"), ("reproduce.sh", "--docs", "nowhere"),
         ("upstream.sh", "one", "two"), ("upstream.sh", "--nonsense")])
     def test_wrong_use(self, command, machine):
         run = machine.run(machine.root / "scripts" / command[0], *command[1:])
