@@ -138,14 +138,19 @@ class Curve:
         return Curve((self.points - origin) / unit, self.edges, radii)
 
     def joined(self, part: float = 1e-7) -> Curve:
-        """With nodes in one place made one: to that part of the diagonal. Programs write lines one by one."""
+        """With the ends of lines made one where they are in one place, to that part of the diagonal, also with a node
+        between two ends: some programs write lines one by one."""
         if not len(self.points):
             return self
         size = float(np.linalg.norm(np.ptp(self.points, axis=0))) or 1.0
         places = np.round((self.points - self.points.min(axis=0)) / (part * size))
-        _, first, place = np.unique(places, axis=0, return_index=True, return_inverse=True)
+        place = np.unique(places, axis=0, return_inverse=True)[1].ravel()
+        has_end = np.zeros(place.max() + 1, bool)
+        has_end[place[self.degree < 2]] = True
+        alone = np.where(has_end[place], place, place.max() + 1 + np.arange(len(place)))
+        _, first, node = np.unique(alone, return_index=True, return_inverse=True)
         radii = None if self.radii is None else self.radii[first]
-        return Curve(self.points[first], place.ravel()[self.edges], radii)
+        return Curve(self.points[first], node.ravel()[self.edges], radii)
 
 
 def mean_distance(one: Curve, other: Curve, spacing: float) -> float:
