@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from meshgen.families import FAMILIES
+from meshgen.off import write_off
 from meshgen.trees import subdivided, surface_of
 
 
@@ -25,10 +26,7 @@ def generate(family: str, seed: int, folder: Path) -> str | None:
     if genus != len(edges) - len(nodes) + 1:
         return None
     stem = folder / f"{family}_{seed}"
-    with open(f"{stem}.off", "w") as out:
-        out.write(f"OFF\n{len(vertices)} {len(faces)} 0\n")
-        out.writelines("%.9g %.9g %.9g\n" % tuple(p) for p in vertices)
-        out.writelines("3 %d %d %d\n" % tuple(f) for f in faces)
+    write_off(Path(f"{stem}.off"), vertices, faces)
     np.savez(f"{stem}.npz", nodes=nodes, edges=edges)
     size = float(np.linalg.norm(np.ptp(vertices, axis=0)))
     tips = int((np.bincount(edges.ravel()) == 1).sum())

@@ -12,17 +12,7 @@ set -euo pipefail
 # shellcheck source=lib/bench.sh
 . "$ROOT/scripts/lib/bench.sh"
 
-for argument in "$@"; do
-	case "$argument" in
-	-h | --help)
-		need_packages python3
-		exec /usr/bin/python3 "$ROOT/scripts/reproduce_options.py" --help
-		;;
-	esac
-done
-need_packages "${BENCH_PACKAGES[@]}"
-# Mistakes are told before anything is built.
-/usr/bin/python3 "$ROOT/scripts/reproduce_options.py" "$@"
+check_options reproduce_options.py "$@"
 python="$(bench_python)"
 programs="$(build_bench mcfskel_cli)"
 exec "$python" "$ROOT/scripts/reproduce.py" --program "$programs/mcfskel_cli" "$@"

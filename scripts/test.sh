@@ -38,9 +38,7 @@ missing=()
 with_python() {
 	local variable="$1" what="$2" place
 	shift 2
-	# A program of its own: in the condition of an if, errors in a function would go unseen.
-	if place="$(bash -euo pipefail -c '. "$1/common.sh"; . "$1/python_env.sh"; python_env "${@:2}"' - \
-		"$ROOT/scripts/lib" "$@")"; then
+	if place="$(python_env_if_possible "$@")"; then
 		export "$variable=$place"
 	else
 		missing+=("$what SKIPPED: could not be set up; see above")
@@ -55,7 +53,7 @@ folder="$ROOT/build/pymeshlab"
 read -r -a hosts <<<"${MCFSKEL_TEST_HOSTS-${TEST_HOSTS[*]}}"
 tested=(pymeshlab)
 for host in "${hosts[@]}"; do
-	# A program of its own, as above.
+	# A program of its own: in the condition of an if, errors in a function would go unseen.
 	if place="$("$ROOT/scripts/get_host.sh" "$host")"; then
 		variable="$(tr a-z.- A-Z__ <<<"$host")"
 		more=()

@@ -5,7 +5,7 @@
 
 pygel     local separators at several scales (Baerentzen and Rotenberg 2021), from PyGEL3D
 skeletor  its implementation of mean curvature skeletons, without splits and medial term
-compas_cgal  CGAL's mean curvature skeletons, as packed by compas_cgal
+compas_cgal  CGAL's mean curvature skeletons, in the package of that name
 atc08     mesh contraction (Au et al. 2008), all three steps: see atc08.py
 """
 

@@ -21,7 +21,7 @@ from damage import DAMAGES, damaged
 from meshes import read_mesh, subdivided, write_mesh
 from quality import Shape, measure
 from stability import NEAR, matched, variants
-from truth import read_truth, score
+from truth import nearest_on_edges, read_truth, score
 
 SPACING = 0.001  # of the diagonal, at which skeletons are compared
 SIZES = (3_000, 400_000)  # vertices of the copies in the study of the resolution
@@ -174,28 +174,15 @@ def known(bench: Bench, mesh: Path) -> str:
     if not exact or not exact["complete"]:
         return table(head, [])
     nodes, edges = np.array(exact["nodes"]), np.array(exact["edges"])
-    truth = Curve(nodes, edges)
     certain = np.array(exact["exact"], bool)
     rows = []
     for refined, options in (("yes", ()), ("no", ("--no-refine",))):
         run = bench.run(mesh, *options)
-        gaps, sure = to_curve(run.curve.sampled(SPACING * record["diagonal"])[0], truth, certain)
-        gaps = 100 * gaps[sure] / record["diagonal"]
+        gaps, edge, _ = nearest_on_edges(run.curve.sampled(SPACING * record["diagonal"])[0], nodes, edges)
+        gaps = 100 * gaps[certain[edges[edge]].all(axis=1)] / record["diagonal"]
         rows.append([mesh.stem, refined, run.graph(), *(
             [f"{gaps.mean():.3f}", f"{gaps.max():.3f}"] if len(gaps) else ["-", "-"])])
     return table(head, rows)
-
-
-def to_curve(points: np.ndarray, curve: Curve, certain: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Distance of each point to the nearest edge, and whether both its ends are certain."""
-    a, b = curve.points[curve.edges[:, 0]], curve.points[curve.edges[:, 1]]
-    step = b - a
-    along = ((points[:, None] - a) * step).sum(axis=2) / np.maximum((step**2).sum(axis=1), 1e-300)
-    foot = a + along.clip(0, 1)[..., None] * step
-    gap = np.linalg.norm(points[:, None] - foot, axis=2)
-    nearest = gap.argmin(axis=1)
-    inner = certain[curve.edges].all(axis=1)
-    return gap[np.arange(len(points)), nearest], inner[nearest]
 
 
 def trees(bench: Bench, mesh: Path) -> str:

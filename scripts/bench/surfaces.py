@@ -21,20 +21,19 @@ import trimesh
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from meshgen.families import FAMILIES  # noqa: E402
+from meshgen.off import write_off  # noqa: E402
 from meshgen.plates import plate  # noqa: E402
 from meshgen.trees import subdivided, surface_of  # noqa: E402
 
+from benchmark_options import FAMILIES as NAMES, PARTS  # noqa: E402
 from stability import rotation  # noqa: E402
 from truth import Truth, write_truth  # noqa: E402
 
 Array = np.ndarray
 Surface = tuple[Array, Array]  # vertices, triangles
 
-PARTS = ("tune", "check")
-#: The seeds to tune on and to check on. A lattice has no chance in it: its seed is its size.
-SEEDS = {name: {"tune": (1, 2), "check": (7003, 7004)} for name in (
-    "tube", "knot", "loops", "aneurysm", "arterial", "sapling", "tree", "thin", "vessel", "neuron", "creature",
-    "plate")} | {"lattice": {"tune": (0,), "check": (1,)}}
+#: The seeds of each part. A lattice has no chance in it: its seed is its size.
+SEEDS = {name: {"tune": (1, 2), "check": (7003, 7004)} for name in NAMES} | {"lattice": {"tune": (0,), "check": (1,)}}
 SIDES = {"coarse": 8, "made": 12, "fine": 20}  # of a round cone
 MAX_REMESHED = 40000  # vertices
 LIST = "benchmark.json"
@@ -149,13 +148,6 @@ def variants(family: str, seed: int) -> Iterator[tuple[str, Surface, Truth]]:
     yield "moved", *moved(middle, truth, seed)
 
 
-def write_off(path: Path, surface: Surface) -> None:
-    with open(path, "w") as out:
-        out.write(f"OFF\n{len(surface[0])} {len(surface[1])} 0\n")
-        out.writelines("%.9g %.9g %.9g\n" % tuple(p) for p in surface[0])
-        out.writelines("3 %d %d %d\n" % tuple(f) for f in surface[1])
-
-
 def version() -> str:
     """Of the generator: surfaces of another one are made anew."""
     digest = hashlib.sha256()
@@ -175,7 +167,7 @@ def generate(folder: Path, entries: list[Entry], families: list[str]) -> list[En
                 for variant, surface, truth in variants(family, seed):
                     tips = 0 if truth.is_sheet else len(truth.tips)
                     entry = Entry(shape, family, part, variant, len(surface[0]), tips)
-                    write_off(folder / f"{entry.name}.off", surface)
+                    write_off(folder / f"{entry.name}.off", *surface)
                     write_truth(folder / f"{entry.name}.npz", truth)
                     entries.append(entry)
                 print(f"{shape}: {sum(e.shape == shape for e in entries)} surfaces", file=sys.stderr, flush=True)

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -101,13 +102,8 @@ class Truth:
         if self.is_sheet:
             near = self.nearest(points)
             return near.distance <= near.radius
-        a, step = self.points[self.edges[:, 0]], np.diff(self.points[self.edges], axis=1)[:, 0]
-        squared = np.maximum((step**2).sum(axis=1), 1e-300)
         inside = np.zeros(len(points), bool)
-        for some in batches(len(points)):
-            away = points[some, None] - a
-            along = ((away * step).sum(axis=2) / squared).clip(0, 1)
-            gap = np.linalg.norm(away - along[..., None] * step, axis=2)
+        for some, gap, along in distances_to_edges(points, self.points, self.edges):
             reach = self.cone_radii[:, 0] * (1 - along) + self.cone_radii[:, 1] * along
             inside[some] = (gap <= reach).any(axis=1)
         # A junction's ball is whole, however thin the branches are.
@@ -122,16 +118,21 @@ def batches(count: int, together: int = 256) -> list[slice]:
     return [slice(first, first + together) for first in range(0, count, together)]
 
 
-def nearest_on_edges(points: Array, nodes: Array, edges: Array) -> tuple[Array, Array, Array]:
-    """Distance of each point to the nearest edge, which edge that is, and where on it, in [0, 1]."""
+def distances_to_edges(points: Array, nodes: Array, edges: Array) -> Iterator[tuple[slice, Array, Array]]:
+    """For batches of points their distances to all edges, and where on each they are nearest, in [0, 1]."""
     a = nodes[edges[:, 0]]
     step = nodes[edges[:, 1]] - a
     squared = np.maximum((step**2).sum(axis=1), 1e-300)
-    gaps, nearest, along = np.empty(len(points)), np.empty(len(points), int), np.empty(len(points))
     for some in batches(len(points)):
         away = points[some, None] - a
-        t = ((away * step).sum(axis=2) / squared).clip(0, 1)
-        gap = np.linalg.norm(away - t[..., None] * step, axis=2)
+        along = ((away * step).sum(axis=2) / squared).clip(0, 1)
+        yield some, np.linalg.norm(away - along[..., None] * step, axis=2), along
+
+
+def nearest_on_edges(points: Array, nodes: Array, edges: Array) -> tuple[Array, Array, Array]:
+    """Distance of each point to the nearest edge, which edge that is, and where on it, in [0, 1]."""
+    gaps, nearest, along = np.empty(len(points)), np.empty(len(points), int), np.empty(len(points))
+    for some, gap, t in distances_to_edges(points, nodes, edges):
         own = gap.argmin(axis=1)
         rows = np.arange(len(own))
         gaps[some], nearest[some], along[some] = gap[rows, own], own, t[rows, own]
@@ -197,7 +198,7 @@ def score(truth: Truth, curve: Curve) -> Score:
         gaps = np.linalg.norm(truth.points[own][:, None] - ends, axis=2)
         if len(ends) and len(own):
             reached = gaps.min(axis=1) <= np.maximum(truth.radii[own], NEAR_TIP * size)
-            found = tuple(int(t) for t in own[reached] if t in set(truth.tips.tolist()))
+            found = tuple(int(t) for t in np.intersect1d(own[reached], truth.tips))
         limits = np.maximum(FALSE_RADII * truth.radii[own], FALSE_TIP * size)
         false = int((gaps > limits[:, None]).all(axis=0).sum())
         there = truth.curve.sampled(SPACING * size)[0]

@@ -8,6 +8,23 @@
 BENCH_PACKAGES=(g++ cmake ninja-build libeigen3-dev libqhull-dev libcgal-dev libbenchmark-dev
 	python3 python3-venv)
 
+# check_options FILE ARGUMENT...: answers --help, and tells mistakes before anything is built. FILE, in scripts/,
+# parses the arguments.
+check_options() {
+	local options="$ROOT/scripts/$1" argument
+	shift
+	for argument in "$@"; do
+		case "$argument" in
+		-h | --help)
+			need_packages python3
+			exec /usr/bin/python3 "$options" --help
+			;;
+		esac
+	done
+	need_packages "${BENCH_PACKAGES[@]}"
+	/usr/bin/python3 "$options" "$@"
+}
+
 # build_bench [PROGRAM...]: prints the folder of the programs, building these, or all, if need be.
 build_bench() {
 	local folder="$ROOT/build/bench" sources

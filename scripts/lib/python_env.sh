@@ -26,6 +26,12 @@ python_env() {
 	echo "$folder/bin/python"
 }
 
+# python_env_if_possible FILE [PYTHON]: python_env() for the condition of an if, where errors in a function would go
+# unseen: a program of its own.
+python_env_if_possible() {
+	bash -euo pipefail -c '. "$1/common.sh"; . "$1/python_env.sh"; python_env "${@:2}"' - "$ROOT/scripts/lib" "$@"
+}
+
 make_python_env() {
 	local folder="$1" requirements="$2" python="$3"
 	[ ! -f "$folder/complete" ] || return 0

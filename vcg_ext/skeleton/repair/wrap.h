@@ -186,15 +186,15 @@ private:
 	/**
 	 * Takes what is inside of fins for outside. Along the border of an open sheet { w > 1/2 } is a
 	 * wedge of an angle of 2 pi (w - 1/2), w taken on the inner side; where that is sharp, there
-	 * may be a fin as thin as the lattice, which would tear it to shreds. What is left is near
-	 * nodes that are inside by a clear margin, or with all of their neighbours, or beyond which the
-	 * solid goes on.
+	 * may be a fin as thin as the lattice, which would tear it to shreds. Nodes are kept near those
+	 * that are inside by a clear margin, or with all of their neighbours, or beyond which the solid
+	 * goes on.
 	 */
 	void leaveOutFins(const Progress& progress)
 	{
 		constexpr double clearly = 0.6; // a wedge of 36 degrees
 		constexpr int reach = 2;        // edges of the lattice
-		std::vector<char> isLeft(size_t(lattice.size()), 0);
+		std::vector<char> isKept(size_t(lattice.size()), 0);
 		std::vector<int> front, next;
 		reportedLoop(lattice.size(), progress, wrapping, [&](int node) {
 			if (!isInside(node))
@@ -206,7 +206,7 @@ private:
 				isWithin = isWithin && (other < 0 || isInside(other));
 			}
 			if (isWithin || !isComplete || value[size_t(node)] >= clearly) {
-				isLeft[size_t(node)] = 1;
+				isKept[size_t(node)] = 1;
 				front.push_back(node);
 			}
 		});
@@ -215,15 +215,15 @@ private:
 			for (int node : front)
 				for (int d = 0; d < Lattice::directions; ++d)
 					if (const int other = lattice.neighbour(node, d);
-						other >= 0 && isInside(other) && !isLeft[size_t(other)]) {
-						isLeft[size_t(other)] = 1;
+						other >= 0 && isInside(other) && !isKept[size_t(other)]) {
+						isKept[size_t(other)] = 1;
 						next.push_back(other);
 					}
 			front.swap(next);
 		}
 		// All neighbours of these nodes exist: the tetrahedra around the new changes are complete.
 		for (int node = 0; node < lattice.size(); ++node)
-			if (isInside(node) && !isLeft[size_t(node)])
+			if (isInside(node) && !isKept[size_t(node)])
 				value[size_t(node)] = 1 - value[size_t(node)];
 	}
 
