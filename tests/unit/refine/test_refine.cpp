@@ -186,6 +186,29 @@ TEST(Refine, CentresAndSmoothsACurveInATube)
 		EXPECT_NEAR(r, 0.35, 0.09) << "the mean distance to the vertices around";
 }
 
+TEST(Refine, UnfoldsACurveThatDoublesBack)
+{
+	// Along the axis of a tube of radius 0.35, there, back and there again, on top of itself.
+	const SurfaceMesh tube = shapes::capsule(4, 0.35, 32).mesh();
+	const double end = 1.9;
+	CurveMaker folded;
+	folded.line({-end, 0, 0}, {0.5, 0, 0}, 24)
+		.line({0.5, 0, 0}, {-0.5, 0.01, 0}, 11)
+		.line({-0.5, 0.01, 0}, {end, 0, 0.01}, 24);
+	const CurveSkeleton curve = folded.in(tube);
+	const CurveSkeleton refined = refine(curve, tube);
+	EXPECT_EQ(checks::skeletonError(refined), "");
+	double length = 0, straight = 0;
+	for (const auto& [a, b] : refined.edges) {
+		length += Distance(refined.position[a], refined.position[b]);
+		for (int v : {a, b})
+			straight = std::max(straight, 2 * std::abs(refined.position[v][0]));
+	}
+	EXPECT_LT(length, 1.02 * straight);
+	EXPECT_GT(straight, 3.5);
+	EXPECT_EQ(statistics(refined).terminals, 2);
+}
+
 TEST(Refine, SamplesEvenlyAtTheSpacing)
 {
 	const SurfaceMesh mesh = shapes::capsule(3, 0.35, 48).mesh();

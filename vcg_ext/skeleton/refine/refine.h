@@ -210,6 +210,7 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 			skeleton, surface, cancel); // long edges of a coarse shape's curve may have left it
 		progress.report(double(done) / total, what);
 	};
+	const auto unfold = [&] { skeleton = withoutFolds(std::move(skeleton), surface, cancel); };
 	const auto extend = [&] {
 		measureBranchEnds(skeleton, clearances);
 		extendTips(skeleton, surface, tips, cancel);
@@ -240,11 +241,14 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 		[&] { centreRounds(parameters.stiffRounds, stiffer * kappa, false); },
 		extend,
 		grow,
+		unfold,
 		[&] { tidy(parameters.spurProminence, parameters.tipDistinctness); },
 		[&] { centreRounds(parameters.rounds, kappa, true); },
 		extend,
+		unfold,
 		[&] { tidy(parameters.spurProminence, parameters.tipDistinctness); },
 		[&] { centreRounds(parameters.lastRounds, kappa, true); },
+		unfold,
 		[&] { tidy(parameters.spurProminence, parameters.tipDistinctness); },
 	};
 	// A few may be in branches that will still be removed.

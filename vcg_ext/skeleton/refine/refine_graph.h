@@ -552,6 +552,47 @@ inline bool isInside(BallChain& chain, const ClosestSurface& surface, const Prog
 }
 
 /**
+ * Removes the nodes where a branch doubles back: it turns by more than 120 degrees, and the way
+ * from the node before to the one after it is inside and shorter. The contraction of a long thin
+ * part leaves such folds, which centring would keep, on top of each other. What had merged into
+ * such a node goes to the one before.
+ * @pre radius holds the distances from the surface, or lower bounds. @throws Cancelled
+ */
+inline CurveSkeleton withoutFolds(
+	CurveSkeleton skeleton, const ClosestSurface& surface, const Progress& progress = Progress())
+{
+	constexpr double sharpest = -0.5; // cosine of the turn
+	std::vector<int> target(skeleton.position.size());
+	std::iota(target.begin(), target.end(), 0);
+	bool isAny = false;
+	for (const Branch& branch : skeletonBranches(skeleton)) {
+		progress.check();
+		std::vector<int> kept;
+		for (int next : branch.nodes) {
+			while (kept.size() >= 2) {
+				const int before = kept[kept.size() - 2], node = kept.back();
+				const Point3d &p = skeleton.position[before], &q = skeleton.position[node],
+							  &r = skeleton.position[next];
+				const double turn = (q - p) * (r - q);
+				if (next == before || turn > sharpest * Distance(p, q) * Distance(q, r)
+					|| !isEdgeInside(skeleton, surface, before, next))
+					break;
+				target[node] = before;
+				isAny = true;
+				kept.pop_back();
+			}
+			kept.push_back(next);
+		}
+	}
+	if (!isAny)
+		return skeleton;
+	for (int& t : target) // what a node went to may have gone itself
+		while (target[t] != t)
+			t = target[t];
+	return mergeNodes(skeleton, target);
+}
+
+/**
  * Samples each branch evenly, about `spacing` apart, less where the scale is smaller. Junctions and
  * tips keep their places; what had merged into a node goes to the one nearest along the branch.
  * Where a chord would leave the surface, the branch keeps its nodes, but for crowded ones, and only

@@ -9,6 +9,7 @@
 
 #include "resample.h"
 #include "target_length.h"
+#include "thin_samples.h"
 
 #include <skeleton/core/notes.h>
 #include <skeleton/core/parameters.h>
@@ -170,7 +171,7 @@ inline void tellNoise(const NoiseReport& noise, bool isSmoothed, const NoteCallb
 /**
  * Smooths the noise of a surface where there is any, if parameters.denoise is set, and resamples
  * it, with the edge length of defaultTargetLength() or, with parameters.adaptive, less where the
- * shape is thin, see sizingField().
+ * shape is thin, see sizingField(), also along long triangles, see withThinPartsSampled().
  * @param mesh   closed two-manifold, compact.
  * @param given  see sharedAmong() for more than 50 components.
  * @param onNote receives what was found and done; may be empty.
@@ -195,8 +196,29 @@ inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Paramete
 	const auto resampled = [&](const MeasuredSurface& calm, const PoleSet* own) {
 		const double from = smooth ? 0.35 : 0.25;
 		const std::vector<double> length = defaultTargetLength(calm, parameters);
+		const bool isAdaptive = parameters.adaptive && parameters.resampleIterations > 0;
+		if (isAdaptive && own && !thickness.empty()) {
+			std::vector<double> thick = calm.diagonals();
+			for (double& diagonal : thick)
+				diagonal *= neutralLength / parameters.relativeLength;
+			if (const std::optional<SurfaceMesh> sampled = withThinPartsSampled(
+					calm, thickness, thick, maxVertices, progress.cancelOnly())) {
+				const MeasuredSurface dense(*sampled, progress.cancelOnly());
+				std::vector<std::string> notes;
+				const std::optional<SizingField> field = fieldOfResampling(dense, length, parameters,
+					nullptr, progress.cancelOnly(),
+					[&](const std::string& note) { notes.push_back(note); });
+				if (field && !field->empty()) {
+					for (const std::string& note : notes)
+						if (onNote)
+							onNote(note);
+					return resample(dense, length, parameters.resampleIterations,
+						progress.part(from + 0.15, 1), *field);
+				}
+			}
+		}
 		std::optional<SizingField> field = SizingField();
-		if (parameters.adaptive && parameters.resampleIterations > 0)
+		if (isAdaptive)
 			field = fieldOfResampling(
 				calm, length, parameters, own, progress.part(from, from + 0.15), onNote);
 		result.isTooThin = !field;
