@@ -295,6 +295,28 @@ TEST(CurveInside, WhatWouldBeFarTooLongIsCutOffAndSaid)
 	}
 }
 
+TEST(CurveInside, ACurveWhoseNodesGoFarApartIsTooLongHoweverItsEdgesAreBent)
+{
+	// Part of a ring, then to and fro by 0.02 about its centre: the nearest places inside are on opposite sides.
+	const shapes::Soup soup = shapes::torus(1, 0.1, 100, 8);
+	std::vector<Point3d> places;
+	for (int i = 0; i < 8; ++i)
+		places.emplace_back(std::cos(0.1 * i), std::sin(0.1 * i), 0);
+	for (int i = 0; i < 20; ++i)
+		places.emplace_back(i % 2 ? 0.01 : -0.01, 0.0, 0.001 * i);
+	std::vector<std::array<int, 2>> edges;
+	for (int i = 0; i + 1 < int(places.size()); ++i)
+		edges.push_back({i, i + 1});
+	Curve curve(soup, places, edges);
+	CutCurves cut;
+	const CurveSkeleton inside = broughtInside(curve.skeleton, curve.surface.position,
+		curve.surface.triangles(), std::vector<int>(curve.surface.position.size(), 0), 1,
+		curve.component, Progress(), TooFarOutside::CutOff, &cut);
+	EXPECT_EQ(cut.components, 1);
+	EXPECT_LT(outside(curve.surface, inside), 1e-6);
+	EXPECT_NEAR(statistics(inside).length, 0.7, 0.01) << "the part that was inside";
+}
+
 TEST(CurveInside, WhatWouldBeFarTooLongStaysWhereThatIsAskedFor)
 {
 	Curve curve = zigzagOverAGap();

@@ -72,9 +72,9 @@ public:
 	};
 
 	/**
-	 * Moves nodes that are outside, then bends the edges that are; not if that would make the curve
-	 * longer than twice its length plus three diagonals, as where a surface runs into itself all
-	 * over.
+	 * Moves nodes that are outside, then bends the edges that are; not if both together would make
+	 * the curve longer than twice its length plus three diagonals, as where a surface runs into
+	 * itself all over.
 	 * @throws SolverError if something is still outside; Cancelled.
 	 */
 	Outcome bringInside()
@@ -89,6 +89,7 @@ public:
 		}
 		if (!any && allInside())
 			return Outcome::AllInside;
+		const double maxLength = longerOfCurve * length() + longerOfDiagonal;
 		std::vector<std::vector<int>> neighbours(place.size());
 		for (const auto& [A, B] : edges) {
 			neighbours[A].push_back(B);
@@ -97,8 +98,7 @@ public:
 		for (size_t A = 0; A < place.size(); ++A)
 			if (isOutside[A])
 				moveInside(int(A), neighbours[A]);
-		return bendEdges(longerOfCurve * length() + longerOfDiagonal) ? Outcome::Brought
-																	  : Outcome::TooLong;
+		return bendEdges(maxLength) ? Outcome::Brought : Outcome::TooLong;
 	}
 
 	/**
