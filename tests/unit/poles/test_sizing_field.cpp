@@ -241,8 +241,8 @@ TEST(SizingField, AMeshBeyondTheBudgetResolvesWhatItCanAndSaysWhatItDoesNot)
 	std::string said;
 	const auto fieldOfNeck = [&](const SurfaceMesh& mesh) {
 		said.clear();
-		return fieldOfResampling(MeasuredSurface(mesh), length, Parameters(), nullptr, Progress(),
-			[&](const std::string& text) { said += text + "\n"; });
+		return fieldOfResampling(MeasuredSurface(mesh), length, Parameters(), nullptr,
+			affordable(mesh), Progress(), [&](const std::string& text) { said += text + "\n"; });
 	};
 	constexpr int sides = 5; // few vertices, and thirty edges for each
 	for (const auto& [narrow, words] : {std::pair(0.003, "longer there than relative_length"),
@@ -253,8 +253,7 @@ TEST(SizingField, AMeshBeyondTheBudgetResolvesWhatItCanAndSaysWhatItDoesNot)
 		const std::optional<SizingField> field = fieldOfNeck(mesh);
 		EXPECT_NE(said.find(words), std::string::npos) << said;
 		ASSERT_TRUE(field);
-		EXPECT_LE(
-			expectedVertices(surface, length, *field), maxVerticesOfVertex * mesh.vertexCount());
+		EXPECT_LE(expectedVertices(surface, length, *field), affordable(mesh).vertices);
 		const double shortest = *std::min_element(field->begin(), field->end());
 		EXPECT_GT(shortest, relative * narrow);
 		EXPECT_LT(shortest, 1.5 * narrow);

@@ -56,20 +56,44 @@ inline std::vector<double> localThickness(const MeasuredSurface& surface, const 
 	return thickness;
 }
 
-/// A mesh that follows the local thickness has at most maxVertices vertices, or as many as an even
-/// mesh needs anyway, and never more than maxVerticesOfVertex for each vertex of the input: a
-/// coarse mesh does not show how thin the shape is between its vertices.
-constexpr double maxVertices = 400000, maxVerticesOfVertex = 30;
+/// A mesh that follows the local thickness has at most so many vertices, or as many as an even mesh
+/// needs anyway, and never more than are affordable, see Affordable.
+constexpr double maxVertices = 400000;
+
+/// What following the local thickness may cost, and has to bring.
+struct Affordable
+{
+	/// The most vertices of the resampled mesh.
+	double vertices;
+	/// Parts are resolved where edges are up to so many local thicknesses long.
+	double longest;
+};
+
+/// What a mesh gets that shows the thickness at its vertices: a coarse one does not show how thin
+/// the shape is between them. With edges of 1.5 thicknesses there are four around a tube.
+inline Affordable affordable(const SurfaceMesh& mesh)
+{
+	constexpr double ofVertex = 30, longest = 1.5;
+	return {ofVertex * mesh.vertexCount(), longest};
+}
+
+/// What a mesh gets that shows the thickness along its triangles. Less for a small mesh of needles,
+/// which would be resampled for minutes; beyond one thickness tubes hardly have fewer vertices.
+/// @param sampled see withThinPartsSampled().
+inline Affordable affordableWithSamples(const SurfaceMesh& mesh, const SurfaceMesh& sampled)
+{
+	constexpr double ofVertex = 100, always = 60000, longest = 1.2;
+	const double ofMesh = std::max(always, ofVertex * mesh.vertexCount());
+	return {std::min(ofMesh, affordable(sampled).vertices), longest};
+}
 
 /**
- * The part of the thin regions that a raised sizing field still resolves, with edges up to 1.5
- * local thicknesses, four around a tube. Thin is where `field` is finite; regions count by their
- * length, area / field. Complexity: O(F).
+ * The part of the thin regions that a raised sizing field still resolves, see Affordable::longest.
+ * Thin is where `field` is finite; regions count by their length, area / field. Complexity: O(F).
  */
 inline double resolvedPart(const SurfaceMesh& mesh, const SizingField& field,
-	const SizingField& raised, double relativeLength)
+	const SizingField& raised, double relativeLength, double longest)
 {
-	constexpr double longest = 1.5;
 	double resolved = 0, all = 0;
 	for (int f = 0; f < mesh.faceSlots(); ++f) {
 		if (!mesh.isFace(f))
@@ -92,19 +116,19 @@ inline double resolvedPart(const SurfaceMesh& mesh, const SizingField& field,
  * edges may be up to a local thickness long; where that is not enough, the thinnest parts are
  * resolved less: see coarsenToCost(). No field where most of what is thin would not be resolved
  * then, as with plates, which no number of vertices serves, nor where an even mesh alone exceeds
- * maxVerticesOfVertex.
+ * what is affordable.
  * @param length of each component, see defaultTargetLength().
+ * @param cost   what is affordable.
  * @param poles  of all vertices, where they are known already; null: they are computed.
  * @param onNote receives what is resolved less; may be empty.
  * @throws Cancelled. Complexity: as medialPoles().
  */
 inline std::optional<SizingField> fieldOfResampling(const MeasuredSurface& surface,
 	const std::vector<double>& length, const Parameters& parameters, const PoleSet* poles,
-	const Progress& progress = Progress(), const NoteCallback& onNote = {})
+	const Affordable& cost, const Progress& progress = Progress(), const NoteCallback& onNote = {})
 {
-	const double resolved = maxVerticesOfVertex * surface.mesh().vertexCount();
 	const double anyway = expectedVertices(surface, length, SizingField());
-	if (anyway > resolved)
+	if (anyway > cost.vertices)
 		return std::nullopt;
 	PoleSet found;
 	if (!poles) {
@@ -116,31 +140,33 @@ inline std::optional<SizingField> fieldOfResampling(const MeasuredSurface& surfa
 	if (field.empty())
 		return field;
 	double expected = expectedVertices(surface, length, field);
-	const double maximum = std::min(std::max(maxVertices, 1.01 * anyway), resolved);
+	const double maximum = std::min(std::max(maxVertices, 1.01 * anyway), cost.vertices);
 	if (expected > maximum) {
 		constexpr double minResolved = 0.5, longest = 1; // of what is thin; local thicknesses
-		const std::string cost =
+		const std::string tooMany =
 			detail::sentence(3, "Parts of the shape are thin. To resolve them would take ",
-				expected / 1e6, " million vertices, more than ",
-				resolved < maxVertices ? "30 for each of the mesh" : "0.4 million");
+				expected / 1e6, " million vertices, more than the ", maximum / 1e6,
+				cost.vertices < maxVertices ? " million that a mesh so coarse gets"
+											: " million that a mesh gets");
 		const SizingField wanted = field;
 		const double minimum = coarsenToCost(field,
 			std::max(1.0, longest / parameters.relativeLength),
 			*std::max_element(length.begin(), length.end()), maximum,
 			[&](const SizingField& raised) { return expectedVertices(surface, length, raised); });
-		if (resolvedPart(surface.mesh(), wanted, field, parameters.relativeLength) < minResolved) {
+		if (resolvedPart(surface.mesh(), wanted, field, parameters.relativeLength, cost.longest)
+			< minResolved) {
 			if (onNote)
-				onNote(cost
+				onNote(tooMany
 					+ ": lengths are the same everywhere, and such parts may be left out or simplified.");
 			return std::nullopt;
 		}
 		if (onNote && minimum == 0)
-			onNote(cost + ": edges are longer there than relative_length says.");
+			onNote(tooMany + ": edges are longer there than relative_length says.");
 		else if (onNote) {
 			const double thinnest = minimum / longest;
 			const std::vector<double> diagonals = surface.diagonals();
 			const double diagonal = *std::max_element(diagonals.begin(), diagonals.end());
-			onNote(detail::sentence(3, cost, ": what is thinner than a radius of ", thinnest,
+			onNote(detail::sentence(3, tooMany, ": what is thinner than a radius of ", thinnest,
 				" mesh units (", 100 * thinnest / diagonal,
 				" % of the diagonal) is resolved less, and may be left out or simplified."));
 		}
@@ -205,9 +231,9 @@ inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Paramete
 					calm, thickness, thick, maxVertices, progress.cancelOnly())) {
 				const MeasuredSurface dense(*sampled, progress.cancelOnly());
 				std::vector<std::string> notes;
-				const std::optional<SizingField> field = fieldOfResampling(dense, length, parameters,
-					nullptr, progress.cancelOnly(),
-					[&](const std::string& note) { notes.push_back(note); });
+				const std::optional<SizingField> field = fieldOfResampling(dense, length,
+					parameters, nullptr, affordableWithSamples(calm.mesh(), *sampled),
+					progress.cancelOnly(), [&](const std::string& note) { notes.push_back(note); });
 				if (field && !field->empty()) {
 					for (const std::string& note : notes)
 						if (onNote)
@@ -219,8 +245,8 @@ inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Paramete
 		}
 		std::optional<SizingField> field = SizingField();
 		if (isAdaptive)
-			field = fieldOfResampling(
-				calm, length, parameters, own, progress.part(from, from + 0.15), onNote);
+			field = fieldOfResampling(calm, length, parameters, own, affordable(calm.mesh()),
+				progress.part(from, from + 0.15), onNote);
 		result.isTooThin = !field;
 		return resample(calm, length, parameters.resampleIterations, progress.part(from + 0.15, 1),
 			field ? *field : SizingField());
