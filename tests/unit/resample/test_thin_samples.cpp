@@ -112,3 +112,18 @@ TEST(ThinSamples, ATubeIsResampledAlikeHoweverLongItsTrianglesAre)
 	EXPECT_LT(longTriangles.mesh.vertexCount(), 2.0 * compact.mesh.vertexCount());
 	EXPECT_NEAR(longTriangles.mesh.volume(), compact.mesh.volume(), 0.05 * compact.mesh.volume());
 }
+
+TEST(ThinSamples, ANeedleThinnerThanTheShortestEdgesIsResampledAsIfNothingWereThin)
+{
+	// The rod's radius is 0.25 % of its length; a hundredth of that is below the shortest edges.
+	const auto vertices = [](double factor, bool adaptive) {
+		Parameters parameters;
+		parameters.targetLength = 0.005;
+		parameters.adaptive = adaptive;
+		const shapes::Soup soup = shapes::transformed(roundRod(0),
+			[&](const Point3d& p) { return Point3d(p[0], factor * p[1], factor * p[2]); });
+		return resampledSurface(soup.mesh(), parameters).mesh.vertexCount();
+	};
+	EXPECT_GT(vertices(1, true), 2 * vertices(1, false));
+	EXPECT_EQ(vertices(0.01, true), vertices(0.01, false));
+}

@@ -24,6 +24,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -53,6 +54,19 @@ inline std::vector<double> localThickness(const MeasuredSurface& surface, const 
 		sizingField(surface, poles, parameters.relativeLength, bound, progress);
 	for (double& length : thickness)
 		length /= parameters.relativeLength;
+	return thickness;
+}
+
+/// The local thickness where edges can be short enough for it, infinite elsewhere: of needles as thin
+/// as shortestLength more samples show no more. @param thickness see localThickness().
+inline std::vector<double> thicknessToFollow(
+	const MeasuredSurface& surface, std::vector<double> thickness, double relativeLength)
+{
+	constexpr double rounding = 1 + 1e-9;
+	for (size_t v = 0; v < thickness.size(); ++v)
+		if (relativeLength * thickness[v]
+			<= rounding * shortestLength * surface.diagonal(surface.component()[v]))
+			thickness[v] = std::numeric_limits<double>::infinity();
 	return thickness;
 }
 
@@ -227,8 +241,9 @@ inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Paramete
 			std::vector<double> thick = calm.diagonals();
 			for (double& diagonal : thick)
 				diagonal *= neutralLength / parameters.relativeLength;
-			if (const std::optional<SurfaceMesh> sampled = withThinPartsSampled(
-					calm, thickness, thick, maxVertices, progress.cancelOnly())) {
+			if (const std::optional<SurfaceMesh> sampled = withThinPartsSampled(calm,
+					thicknessToFollow(calm, thickness, parameters.relativeLength), thick,
+					maxVertices, progress.cancelOnly())) {
 				const MeasuredSurface dense(*sampled, progress.cancelOnly());
 				std::vector<std::string> notes;
 				const std::optional<SizingField> field = fieldOfResampling(dense, length,
