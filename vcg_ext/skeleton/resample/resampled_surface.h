@@ -57,17 +57,14 @@ inline std::vector<double> localThickness(const MeasuredSurface& surface, const 
 	return thickness;
 }
 
-/// The local thickness where edges can be short enough for it, infinite elsewhere: of needles as thin
-/// as shortestLength more samples show no more. @param thickness see localThickness().
-inline std::vector<double> thicknessToFollow(
-	const MeasuredSurface& surface, std::vector<double> thickness, double relativeLength)
+/// Whether edges as short as a sizing field says resolve the shape at a vertex. Of needles that are
+/// thinner than shortestLength, more samples show no more.
+/// @param length the field at the vertex, or infinite. @param poles of all vertices.
+inline bool isResolvable(const MeasuredSurface& surface, const PoleSet& poles, double length, int v)
 {
 	constexpr double rounding = 1 + 1e-9;
-	for (size_t v = 0; v < thickness.size(); ++v)
-		if (relativeLength * thickness[v]
-			<= rounding * shortestLength * surface.diagonal(surface.component()[v]))
-			thickness[v] = std::numeric_limits<double>::infinity();
-	return thickness;
+	const double shortest = shortestLength * surface.diagonal(surface.component()[v]);
+	return length > rounding * shortest || poles.radius[v] >= shortest;
 }
 
 /// A mesh that follows the local thickness has at most so many vertices, or as many as an even mesh
@@ -102,12 +99,14 @@ inline Affordable affordableWithSamples(const SurfaceMesh& mesh, const SurfaceMe
 }
 
 /**
- * The part of the thin regions that a raised sizing field still resolves, see Affordable::longest.
- * Thin is where `field` is finite; regions count by their length, area / field. Complexity: O(F).
+ * The part of the thin regions that a raised sizing field still resolves, see isResolvable() and
+ * Affordable::longest. Thin is where `field` is finite; regions count by their length,
+ * area / field. Complexity: O(F).
  */
-inline double resolvedPart(const SurfaceMesh& mesh, const SizingField& field,
-	const SizingField& raised, double relativeLength, double longest)
+inline double resolvedPart(const MeasuredSurface& surface, const PoleSet& poles,
+	const SizingField& field, const SizingField& raised, double relativeLength, double longest)
 {
+	const SurfaceMesh& mesh = surface.mesh();
 	double resolved = 0, all = 0;
 	for (int f = 0; f < mesh.faceSlots(); ++f) {
 		if (!mesh.isFace(f))
@@ -118,7 +117,8 @@ inline double resolvedPart(const SurfaceMesh& mesh, const SizingField& field,
 				continue;
 			const double length = area / field[v];
 			all += length;
-			if (raised[v] * relativeLength <= longest * field[v])
+			if (raised[v] * relativeLength <= longest * field[v]
+				&& isResolvable(surface, poles, field[v], v))
 				resolved += length;
 		}
 	}
@@ -129,8 +129,8 @@ inline double resolvedPart(const SurfaceMesh& mesh, const SizingField& field,
  * The sizing field to resample a surface with. Where its mesh would be too large, see maxVertices,
  * edges may be up to a local thickness long; where that is not enough, the thinnest parts are
  * resolved less: see coarsenToCost(). No field where most of what is thin would not be resolved
- * then, as with plates, which no number of vertices serves, nor where an even mesh alone exceeds
- * what is affordable.
+ * then, as with plates, which no number of vertices serves, or with the thinnest needles, nor where
+ * an even mesh alone exceeds what is affordable.
  * @param length of each component, see defaultTargetLength().
  * @param cost   what is affordable.
  * @param poles  of all vertices, where they are known already; null: they are computed.
@@ -155,41 +155,53 @@ inline std::optional<SizingField> fieldOfResampling(const MeasuredSurface& surfa
 		return field;
 	double expected = expectedVertices(surface, length, field);
 	const double maximum = std::min(std::max(maxVertices, 1.01 * anyway), cost.vertices);
+	constexpr double minResolved = 0.5, longest = 1; // of what is thin; local thicknesses
+	const SizingField wanted = field;
+	const auto isResolved = [&] {
+		return resolvedPart(surface, *poles, wanted, field, parameters.relativeLength, cost.longest)
+			>= minResolved;
+	};
+	constexpr const char* everywhere =
+		": lengths are the same everywhere, and such parts may be left out or simplified.";
+	const auto tell = [&](const std::string& text) {
+		if (onNote)
+			onNote(text);
+	};
+	if (!isResolved()) {
+		tell(detail::sentence(3, "Parts of the shape are thinner than a radius of ",
+				 100 * shortestLength, " % of the diagonal")
+			+ everywhere);
+		return std::nullopt;
+	}
 	if (expected > maximum) {
-		constexpr double minResolved = 0.5, longest = 1; // of what is thin; local thicknesses
 		const std::string tooMany =
 			detail::sentence(3, "Parts of the shape are thin. To resolve them would take ",
 				expected / 1e6, " million vertices, more than the ", maximum / 1e6,
 				cost.vertices < maxVertices ? " million that a mesh so coarse gets"
 											: " million that a mesh gets");
-		const SizingField wanted = field;
 		const double minimum = coarsenToCost(field,
 			std::max(1.0, longest / parameters.relativeLength),
 			*std::max_element(length.begin(), length.end()), maximum,
 			[&](const SizingField& raised) { return expectedVertices(surface, length, raised); });
-		if (resolvedPart(surface.mesh(), wanted, field, parameters.relativeLength, cost.longest)
-			< minResolved) {
-			if (onNote)
-				onNote(tooMany
-					+ ": lengths are the same everywhere, and such parts may be left out or simplified.");
+		if (!isResolved()) {
+			tell(tooMany + everywhere);
 			return std::nullopt;
 		}
-		if (onNote && minimum == 0)
-			onNote(tooMany + ": edges are longer there than relative_length says.");
-		else if (onNote) {
+		if (minimum == 0)
+			tell(tooMany + ": edges are longer there than relative_length says.");
+		else {
 			const double thinnest = minimum / longest;
 			const std::vector<double> diagonals = surface.diagonals();
 			const double diagonal = *std::max_element(diagonals.begin(), diagonals.end());
-			onNote(detail::sentence(3, tooMany, ": what is thinner than a radius of ", thinnest,
+			tell(detail::sentence(3, tooMany, ": what is thinner than a radius of ", thinnest,
 				" mesh units (", 100 * thinnest / diagonal,
 				" % of the diagonal) is resolved less, and may be left out or simplified."));
 		}
 		expected = expectedVertices(surface, length, field);
 	}
-	if (onNote)
-		onNote(detail::sentence(3, "Parts of the shape are thin: edges are down to ",
-			*std::min_element(field.begin(), field.end()), " mesh units long there, about ",
-			std::llround(expected), " vertices in all."));
+	tell(detail::sentence(3, "Parts of the shape are thin: edges are down to ",
+		*std::min_element(field.begin(), field.end()), " mesh units long there, about ",
+		std::llround(expected), " vertices in all."));
 	return field;
 }
 
@@ -238,12 +250,14 @@ inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Paramete
 		const std::vector<double> length = defaultTargetLength(calm, parameters);
 		const bool isAdaptive = parameters.adaptive && parameters.resampleIterations > 0;
 		if (isAdaptive && own && !thickness.empty()) {
-			std::vector<double> thick = calm.diagonals();
+			std::vector<double> resolvable = thickness, thick = calm.diagonals();
+			for (size_t v = 0; v < resolvable.size(); ++v)
+				if (!isResolvable(calm, *own, parameters.relativeLength * thickness[v], int(v)))
+					resolvable[v] = std::numeric_limits<double>::infinity();
 			for (double& diagonal : thick)
 				diagonal *= neutralLength / parameters.relativeLength;
-			if (const std::optional<SurfaceMesh> sampled = withThinPartsSampled(calm,
-					thicknessToFollow(calm, thickness, parameters.relativeLength), thick,
-					maxVertices, progress.cancelOnly())) {
+			if (const std::optional<SurfaceMesh> sampled = withThinPartsSampled(
+					calm, resolvable, thick, maxVertices, progress.cancelOnly())) {
 				const MeasuredSurface dense(*sampled, progress.cancelOnly());
 				std::vector<std::string> notes;
 				const std::optional<SizingField> field = fieldOfResampling(dense, length,

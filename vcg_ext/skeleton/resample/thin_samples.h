@@ -32,8 +32,8 @@ constexpr double longestOfThickness = 3;
  * @param thickness   of each vertex, mesh units, infinite where the shape is not thin.
  * @param thick       of each component, mesh units: from this thickness on a vertex is not thin.
  * @param maxVertices of the result.
- * @return a compact mesh whose first vertices are the surface's; nothing if no edge is that long,
- *         or if too many vertices would be needed.
+ * @return a compact mesh whose first vertices are the surface's; nothing if hardly any edge is that
+ *         long, or if too many vertices would be needed.
  * @throws Cancelled. Complexity: as withCutEdges().
  */
 inline std::optional<SurfaceMesh> withThinPartsSampled(const MeasuredSurface& surface,
@@ -42,6 +42,7 @@ inline std::optional<SurfaceMesh> withThinPartsSampled(const MeasuredSurface& su
 {
 	constexpr const char* const what = "Measuring the local thickness";
 	constexpr double mostOfLongest = 2;
+	constexpr double fewLong = 0.05; // single long triangles in a dense mesh; elsewhere nine tenths
 	const SurfaceMesh& mesh = surface.mesh();
 	std::vector<double> longest;
 	longest.reserve(thickness.size());
@@ -49,20 +50,22 @@ inline std::optional<SurfaceMesh> withThinPartsSampled(const MeasuredSurface& su
 		longest.push_back(
 			longestOfThickness * std::min(thickness[v], thick[surface.component()[v]]));
 	});
-	bool isAnyLong = false;
 	double needed = mesh.vertexCount();
+	double thinLength = 0, longLength = 0; // of the edges where the shape is thin
 	detail::reportedLoop(mesh.halfEdgeSlots(), progress.cancelOnly(), what, [&](int h) {
 		if (!mesh.isEdge(h))
 			return;
 		const int a = mesh.origin(h), b = mesh.target(h);
-		const double pieces =
-			piecesOfEdge(std::sqrt(mesh.squaredLength(h)), longest[a], longest[b]);
-		isAnyLong =
-			isAnyLong || (pieces > 1 && std::isfinite(std::min(thickness[a], thickness[b])));
+		const double length = std::sqrt(mesh.squaredLength(h));
+		const double pieces = piecesOfEdge(length, longest[a], longest[b]);
+		if (std::isfinite(std::min(thickness[a], thickness[b]))) {
+			thinLength += length;
+			longLength += pieces > 1 ? length : 0;
+		}
 		needed += pieces - 1;
 	});
 	const double longer = std::max(1.0, needed / maxVertices);
-	if (!isAnyLong || longer > mostOfLongest)
+	if (longLength <= fewLong * thinLength || longer > mostOfLongest)
 		return std::nullopt;
 	for (double& length : longest)
 		length *= longer;
