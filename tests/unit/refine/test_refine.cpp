@@ -209,6 +209,21 @@ TEST(Refine, UnfoldsACurveThatDoublesBack)
 	EXPECT_EQ(statistics(refined).terminals, 2);
 }
 
+TEST(Refine, RemovesATipThatLiesOnAnotherBranch)
+{
+	// On the axis of a tube, from its middle on, a second time: to the end, and a quarter of the way.
+	const SurfaceMesh tube = shapes::capsule(4, 0.35, 32).mesh();
+	for (const double to : {0.9, 1.9}) {
+		CurveMaker doubled;
+		doubled.line({-1.9, 0, 0}, {0.5, 0, 0}, 24).line({0.5, 0, 0}, {1.9, 0, 0.01}, 14);
+		doubled.line({0.5, 0, 0}, {to, 0.01, 0}, 7);
+		const CurveSkeleton refined = refine(doubled.in(tube), tube);
+		EXPECT_EQ(checks::skeletonError(refined), "");
+		EXPECT_EQ(statistics(refined).terminals, 2);
+		EXPECT_EQ(statistics(refined).junctions, 0);
+	}
+}
+
 TEST(Refine, SamplesEvenlyAtTheSpacing)
 {
 	const SurfaceMesh mesh = shapes::capsule(3, 0.35, 48).mesh();

@@ -210,7 +210,9 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 			skeleton, surface, cancel); // long edges of a coarse shape's curve may have left it
 		progress.report(double(done) / total, what);
 	};
-	const auto unfold = [&] { skeleton = withoutFolds(std::move(skeleton), surface, cancel); };
+	const auto unfold = [&] {
+		skeleton = withoutDoubledTips(withoutFolds(std::move(skeleton), surface, cancel), cancel);
+	};
 	const auto extend = [&] {
 		measureBranchEnds(skeleton, clearances);
 		extendTips(skeleton, surface, tips, cancel);

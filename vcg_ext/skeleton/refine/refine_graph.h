@@ -10,6 +10,7 @@
 #include "local_scale.h"
 
 #include <skeleton/core/progress.h>
+#include <skeleton/core/segment.h>
 #include <skeleton/graph/prune.h>
 #include <skeleton/graph/skeleton_branches.h>
 #include <skeleton/poles/sizing_field.h>
@@ -19,6 +20,7 @@
 #include <vcg/space/line3.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -590,6 +592,70 @@ inline CurveSkeleton withoutFolds(
 		while (target[t] != t)
 			t = target[t];
 	return mergeNodes(skeleton, target);
+}
+
+/// Whether a branch lies on the one that leaves its first node towards `next`: all its nodes are
+/// nearer to that than a quarter of their radius. Complexity: linear in the branch, and in as much
+/// of the other.
+inline bool liesOn(const CurveSkeleton& skeleton, const std::vector<std::vector<int>>& neighbours,
+	const Branch& branch, int next)
+{
+	constexpr double near = 0.25;
+	std::array<int, 2> edge = {branch.first(), next};
+	for (size_t i = 1; i < branch.nodes.size(); ++i) {
+		const Point3d& p = skeleton.position[branch.nodes[i]];
+		const auto distance = [&](const std::array<int, 2>& to) {
+			return Distance(
+				p, closestOnSegment(skeleton.position[to[0]], skeleton.position[to[1]], p).point);
+		};
+		double nearest = distance(edge);
+		while (neighbours[edge[1]].size() == 2) {
+			const std::vector<int>& ahead = neighbours[edge[1]];
+			const std::array<int, 2> following = {edge[1], ahead[ahead[0] == edge[0]]};
+			const double further = distance(following);
+			if (further > nearest || following[1] == branch.first())
+				break;
+			edge = following;
+			nearest = further;
+		}
+		if (nearest > near * skeleton.radius[branch.nodes[i]])
+			return false;
+	}
+	return true;
+}
+
+/**
+ * Removes terminal branches that lie on another branch of their junction, which are left where a
+ * branch doubled back at the junction. What had merged into them goes to the junction.
+ * @pre radius holds the distances from the surface, or lower bounds. @throws Cancelled
+ */
+inline CurveSkeleton withoutDoubledTips(
+	CurveSkeleton skeleton, const Progress& progress = Progress())
+{
+	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
+	std::vector<int> target(skeleton.position.size());
+	std::iota(target.begin(), target.end(), 0);
+	bool isAny = false;
+	for (size_t tip = 0; tip < neighbours.size(); ++tip) {
+		if (neighbours[tip].size() != 1)
+			continue;
+		progress.check();
+		Branch branch = branchAlong(neighbours, int(tip), neighbours[tip][0]);
+		const int junction = branch.last();
+		if (neighbours[junction].size() < 3)
+			continue;
+		std::reverse(branch.nodes.begin(), branch.nodes.end());
+		const auto isDoubled = [&](int next) {
+			return next != branch.nodes[1] && target[next] == next
+				&& liesOn(skeleton, neighbours, branch, next);
+		};
+		if (std::none_of(neighbours[junction].begin(), neighbours[junction].end(), isDoubled))
+			continue;
+		for (int node : branch.nodes)
+			target[node] = junction;
+		isAny = true;
+	}
+	return isAny ? mergeNodes(skeleton, target) : skeleton;
 }
 
 /**
