@@ -57,14 +57,12 @@ inline std::vector<double> localThickness(const MeasuredSurface& surface, const 
 	return thickness;
 }
 
-/// Whether edges as short as a sizing field says resolve the shape at a vertex. Of needles that are
-/// thinner than shortestLength, more samples show no more.
-/// @param length the field at the vertex, or infinite. @param poles of all vertices.
-inline bool isResolvable(const MeasuredSurface& surface, const PoleSet& poles, double length, int v)
+/// Whether edges may be as short as a sizing field says at a vertex, see shortestLength. Of needles
+/// that are thinner, more samples show no more.
+inline bool isResolvable(const MeasuredSurface& surface, double length, int v)
 {
 	constexpr double rounding = 1 + 1e-9;
-	const double shortest = shortestLength * surface.diagonal(surface.component()[v]);
-	return length > rounding * shortest || poles.radius[v] >= shortest;
+	return length > rounding * shortestLength * surface.diagonal(surface.component()[v]);
 }
 
 /// A mesh that follows the local thickness has at most so many vertices, or as many as an even mesh
@@ -93,9 +91,8 @@ inline Affordable affordable(const SurfaceMesh& mesh)
 /// @param sampled see withThinPartsSampled().
 inline Affordable affordableWithSamples(const SurfaceMesh& mesh, const SurfaceMesh& sampled)
 {
-	constexpr double ofVertex = 100, always = 60000, longest = 1.2;
-	const double ofMesh = std::max(always, ofVertex * mesh.vertexCount());
-	return {std::min(ofMesh, affordable(sampled).vertices), longest};
+	constexpr double ofVertex = 120, longest = 1.2;
+	return {std::min(ofVertex * mesh.vertexCount(), affordable(sampled).vertices), longest};
 }
 
 /**
@@ -103,8 +100,8 @@ inline Affordable affordableWithSamples(const SurfaceMesh& mesh, const SurfaceMe
  * Affordable::longest. Thin is where `field` is finite; regions count by their length,
  * area / field. Complexity: O(F).
  */
-inline double resolvedPart(const MeasuredSurface& surface, const PoleSet& poles,
-	const SizingField& field, const SizingField& raised, double relativeLength, double longest)
+inline double resolvedPart(const MeasuredSurface& surface, const SizingField& field,
+	const SizingField& raised, double relativeLength, double longest)
 {
 	const SurfaceMesh& mesh = surface.mesh();
 	double resolved = 0, all = 0;
@@ -118,7 +115,7 @@ inline double resolvedPart(const MeasuredSurface& surface, const PoleSet& poles,
 			const double length = area / field[v];
 			all += length;
 			if (raised[v] * relativeLength <= longest * field[v]
-				&& isResolvable(surface, poles, field[v], v))
+				&& isResolvable(surface, field[v], v))
 				resolved += length;
 		}
 	}
@@ -158,7 +155,7 @@ inline std::optional<SizingField> fieldOfResampling(const MeasuredSurface& surfa
 	constexpr double minResolved = 0.5, longest = 1; // of what is thin; local thicknesses
 	const SizingField wanted = field;
 	const auto isResolved = [&] {
-		return resolvedPart(surface, *poles, wanted, field, parameters.relativeLength, cost.longest)
+		return resolvedPart(surface, wanted, field, parameters.relativeLength, cost.longest)
 			>= minResolved;
 	};
 	constexpr const char* everywhere =
@@ -252,7 +249,7 @@ inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Paramete
 		if (isAdaptive && own && !thickness.empty()) {
 			std::vector<double> resolvable = thickness, thick = calm.diagonals();
 			for (size_t v = 0; v < resolvable.size(); ++v)
-				if (!isResolvable(calm, *own, parameters.relativeLength * thickness[v], int(v)))
+				if (!isResolvable(calm, parameters.relativeLength * thickness[v], int(v)))
 					resolvable[v] = std::numeric_limits<double>::infinity();
 			for (double& diagonal : thick)
 				diagonal *= neutralLength / parameters.relativeLength;
