@@ -242,7 +242,7 @@ TEST(SizingField, AMeshBeyondTheBudgetResolvesWhatItCanAndSaysWhatItDoesNot)
 	const auto fieldOfNeck = [&](const SurfaceMesh& mesh) {
 		said.clear();
 		return fieldOfResampling(MeasuredSurface(mesh), length, Parameters(), nullptr,
-			affordable(mesh), Progress(), [&](const std::string& text) { said += text + "\n"; });
+			budgetOf(mesh), Progress(), [&](const std::string& text) { said += text + "\n"; });
 	};
 	constexpr int sides = 5; // few vertices, and thirty edges for each
 	for (const auto& [narrow, words] : {std::pair(0.003, "longer there than relative_length"),
@@ -253,7 +253,7 @@ TEST(SizingField, AMeshBeyondTheBudgetResolvesWhatItCanAndSaysWhatItDoesNot)
 		const std::optional<SizingField> field = fieldOfNeck(mesh);
 		EXPECT_NE(said.find(words), std::string::npos) << said;
 		ASSERT_TRUE(field);
-		EXPECT_LE(expectedVertices(surface, length, *field), affordable(mesh).vertices);
+		EXPECT_LE(expectedVertices(surface, length, *field), budgetOf(mesh).vertices);
 		const double shortest = *std::min_element(field->begin(), field->end());
 		EXPECT_GT(shortest, relative * narrow);
 		EXPECT_LT(shortest, 1.5 * narrow);

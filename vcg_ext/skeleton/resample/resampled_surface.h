@@ -66,11 +66,11 @@ inline bool isResolvable(const MeasuredSurface& surface, double length, int v)
 }
 
 /// A mesh that follows the local thickness has at most so many vertices, or as many as an even mesh
-/// needs anyway, and never more than are affordable, see Affordable.
+/// needs anyway, and never more than its VertexBudget allows.
 constexpr double maxVertices = 400000;
 
 /// What following the local thickness may cost, and has to bring.
-struct Affordable
+struct VertexBudget
 {
 	/// The most vertices of the resampled mesh.
 	double vertices;
@@ -78,26 +78,41 @@ struct Affordable
 	double longest;
 };
 
-/// What a mesh gets that shows the thickness at its vertices: a coarse one does not show how thin
-/// the shape is between them. With edges of 1.5 thicknesses there are four around a tube.
-inline Affordable affordable(const SurfaceMesh& mesh)
+/// The budget of a mesh that shows the thickness at its vertices: a coarse one does not show how
+/// thin the shape is between them. With edges of 1.5 thicknesses there are four around a tube.
+inline VertexBudget budgetOf(const SurfaceMesh& mesh)
 {
 	constexpr double ofVertex = 30, longest = 1.5;
 	return {ofVertex * mesh.vertexCount(), longest};
 }
 
-/// What a mesh gets that shows the thickness along its triangles. Less for a small mesh of needles,
-/// which would be resampled for minutes; beyond one thickness tubes hardly have fewer vertices.
+/// The budget of a mesh that shows the thickness along its triangles, bounded by the input's
+/// vertices: a small mesh of needles would be resampled for minutes. Edges longer than one thickness
+/// hardly reduce the vertices of a tube.
 /// @param sampled see withThinPartsSampled().
-inline Affordable affordableWithSamples(const SurfaceMesh& mesh, const SurfaceMesh& sampled)
+inline VertexBudget budgetWithSamples(const SurfaceMesh& mesh, const SurfaceMesh& sampled)
 {
 	constexpr double ofVertex = 120, longest = 1.2;
-	return {std::min(ofVertex * mesh.vertexCount(), affordable(sampled).vertices), longest};
+	return {std::min(ofVertex * mesh.vertexCount(), budgetOf(sampled).vertices), longest};
+}
+
+/// withThinPartsSampled() where edges can be short enough for the thickness.
+/// @param thickness see localThickness(). @throws Cancelled
+inline std::optional<SurfaceMesh> sampledWhereResolvable(const MeasuredSurface& surface,
+	std::vector<double> thickness, const Parameters& parameters, const Progress& progress)
+{
+	for (size_t v = 0; v < thickness.size(); ++v)
+		if (!isResolvable(surface, parameters.relativeLength * thickness[v], int(v)))
+			thickness[v] = std::numeric_limits<double>::infinity();
+	std::vector<double> thick = surface.diagonals();
+	for (double& diagonal : thick)
+		diagonal *= neutralLength / parameters.relativeLength;
+	return withThinPartsSampled(surface, thickness, thick, maxVertices, progress);
 }
 
 /**
  * The part of the thin regions that a raised sizing field still resolves, see isResolvable() and
- * Affordable::longest. Thin is where `field` is finite; regions count by their length,
+ * VertexBudget::longest. Thin is where `field` is finite; regions count by their length,
  * area / field. Complexity: O(F).
  */
 inline double resolvedPart(const MeasuredSurface& surface, const SizingField& field,
@@ -127,19 +142,20 @@ inline double resolvedPart(const MeasuredSurface& surface, const SizingField& fi
  * edges may be up to a local thickness long; where that is not enough, the thinnest parts are
  * resolved less: see coarsenToCost(). No field where most of what is thin would not be resolved
  * then, as with plates, which no number of vertices serves, or with the thinnest needles, nor where
- * an even mesh alone exceeds what is affordable.
+ * an even mesh alone exceeds the budget.
  * @param length of each component, see defaultTargetLength().
- * @param cost   what is affordable.
+ * @param budget see budgetOf() and budgetWithSamples().
  * @param poles  of all vertices, where they are known already; null: they are computed.
  * @param onNote receives what is resolved less; may be empty.
  * @throws Cancelled. Complexity: as medialPoles().
  */
 inline std::optional<SizingField> fieldOfResampling(const MeasuredSurface& surface,
 	const std::vector<double>& length, const Parameters& parameters, const PoleSet* poles,
-	const Affordable& cost, const Progress& progress = Progress(), const NoteCallback& onNote = {})
+	const VertexBudget& budget, const Progress& progress = Progress(),
+	const NoteCallback& onNote = {})
 {
 	const double anyway = expectedVertices(surface, length, SizingField());
-	if (anyway > cost.vertices)
+	if (anyway > budget.vertices)
 		return std::nullopt;
 	PoleSet found;
 	if (!poles) {
@@ -151,11 +167,11 @@ inline std::optional<SizingField> fieldOfResampling(const MeasuredSurface& surfa
 	if (field.empty())
 		return field;
 	double expected = expectedVertices(surface, length, field);
-	const double maximum = std::min(std::max(maxVertices, 1.01 * anyway), cost.vertices);
+	const double maximum = std::min(std::max(maxVertices, 1.01 * anyway), budget.vertices);
 	constexpr double minResolved = 0.5, longest = 1; // of what is thin; local thicknesses
 	const SizingField wanted = field;
 	const auto isResolved = [&] {
-		return resolvedPart(surface, wanted, field, parameters.relativeLength, cost.longest)
+		return resolvedPart(surface, wanted, field, parameters.relativeLength, budget.longest)
 			>= minResolved;
 	};
 	constexpr const char* everywhere =
@@ -166,7 +182,7 @@ inline std::optional<SizingField> fieldOfResampling(const MeasuredSurface& surfa
 	};
 	if (!isResolved()) {
 		tell(detail::sentence(3, "Parts of the shape are thinner than a radius of ",
-				 100 * shortestLength, " % of the diagonal")
+				 100 * shortestLength / parameters.relativeLength, " % of the diagonal")
 			+ everywhere);
 		return std::nullopt;
 	}
@@ -174,8 +190,8 @@ inline std::optional<SizingField> fieldOfResampling(const MeasuredSurface& surfa
 		const std::string tooMany =
 			detail::sentence(3, "Parts of the shape are thin. To resolve them would take ",
 				expected / 1e6, " million vertices, more than the ", maximum / 1e6,
-				cost.vertices < maxVertices ? " million that a mesh so coarse gets"
-											: " million that a mesh gets");
+				budget.vertices < maxVertices ? " million that a mesh so coarse gets"
+											  : " million that a mesh gets");
 		const double minimum = coarsenToCost(field,
 			std::max(1.0, longest / parameters.relativeLength),
 			*std::max_element(length.begin(), length.end()), maximum,
@@ -247,18 +263,12 @@ inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Paramete
 		const std::vector<double> length = defaultTargetLength(calm, parameters);
 		const bool isAdaptive = parameters.adaptive && parameters.resampleIterations > 0;
 		if (isAdaptive && own && !thickness.empty()) {
-			std::vector<double> resolvable = thickness, thick = calm.diagonals();
-			for (size_t v = 0; v < resolvable.size(); ++v)
-				if (!isResolvable(calm, parameters.relativeLength * thickness[v], int(v)))
-					resolvable[v] = std::numeric_limits<double>::infinity();
-			for (double& diagonal : thick)
-				diagonal *= neutralLength / parameters.relativeLength;
-			if (const std::optional<SurfaceMesh> sampled = withThinPartsSampled(
-					calm, resolvable, thick, maxVertices, progress.cancelOnly())) {
+			if (const std::optional<SurfaceMesh> sampled =
+					sampledWhereResolvable(calm, thickness, parameters, progress.cancelOnly())) {
 				const MeasuredSurface dense(*sampled, progress.cancelOnly());
 				std::vector<std::string> notes;
 				const std::optional<SizingField> field = fieldOfResampling(dense, length,
-					parameters, nullptr, affordableWithSamples(calm.mesh(), *sampled),
+					parameters, nullptr, budgetWithSamples(calm.mesh(), *sampled),
 					progress.cancelOnly(), [&](const std::string& note) { notes.push_back(note); });
 				if (field && !field->empty()) {
 					for (const std::string& note : notes)
@@ -271,7 +281,7 @@ inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Paramete
 		}
 		std::optional<SizingField> field = SizingField();
 		if (isAdaptive)
-			field = fieldOfResampling(calm, length, parameters, own, affordable(calm.mesh()),
+			field = fieldOfResampling(calm, length, parameters, own, budgetOf(calm.mesh()),
 				progress.part(from, from + 0.15), onNote);
 		result.isTooThin = !field;
 		return resample(calm, length, parameters.resampleIterations, progress.part(from + 0.15, 1),
