@@ -165,7 +165,8 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 {
 	const char* what = "Refining the skeleton";
 	const Progress cancel = progress.cancelOnly();
-	constexpr double stiffer = 10, referenceSpacing = 0.005;
+	constexpr double stiffer = 10, referenceSpacing = 0.005, coarser = 1.3;
+	constexpr int maxCoarser = 4;
 	// Every third round searches the whole surface; the others track the contacts.
 	constexpr int roundsOfSearch = 3;
 	const double kappa = parameters.smoothing * std::pow(referenceSpacing / parameters.spacing, 4);
@@ -199,13 +200,20 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 		}
 		skeleton = withWholeJunctions(std::move(skeleton), parameters.junctionProminence, cancel);
 		skeleton = evenlySampled(skeleton, surface, parameters.spacing, scale, cancel);
-		// Tips may have been extended to where the shape is far thinner than along the given curve.
-		if (!scale.isUniform()
-			&& double(skeleton.position.size()) > maxNodes(statistics(skeleton).length)) {
-			scale.setMin(std::max(
-				scale.minimum(), minScale(skeleton, surface, scale, parameters.spacing, cancel)));
+		const auto isCrowded = [&] {
+			return !scale.isUniform()
+				&& double(skeleton.position.size()) > maxNodes(statistics(skeleton).length);
+		};
+		const auto sampleFrom = [&](double minimum) {
+			scale.setMin(std::max(scale.minimum(), minimum));
 			skeleton = evenlySampled(skeleton, surface, parameters.spacing, scale, cancel);
-		}
+		};
+		// Tips may have been extended to where the shape is far thinner than along the given curve.
+		if (isCrowded())
+			sampleFrom(minScale(skeleton, surface, scale, parameters.spacing, cancel));
+		// Where straight pieces would leave a needle, it keeps its nodes but for crowded ones.
+		for (int i = 0; i < maxCoarser && isCrowded(); ++i)
+			sampleFrom(coarser * scale.minimum(component.vertices));
 		moveInside(
 			skeleton, surface, cancel); // long edges of a coarse shape's curve may have left it
 		progress.report(double(done) / total, what);
