@@ -95,6 +95,14 @@ inline Soup subdivided(
 	return s;
 }
 
+/// Each triangle in four, so many times, in place.
+inline Soup refined(Soup s, int times)
+{
+	for (int i = 0; i < times; ++i)
+		s = subdivided(s);
+	return s;
+}
+
 /// A subdivided octahedron on a sphere about the origin: 4^(levels + 1) + 2 vertices.
 inline Soup sphere(int levels = 3, double radius = 1)
 {

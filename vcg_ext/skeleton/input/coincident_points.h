@@ -8,30 +8,16 @@
 #define VCG_MCF_COINCIDENT_POINTS_H
 
 #include <skeleton/core/large_arrays.h>
+#include <skeleton/core/point_hash.h>
 #include <skeleton/core/progress.h>
 #include <skeleton/core/ticker.h>
 
 #include <vcg/space/point3.h>
 
 #include <cstdint>
-#include <cstring>
 #include <vector>
 
 namespace vcg::tri::mcf::detail {
-
-/// A 64-bit hash of a point; the same for points that compare equal.
-inline std::uint64_t scattered(const Point3d& p)
-{
-	std::uint64_t hash = 0;
-	for (int axis = 0; axis < 3; ++axis) {
-		const double x = p[axis] + 0.0; // -0 becomes 0
-		std::uint64_t bits;
-		std::memcpy(&bits, &x, sizeof bits);
-		hash = (hash ^ bits) * 0x9E3779B97F4A7C15u;
-		hash ^= hash >> 32;
-	}
-	return hash * 0x9E3779B97F4A7C15u;
-}
 
 /**
  * For each point the first one at exactly the same position.
