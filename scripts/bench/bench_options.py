@@ -18,7 +18,8 @@ import argparse
 from pathlib import Path
 
 JOBS = ("contraction", "whole", "host", "kept")
-STUDIES = ("known-answers", "damage", "resolution", "noise", "invariance", "weights", "trees", "stability")
+STUDIES = ("known-answers", "damage", "resolution", "noise", "invariance", "weights", "trees", "stability",
+           "symmetry")
 
 
 def parse_arguments() -> argparse.Namespace:

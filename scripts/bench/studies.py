@@ -21,6 +21,7 @@ from damage import DAMAGES, damaged
 from meshes import read_mesh, subdivided, write_mesh
 from quality import Shape, measure
 from stability import NEAR, matched, variants
+from symmetry import symmetries_of, without_image
 from truth import nearest_on_edges, read_truth, score
 
 SPACING = 0.001  # of the diagonal, at which skeletons are compared
@@ -251,9 +252,24 @@ def stability(bench: Bench, mesh: Path) -> str:
                    ", ".join(f"{count} ({value:.2f})" for count, value in others) or "-"]])
 
 
+def symmetry(bench: Bench, mesh: Path) -> str:
+    """Tips whose image under a symmetry of a shape of scripts/generate_trees.py is no tip."""
+    head = ["mesh", "symmetries", "tips", "false", "without image", "components / cycles / tips / junctions"]
+    file = mesh.with_suffix(".npz")
+    if not file.is_file():
+        return table(head, [])
+    truth, run = read_truth(file), bench.run(mesh)
+    maps = symmetries_of(np.load(file)["nodes"])
+    found = score(truth, run.curve)
+    tips = run.curve.points[run.curve.degree == 1]
+    return table(head, [[
+        mesh.stem, str(len(maps)), f"{len(found.tips_found)} of {len(truth.tips)}", str(found.tips_false),
+        str(len(without_image(tips, maps, NEAR * diagonal(read_mesh(mesh)[0])))), run.graph()]])
+
+
 STUDIES = {"known answers": known, "damage": damage, "resolution": resolution, "noise": noise,
            "invariance": invariance, "weights": weights, "trees": trees,
-           "stability": stability}
+           "stability": stability, "symmetry": symmetry}
 
 
 def study_table(name: str, program: Path, meshes: list[Path], folder: Path) -> str:

@@ -234,6 +234,34 @@ def creature(seed: int) -> Centreline:
     return line
 
 
+def star(seed: int) -> Centreline:
+    """Two to eight like arms around a ball, each bent and half of them forked; at odd seeds all bent to one side.
+
+    Then the shape has rotations but no mirror plane through its axis, which is z.
+    """
+    rng = np.random.default_rng(seed)
+    line = Centreline()
+    arms, hub = 2 + seed % 7, rng.uniform(0.6, 1.2)
+    centre = line.add(np.zeros(3), hub)
+    thick = hub * min(0.3, 0.5 * np.sin(np.pi / arms))
+    steps = int(rng.integers(2, 4))
+    away = hub * np.cumsum(rng.uniform(0.8, 1.4, steps + 1))
+    up, aside = rng.uniform(-0.5, 0.5, steps + 1), rng.uniform(0.15, 0.5) * (seed % 2)
+    fork = rng.random() < 0.5
+    for k in range(arms):
+        at = centre
+        for i in range(steps + 1):
+            angle = 2 * np.pi * k / arms + aside * i / arms
+            radius = thick * (1 - 0.5 * i / (steps + 1))
+            place = np.array([away[i] * np.cos(angle), away[i] * np.sin(angle), up[i] * hub])
+            if fork and i == steps:
+                for sign in (-1.0, 1.0):
+                    line.add(place + np.array([0.0, 0.0, 2.5 * sign * radius]), 0.7 * radius, at)
+            else:
+                at = line.add(place, radius, at)
+    return line
+
+
 def surface_of(line: Centreline, sides: int = 16) -> tuple[Array, Array, int]:
     """The union of the round cones: vertices, faces, genus. Needs manifold3d."""
     from manifold3d import Manifold, OpType
@@ -297,4 +325,5 @@ FAMILIES: dict[str, Callable[[int], Centreline]] = {
     "arterial": lambda seed: arterial(seed),
     "lattice": lambda seed: lattice(2 + seed % 3),
     "creature": lambda seed: creature(seed),
+    "star": lambda seed: star(seed),
 }
