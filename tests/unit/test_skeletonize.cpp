@@ -133,6 +133,43 @@ TEST(Skeletonize, AMirroredShapeHasTheMirroredSkeleton)
 	}
 }
 
+TEST(Skeletonize, ASymmetricShapeHasNoBranchWithoutItsImage)
+{
+	const auto about = [](double x, double y, double z) {
+		return shapes::moved(
+			shapes::refined(shapes::box(x, y, z), 4), Point3d(-x / 2, -y / 2, -z / 2));
+	};
+	const std::vector<shapes::Soup> bodies = {
+		about(4, 3, 0.5), about(6, 1, 0.3), about(5, 2, 0.5), about(2, 1, 0.5),
+		shapes::jittered(about(4, 3, 0.5), 0.005), // a thousandth of its diagonal
+	};
+	for (const shapes::Soup& soup : bodies) {
+		vcg::Box3d box;
+		for (const Point3d& p : soup.points)
+			box.Add(p);
+		Parameters parameters;
+		parameters.targetLength = 0.008;
+		const CurveSkeleton curve = run(soup, parameters).curve;
+		const std::vector<std::vector<int>> neighbours = curve.neighbours();
+		std::vector<Point3d> tips;
+		for (size_t v = 0; v < neighbours.size(); ++v)
+			if (neighbours[v].size() == 1)
+				tips.push_back(curve.position[v]);
+		EXPECT_GE(tips.size(), 2u);
+		for (const Point3d& tip : tips)
+			for (int axis = 0; axis < 3; ++axis) {
+				Point3d image = tip;
+				image[axis] = -image[axis];
+				EXPECT_TRUE(std::any_of(tips.begin(), tips.end(),
+					[&](const Point3d& other) {
+						return Distance(image, other) < 0.02 * box.Diag();
+					}))
+					<< tips.size() << " tips, axis " << axis << ", box of " << box.DimX() << " x "
+					<< box.DimY() << " x " << box.DimZ();
+			}
+	}
+}
+
 TEST(Skeletonize, ReadsEveryParameter)
 {
 	const shapes::Soup soup = shapes::fromFile("animal450");

@@ -12,6 +12,7 @@
 #include "refine_check.h"
 #include "refine_features.h"
 #include "refine_graph.h"
+#include "refine_symmetry.h"
 #include "refine_tips.h"
 
 #include <skeleton/collapse/curve_inside.h>
@@ -153,6 +154,32 @@ inline double minScale(const CurveSkeleton& curve, const ClosestSurface& closest
 	return high;
 }
 
+/// kappa for the spacing of the nodes, see RefineParameters::smoothing.
+inline double kappaOf(const RefineParameters& parameters)
+{
+	constexpr double referenceSpacing = 0.005;
+	return parameters.smoothing * std::pow(referenceSpacing / parameters.spacing, 4);
+}
+
+/// Rounds of centring. @param kappa, ascend  see centre() and findContacts(). @throws Cancelled
+inline void centreRounds(CurveSkeleton& skeleton, const ClosestSurface& surface, int rounds,
+	double kappa, bool ascend, const LocalScale& scale, const Progress& progress)
+{
+	// Every third round searches the whole surface; the others track the contacts.
+	constexpr int roundsOfSearch = 3;
+	std::vector<Contact> contacts;
+	for (int i = 0; i < rounds; ++i) {
+		const Progress round =
+			progress.part(double(i) / rounds, double(i + 1) / rounds).cancelOnly();
+		if (i % roundsOfSearch == 0)
+			contacts = findContacts(skeleton, surface, ascend, round);
+		else
+			followContacts(contacts, skeleton, surface, round);
+		centre(skeleton, contacts, surface, kappa, scale, round);
+		progress.report(double(i + 1) / rounds, "Refining the skeleton");
+	}
+}
+
 /**
  * Refines the skeleton of one component, in coordinates where the component's diagonal is 1. Stops
  * early where the curve exceeds CurveBounds, or where nodes are outside and cannot be moved in by
@@ -165,27 +192,18 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 {
 	const char* what = "Refining the skeleton";
 	const Progress cancel = progress.cancelOnly();
-	constexpr double stiffer = 10, referenceSpacing = 0.005, coarser = 1.3;
+	constexpr double stiffer = 10, coarser = 1.3;
 	constexpr int maxCoarser = 4;
-	// Every third round searches the whole surface; the others track the contacts.
-	constexpr int roundsOfSearch = 3;
-	const double kappa = parameters.smoothing * std::pow(referenceSpacing / parameters.spacing, 4);
+	const double kappa = kappaOf(parameters);
 	const FeatureRule features = {
 		parameters.featureGain, parameters.featureHeight, parameters.spacing, scale};
 	const TipRule tips = {parameters.spacing, parameters.tipGain, parameters.tipRadius, scale};
 	const int total = parameters.stiffRounds + parameters.rounds + parameters.lastRounds + 2;
 	int done = 0;
-	const auto centreRounds = [&](int rounds, double weight, bool ascend) {
-		std::vector<Contact> contacts;
-		for (int i = 0; i < rounds; ++i) {
-			if (i % roundsOfSearch == 0)
-				contacts = findContacts(skeleton, surface, ascend,
-					progress.part(double(done) / total, double(done) / total));
-			else
-				followContacts(contacts, skeleton, surface, cancel);
-			centre(skeleton, contacts, surface, weight, scale, cancel);
-			progress.report(double(++done) / total, what);
-		}
+	const auto recentre = [&](int rounds, double weight, bool ascend) {
+		centreRounds(skeleton, surface, rounds, weight, ascend, scale,
+			progress.part(double(done) / total, double(done + rounds) / total));
+		done += rounds;
 	};
 	const CurveBounds bounds(skeleton, parameters.spacing * scale.minimum(component.vertices));
 	KnownClearances clearances(surface, cancel);
@@ -248,16 +266,16 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 	constexpr double hopeless = 0;
 	const std::function<void()> steps[] = {
 		[&] { tidy(hopeless, 0); },
-		[&] { centreRounds(parameters.stiffRounds, stiffer * kappa, false); },
+		[&] { recentre(parameters.stiffRounds, stiffer * kappa, false); },
 		extend,
 		grow,
 		unfold,
 		[&] { tidy(parameters.spurProminence, parameters.tipDistinctness); },
-		[&] { centreRounds(parameters.rounds, kappa, true); },
+		[&] { recentre(parameters.rounds, kappa, true); },
 		extend,
 		unfold,
 		[&] { tidy(parameters.spurProminence, parameters.tipDistinctness); },
-		[&] { centreRounds(parameters.lastRounds, kappa, true); },
+		[&] { recentre(parameters.lastRounds, kappa, true); },
 		unfold,
 		[&] { tidy(parameters.spurProminence, parameters.tipDistinctness); },
 	};
@@ -273,6 +291,34 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 			return skeleton;
 		step();
 	}
+	return withoutBluntEnds(skeleton, clearances, parameters.tipGain);
+}
+
+/**
+ * A refined curve with the branches that it lacks if the shape is symmetric, see makeSymmetric(),
+ * centred once more; nothing if it lacks none, or if the centring fails. @throws Cancelled
+ */
+inline std::optional<CurveSkeleton> madeSymmetric(CurveSkeleton skeleton,
+	const ClosestSurface& surface, const SurfaceComponent& component, const LocalScale& scale,
+	const RefineParameters& parameters, const Progress& cancel)
+{
+	KnownClearances clearances(surface, cancel);
+	if (!makeSymmetric(skeleton, component, surface, clearances, cancel))
+		return std::nullopt;
+	const auto sample = [&] {
+		skeleton = evenlySampled(skeleton, surface, parameters.spacing, scale, cancel);
+	};
+	skeleton = withWholeJunctions(std::move(skeleton), parameters.junctionProminence, cancel);
+	sample();
+	try {
+		centreRounds(
+			skeleton, surface, parameters.lastRounds, kappaOf(parameters), true, scale, cancel);
+	}
+	catch (const SolverError&) {
+		return std::nullopt;
+	}
+	sample();
+	moveInside(skeleton, surface, cancel);
 	return withoutBluntEnds(skeleton, clearances, parameters.tipGain);
 }
 
@@ -532,8 +578,13 @@ inline Defect refineChecked(CurveSkeleton& refined, ClosestSurface& surface,
 					curve = std::move(*back);
 					defect = Defect::None;
 				}
-			if (defect == Defect::None)
+			if (defect == Defect::None) {
+				if (auto symmetric = madeSymmetric(curve, surface, component, own, parameters, end);
+					symmetric
+					&& defectOf(*symmetric, unrefined, spacing, inside, end) == Defect::None)
+					curve = std::move(*symmetric);
 				refined = std::move(curve);
+			}
 			return defect;
 		}
 		catch (const SolverError&) {
@@ -555,8 +606,8 @@ inline Defect refineChecked(CurveSkeleton& refined, ClosestSurface& surface,
 /**
  * Refines a curve skeleton within the surface that it was extracted from: removes spurs, merges
  * split junctions, samples the branches evenly, centres the nodes in the maximal balls of the
- * surface while it smooths the branches, extends the tips to the ends of their features, and grows
- * branches into limbs that the curve lacks.
+ * surface while it smooths the branches, extends the tips to the ends of their features, grows
+ * branches into limbs that the curve lacks, and gives the branches of a symmetric shape their images.
  *
  * Nodes that were outside are moved in where possible. Each component's result is checked: all
  * nodes and edges are inside, the numbers of components and cycles are unchanged, and it is within

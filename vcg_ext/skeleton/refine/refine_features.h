@@ -84,36 +84,44 @@ inline int nodeBelow(const CurveSkeleton& skeleton, const SurfaceComponent& surf
 constexpr double lobeHeight = 5;
 
 /**
+ * By how much a terminal branch that stays within a plate is shorter than the minimum height of so
+ * many lobes: below 0; else 0. A plate that stands on a thicker body, as an ear does, is a limb.
+ * @pre the radius of junctions and tips is their distance from the surface.
+ */
+inline double lackOfLobe(const CurveSkeleton& skeleton, const Branch& fromJunction, double lobes,
+	const ClosestSurface& surface)
+{
+	constexpr double mostlyFlat = 0.65, asThin = 0.5;
+	const double radius = skeleton.radius[fromJunction.first()];
+	const double excess = branchLength(skeleton, fromJunction) - lobes * lobeHeight * radius;
+	if (excess >= 0 || skeleton.radius[fromJunction.last()] < asThin * radius)
+		return 0;
+	int flat = 0;
+	for (size_t i = 1; i < fromJunction.nodes.size(); ++i) {
+		const Point3d& x = skeleton.position[fromJunction.nodes[i]];
+		const ClosestSurface::Hit hit = surface.closest(x);
+		if (hit.distance <= 0)
+			continue;
+		const ClosestSurface::Ball ball = medialBall(surface, x, hit);
+		const Point3d direction = x - skeleton.position[fromJunction.nodes[i - 1]];
+		flat += isMedial(ball) && widePlaces(surface, x, hit, ball.contact, direction).size() == 2;
+	}
+	return flat >= mostlyFlat * double(fromJunction.nodes.size() - 1) ? excess : 0;
+}
+
+/**
  * Removes terminal branches that stay within a plate and are shorter than twice the minimum height
  * of a lobe, or than that height if there is no other tip; the shortest first. Where the flow
  * leaves such stubs is chance, and next to one growFeatures() would take the rim for several lobes.
- * A plate that stands on a thicker body, as an ear does, is a limb and keeps its branch.
  * @pre the radius of junctions and tips is their distance from the surface. @throws Cancelled
  */
 inline CurveSkeleton withoutStubsInPlates(const CurveSkeleton& skeleton,
 	const ClosestSurface& surface, const Progress& progress = Progress())
 {
-	constexpr double mostlyFlat = 0.65, asThin = 0.5;
 	return withoutTerminalBranches(
 		skeleton, 0,
 		[&](const CurveSkeleton& s, const Branch& fromJunction, const std::set<int>& tips) {
-			const double radius = s.radius[fromJunction.first()];
-			const double lobes = tips.size() > 1 ? 2 : 1;
-			const double excess = branchLength(s, fromJunction) - lobes * lobeHeight * radius;
-			if (excess >= 0 || s.radius[fromJunction.last()] < asThin * radius)
-				return 0.0;
-			int flat = 0;
-			for (size_t i = 1; i < fromJunction.nodes.size(); ++i) {
-				const Point3d& x = s.position[fromJunction.nodes[i]];
-				const ClosestSurface::Hit hit = surface.closest(x);
-				if (hit.distance <= 0)
-					continue;
-				const ClosestSurface::Ball ball = medialBall(surface, x, hit);
-				const Point3d direction = x - s.position[fromJunction.nodes[i - 1]];
-				flat += isMedial(ball)
-					&& widePlaces(surface, x, hit, ball.contact, direction).size() == 2;
-			}
-			return flat >= mostlyFlat * double(fromJunction.nodes.size() - 1) ? excess : 0.0;
+			return lackOfLobe(s, fromJunction, tips.size() > 1 ? 2 : 1, surface);
 		},
 		progress);
 }

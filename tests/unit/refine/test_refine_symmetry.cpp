@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// Curves in symmetric shapes that lack a branch on one side, or have one too many there.
+
+#include "shapes.h"
+
+#include <skeleton/refine/refine_symmetry.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+using namespace vcg::tri::mcf;
+using vcg::Point3d;
+
+namespace {
+
+/// A shape with a diagonal of about 1, and a curve in it.
+class CurveInShape
+{
+public:
+	explicit CurveInShape(const shapes::Soup& soup) :
+			mesh(soup.mesh()), vertices(numbers(mesh.position.size())),
+			closest(mesh, vertices, 0.01)
+	{
+	}
+
+	/// A straight line in steps of 0.005.
+	CurveInShape& line(const Point3d& a, const Point3d& b)
+	{
+		const int pieces = std::max(1, int(Distance(a, b) / 0.005));
+		int last = -1;
+		for (int i = 0; i <= pieces; ++i) {
+			const Point3d p = a + (b - a) * (double(i) / pieces);
+			int v = 0;
+			while (v < int(curve.position.size()) && Distance(curve.position[size_t(v)], p) > 1e-9)
+				++v;
+			if (v == int(curve.position.size())) {
+				curve.position.push_back(p);
+				curve.radius.push_back(0);
+			}
+			if (last >= 0)
+				curve.edges.push_back({std::min(last, v), std::max(last, v)});
+			last = v;
+		}
+		std::sort(curve.edges.begin(), curve.edges.end());
+		return *this;
+	}
+
+	bool makeSymmetric()
+	{
+		refining::KnownClearances clearances(closest);
+		const refining::SurfaceComponent component = {mesh, vertices, vertices};
+		return refining::makeSymmetric(curve, component, closest, clearances, Progress());
+	}
+
+	std::vector<Point3d> tips() const
+	{
+		std::vector<Point3d> places;
+		for (int tip : refining::tipsOf(curve.neighbours()))
+			places.push_back(curve.position[size_t(tip)]);
+		return places;
+	}
+
+	CurveSkeleton curve;
+
+private:
+	static std::vector<int> numbers(size_t count)
+	{
+		std::vector<int> all(count);
+		std::iota(all.begin(), all.end(), 0);
+		return all;
+	}
+
+	SurfaceMesh mesh;
+	std::vector<int> vertices;
+	ClosestSurface closest;
+};
+
+/// Whether each tip has one at its image, within a hundredth of the diagonal.
+template <class Map>
+bool areSymmetric(const std::vector<Point3d>& tips, const Map& map)
+{
+	return std::all_of(tips.begin(), tips.end(), [&](const Point3d& tip) {
+		return std::any_of(tips.begin(), tips.end(),
+			[&](const Point3d& other) { return Distance(map(tip), other) < 0.01; });
+	});
+}
+
+/// 0.8 x 0.6 x 0.1, about the origin.
+shapes::Soup flatBox()
+{
+	return shapes::moved(
+		shapes::refined(shapes::box(0.8, 0.6, 0.1), 5), Point3d(-0.4, -0.3, -0.05));
+}
+
+const auto alongX = [](const Point3d& p) { return Point3d(-p[0], p[1], p[2]); };
+const auto alongY = [](const Point3d& p) { return Point3d(p[0], -p[1], p[2]); };
+
+} // namespace
+
+TEST(RefineSymmetry, AMissingCornerIsAdded)
+{
+	CurveInShape scene(flatBox());
+	const Point3d left(-0.1, 0, 0), right(0.1, 0, 0);
+	scene.line(left, right).line(left, {-0.35, 0.25, 0});
+	scene.line(left, {-0.35, -0.25, 0}).line(right, {0.35, 0.25, 0});
+	ASSERT_EQ(scene.tips().size(), 3u);
+	EXPECT_TRUE(scene.makeSymmetric());
+	EXPECT_EQ(scene.tips().size(), 4u);
+	EXPECT_TRUE(areSymmetric(scene.tips(), alongX) && areSymmetric(scene.tips(), alongY));
+	const SkeletonStatistics now = statistics(scene.curve);
+	EXPECT_EQ(now.components, 1);
+	EXPECT_EQ(now.cycles, 0);
+	EXPECT_FALSE(scene.makeSymmetric());
+}
+
+TEST(RefineSymmetry, AStubInThePlateGoesWhereTheOthersAreMore)
+{
+	CurveInShape scene(flatBox());
+	const Point3d left(-0.1, 0, 0), right(0.1, 0, 0);
+	scene.line(left, right).line(left, {-0.35, 0.25, 0}).line(left, {-0.35, -0.25, 0});
+	scene.line(right, {0.35, 0.25, 0}).line(right, {0.35, -0.25, 0}).line(right, {0.35, 0, 0});
+	EXPECT_TRUE(scene.makeSymmetric());
+	EXPECT_EQ(scene.tips().size(), 4u);
+	EXPECT_TRUE(areSymmetric(scene.tips(), alongX));
+}
+
+TEST(RefineSymmetry, ALimbThatOneSideLacks)
+{
+	// A body with an arm to each side, thick enough to be no plate.
+	const shapes::Soup body = shapes::scaled(
+		shapes::moved(
+			shapes::refined(
+				shapes::cells(7, 2, 2, [](int x, int y, int) { return x == 3 || y == 1; }), 3),
+			Point3d(-3.5, -1, -1)),
+		0.13);
+	CurveInShape scene(body);
+	const double arm = 0.13 * 0.5;
+	scene.line({0, -0.06, 0}, {0, arm, 0}).line({0, arm, 0}, {0.38, arm, 0});
+	ASSERT_EQ(scene.tips().size(), 2u);
+	EXPECT_TRUE(scene.makeSymmetric());
+	EXPECT_TRUE(areSymmetric(scene.tips(), alongX));
+	EXPECT_EQ(scene.tips().size(), 3u);
+}
+
+TEST(RefineSymmetry, WhatIsSymmetricOrBelongsToNoSymmetricShapeStays)
+{
+	CurveInShape whole(flatBox());
+	whole.line({-0.3, 0, 0}, {0.3, 0, 0});
+	EXPECT_FALSE(whole.makeSymmetric());
+	// One corner is pulled out.
+	CurveInShape odd(shapes::transformed(flatBox(), [](const Point3d& p) {
+		const double far = Distance(p, Point3d(0.4, 0.3, 0));
+		return p + Point3d(1, 1, 0) * (0.1 * std::exp(-far * far / 0.01));
+	}));
+	odd.line({-0.3, 0, 0}, {0.1, 0, 0}).line({0.1, 0, 0}, {0.4, 0.3, 0});
+	const size_t before = odd.curve.position.size();
+	EXPECT_FALSE(odd.makeSymmetric());
+	EXPECT_EQ(odd.curve.position.size(), before);
+}

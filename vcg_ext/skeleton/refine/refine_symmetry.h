@@ -1,0 +1,328 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief Refinement, the symmetry: a symmetric shape has no branch without its images.
+
+#ifndef VCG_MCF_REFINE_SYMMETRY_H
+#define VCG_MCF_REFINE_SYMMETRY_H
+
+#include "holding_balls.h"
+#include "refine_features.h"
+#include "refine_graph.h"
+#include "refine_peaks.h"
+
+#include <skeleton/core/progress.h>
+#include <skeleton/graph/curve_skeleton.h>
+#include <skeleton/graph/skeleton_branches.h>
+#include <skeleton/spatial/closest_surface.h>
+#include <skeleton/spatial/point_tree.h>
+#include <skeleton/spatial/symmetries.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace vcg::tri::mcf::refining {
+
+using tri::mcf::detail::mapped;
+
+/// The tips of a skeleton, ascending.
+inline std::vector<int> tipsOf(const std::vector<std::vector<int>>& neighbours)
+{
+	std::vector<int> tips;
+	for (size_t v = 0; v < neighbours.size(); ++v)
+		if (neighbours[v].size() == 1)
+			tips.push_back(int(v));
+	return tips;
+}
+
+/**
+ * Whether the surface is symmetric as far as a curve can tell: on each branch nine tenths of the
+ * nodes have images that are about as far from the surface as they are.
+ * @throws Cancelled. Complexity: a closest point for each node.
+ */
+inline bool isSymmetricAlong(const CurveSkeleton& skeleton, const ClosestSurface& surface,
+	KnownClearances& clearances, const Eigen::Isometry3d& map, const Progress& progress)
+{
+	constexpr double ofRadius = 0.15, rounding = 2e-3, atMost = 0.5, most = 0.9;
+	for (const Branch& branch : skeletonBranches(skeleton)) {
+		size_t alike = 0;
+		for (size_t i = 0; i < branch.nodes.size(); ++i) {
+			if (i % nodesPerCheck == 0)
+				progress.check();
+			const Point3d& x = skeleton.position[branch.nodes[i]];
+			const double radius = clearances.at(x);
+			const double there = surface.clearance(mapped(map, x), progress);
+			alike += std::abs(there - radius)
+				<= std::max(ofRadius * radius, std::min(rounding, atMost * radius));
+		}
+		if (double(alike) < most * double(branch.nodes.size()))
+			return false;
+	}
+	return true;
+}
+
+/// Sets the radius of each node to its distance from the surface; 0 outside. @throws Cancelled
+inline void measureAll(CurveSkeleton& skeleton, KnownClearances& clearances)
+{
+	for (size_t v = 0; v < skeleton.position.size(); ++v)
+		skeleton.radius[v] = std::max(clearances.at(skeleton.position[v]), 0.0);
+}
+
+/// The images of a tip under the maps of a symmetric shape.
+struct TipOrbit
+{
+	struct Image
+	{
+		const Eigen::Isometry3d* map; ///< of the tip to the image
+		Point3d place;
+		int tip; ///< that is there; -1 if none is
+	};
+
+	int tip;
+	double near;               ///< distance within which a tip is at an image
+	std::vector<Image> others; ///< different places only
+
+	size_t size() const { return others.size() + 1; }
+	size_t present() const
+	{
+		return 1 + size_t(std::count_if(others.begin(), others.end(), [](const Image& image) {
+			return image.tip >= 0;
+		}));
+	}
+	bool isComplete() const { return present() == size(); }
+};
+
+/**
+ * The orbits of a skeleton's tips. A tip is at an image if it is the nearest one, in the same limb,
+ * and if the tip whose image it is is the nearest to where it comes from. Where in a limb its tip
+ * lies is less sure than that the limb is there: two places are in the same one if they are nearer
+ * than the radius of the tip or 1 % of the diagonal, or in view of each other and nearer than 0.3
+ * of the length of the branch, bounded by 2 and 8 % of the diagonal.
+ * @pre the radius of tips is their distance from the surface. @throws Cancelled
+ * Complexity: O(M T (M + log T)) for T tips and M maps.
+ */
+inline std::vector<TipOrbit> tipOrbits(const CurveSkeleton& skeleton, const ClosestSurface& surface,
+	KnownClearances& clearances, const std::vector<Eigen::Isometry3d>& maps)
+{
+	constexpr double always = 0.01, least = 0.02, most = 0.08; // diagonals
+	constexpr double ofLength = 0.3;
+	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
+	const std::vector<int> tips = tipsOf(neighbours);
+	std::vector<Point3d> places;
+	for (int tip : tips)
+		places.push_back(skeleton.position[size_t(tip)]);
+	const PointTree tree(places);
+	const auto nearest = [&](const Point3d& p) { return tips[size_t(tree.nearest(p))]; };
+	std::vector<TipOrbit> orbits;
+	for (int tip : tips) {
+		const Point3d& own = skeleton.position[size_t(tip)];
+		const double radius = skeleton.radius[size_t(tip)];
+		const double length =
+			branchLength(skeleton, branchAlong(neighbours, tip, neighbours[size_t(tip)][0]));
+		const double near = std::max(radius, std::clamp(ofLength * length, least, most));
+		const auto areInOneLimb = [&](const Point3d& p, const Point3d& q) {
+			const double apart = Distance(p, q);
+			return apart <= std::max(radius, always)
+				|| (apart <= near
+					&& isSegmentInside(surface, p, clearances.at(p), q, clearances.at(q)));
+		};
+		TipOrbit orbit {tip, near, {}};
+		for (const Eigen::Isometry3d& map : maps) {
+			const Point3d place = mapped(map, own);
+			const auto isThere = [&](const TipOrbit::Image& known) {
+				return areInOneLimb(known.place, place);
+			};
+			if (areInOneLimb(place, own)
+				|| std::any_of(orbit.others.begin(), orbit.others.end(), isThere))
+				continue;
+			const int there = nearest(place);
+			const Point3d& found = skeleton.position[size_t(there)];
+			const bool isImage =
+				areInOneLimb(found, place) && nearest(mapped(map.inverse(), found)) == tip;
+			orbit.others.push_back({&map, place, isImage ? there : -1});
+		}
+		orbits.push_back(std::move(orbit));
+	}
+	return orbits;
+}
+
+/**
+ * Adds the image of a terminal branch: from the image of its tip to the first ball of the skeleton
+ * that is met, or to the nearest node in view.
+ * @param neighbours  of the nodes that the branch has.
+ * @param balls       of all nodes; takes in the new ones.
+ * @pre the radii are the distances from the surface. @post the same.
+ * @return whether it was added: not where the image of the tip is in one of the balls, or where the
+ *         image leaves the surface. @throws Cancelled
+ */
+inline bool addImage(CurveSkeleton& skeleton, const std::vector<std::vector<int>>& neighbours,
+	HoldingBalls& balls, int tip, const Eigen::Isometry3d& map, const ClosestSurface& surface,
+	KnownClearances& clearances)
+{
+	BallChain image;
+	int joint = -1;
+	for (int v : branchAlong(neighbours, tip, neighbours[size_t(tip)][0]).nodes) {
+		const Point3d p = mapped(map, skeleton.position[size_t(v)]);
+		const double radius = clearances.at(p);
+		joint = balls.deepest(p);
+		if (joint >= 0 || radius <= 0)
+			break;
+		image.points.push_back(p);
+		image.radii.push_back(radius);
+	}
+	if (image.points.empty())
+		return false;
+	if (joint < 0)
+		joint = nearestInView(skeleton, surface, image.points.back(), image.radii.back(),
+			std::numeric_limits<double>::infinity());
+	if (joint < 0)
+		return false;
+	image.points.push_back(skeleton.position[size_t(joint)]);
+	image.radii.push_back(skeleton.radius[size_t(joint)]);
+	for (size_t i = 1; i < image.points.size(); ++i)
+		if (!isSegmentInside(
+				surface, image.points[i - 1], image.radii[i - 1], image.points[i], image.radii[i]))
+			return false;
+	int last = joint;
+	for (size_t i = image.points.size() - 1; i-- > 0;) {
+		const int next = int(skeleton.position.size());
+		skeleton.position.push_back(image.points[i]);
+		skeleton.radius.push_back(image.radii[i]);
+		skeleton.edges.push_back({last, next});
+		last = next;
+	}
+	balls.addNew();
+	return true;
+}
+
+/**
+ * Adds the images of the terminal branches that are there for at least a half, of those first of
+ * which the most are there. @return whether any was added. @throws Cancelled
+ * @pre the radii are the distances from the surface. @post the same.
+ */
+inline bool addImages(CurveSkeleton& skeleton, const std::vector<TipOrbit>& orbits,
+	const ClosestSurface& surface, KnownClearances& clearances)
+{
+	const auto isToBeCompleted = [](const TipOrbit& orbit) {
+		return !orbit.isComplete() && 2 * orbit.present() >= orbit.size();
+	};
+	size_t most = 0;
+	for (const TipOrbit& orbit : orbits)
+		if (isToBeCompleted(orbit))
+			most = std::max(most, orbit.present());
+	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
+	HoldingBalls balls(skeleton);
+	std::vector<Point3d> added;
+	for (const TipOrbit& orbit : orbits) {
+		if (!isToBeCompleted(orbit) || orbit.present() < most)
+			continue;
+		for (const TipOrbit::Image& image : orbit.others) {
+			const auto isThere = [&](const Point3d& tip) {
+				return Distance(tip, image.place) <= orbit.near;
+			};
+			if (image.tip < 0 && std::none_of(added.begin(), added.end(), isThere)
+				&& addImage(
+					skeleton, neighbours, balls, orbit.tip, *image.map, surface, clearances))
+				added.push_back(image.place);
+		}
+	}
+	std::sort(skeleton.edges.begin(), skeleton.edges.end());
+	return !added.empty();
+}
+
+/**
+ * Removes what is chance beside a branch that is there for at least a half of its images: branches
+ * of which less than a half are there, if they are shorter than three radii of the ball at their
+ * junction, and stubs in plates, see lackOfLobe(), of which no more than a half are there. The
+ * shortest go first.
+ * @return whether any was removed.
+ * @pre the radii are the distances from the surface. @throws Cancelled
+ */
+inline bool removeStubs(CurveSkeleton& skeleton, const std::vector<TipOrbit>& orbits,
+	const ClosestSurface& surface, const Progress& progress)
+{
+	constexpr double longest = 3; // radii
+	size_t most = 0;
+	for (const TipOrbit& orbit : orbits)
+		if (2 * orbit.present() >= orbit.size())
+			most = std::max(most, orbit.present());
+	enum Share : char { Most, Half, Few };
+	std::vector<Share> share(skeleton.position.size(), Most);
+	for (const TipOrbit& orbit : orbits)
+		if (orbit.present() < most && 2 * orbit.present() <= orbit.size())
+			share[size_t(orbit.tip)] = 2 * orbit.present() == orbit.size() ? Half : Few;
+	CurveSkeleton fewer = withoutTerminalBranches(
+		skeleton, 0,
+		[&](const CurveSkeleton& s, const Branch& fromJunction) {
+			const Share own = share[size_t(fromJunction.last())];
+			if (own == Most)
+				return 0.0;
+			const double excess =
+				branchLength(s, fromJunction) - longest * s.radius[size_t(fromJunction.first())];
+			return own == Few && excess < 0 ? excess : lackOfLobe(s, fromJunction, 2, surface);
+		},
+		progress);
+	if (fewer.position.size() == skeleton.position.size())
+		return false;
+	skeleton = std::move(fewer);
+	return true;
+}
+
+/**
+ * Gives the branches of a symmetric shape their images. Where the flow is undecided, as before the
+ * corners of a box or a blunt limb, one side may have a branch and the other none. Of a branch that
+ * is there for at least a half of its images, the others are added; short branches that are there
+ * for less go, see removeStubs(). A curve all of whose tips have their images is left as it is.
+ * @return whether fewer tips lack images now, and none do if there are fewer tips; the radii are
+ *         the distances from the surface then. Else nothing has changed but radii.
+ * @throws Cancelled. Complexity: symmetriesOf(), and if a tip's image is missing a closest point
+ *         for each node and symmetry.
+ */
+inline bool makeSymmetric(CurveSkeleton& skeleton, const SurfaceComponent& component,
+	const ClosestSurface& surface, KnownClearances& clearances, const Progress& progress)
+{
+	constexpr int maxRounds = 8;
+	if (tipsOf(skeleton.neighbours()).empty())
+		return false;
+	measureBranchEnds(skeleton, clearances);
+	std::vector<Eigen::Isometry3d> symmetries =
+		symmetriesOf(component.mesh, component.vertices, surface, progress);
+	std::vector<Eigen::Isometry3d> maps = generatedGroup(symmetries);
+	std::vector<TipOrbit> orbits = tipOrbits(skeleton, surface, clearances, maps);
+	const auto incomplete = [](const std::vector<TipOrbit>& some) {
+		return std::count_if(
+			some.begin(), some.end(), [](const TipOrbit& orbit) { return !orbit.isComplete(); });
+	};
+	if (incomplete(orbits) == 0)
+		return false;
+	const auto isWrong = [&](const Eigen::Isometry3d& map) {
+		return !isSymmetricAlong(skeleton, surface, clearances, map, progress);
+	};
+	symmetries.erase(
+		std::remove_if(symmetries.begin(), symmetries.end(), isWrong), symmetries.end());
+	maps = generatedGroup(symmetries);
+	CurveSkeleton symmetric = skeleton;
+	measureAll(symmetric, clearances);
+	orbits = tipOrbits(symmetric, surface, clearances, maps);
+	const auto before = incomplete(orbits);
+	const size_t tips = orbits.size();
+	for (int round = 0; round < maxRounds && incomplete(orbits) > 0; ++round) {
+		progress.check();
+		if (!removeStubs(symmetric, orbits, surface, progress)
+			&& !addImages(symmetric, orbits, surface, clearances))
+			break;
+		orbits = tipOrbits(symmetric, surface, clearances, maps);
+	}
+	const auto left = incomplete(orbits);
+	if (left >= before || (left > 0 && orbits.size() < tips))
+		return false;
+	skeleton = std::move(symmetric);
+	return true;
+}
+
+} // namespace vcg::tri::mcf::refining
+
+#endif
