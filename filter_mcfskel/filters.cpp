@@ -111,7 +111,9 @@ QString cureInMeshLab(vcg::tri::mcf::Defect defect)
 		return " 'Remove Isolated pieces (wrt Diameter)' does the latter, with a diameter above that of "
 			   "the flat part.";
 	case Defect::OpenSheet:
-		return " 'Uniform Mesh Resampling' with 'Absolute Distance' and an offset above 50 % gives it one.";
+		return isOffered("generate_solid_mcf")
+			? " 'Make Solid' does the former, with 'sheet_thickness', 1 % say."
+			: " 'Uniform Mesh Resampling' does the former, with 'Absolute Distance' and an offset above 50 %.";
 	case Defect::Other:
 	case Defect::Empty:
 	case Defect::Flat: break;

@@ -16,7 +16,9 @@ namespace {
 
 Results makeSolid(FilterRun& run)
 {
-	const SolidLayer made = readSolid(run.layer(), mcf::Repair::Auto, run.progress.part(0, 0.9));
+	const mcf::SolidChoices choices(
+		mcf::Repair::Auto, 0, false, run.parameters.fraction("sheet_thickness"));
+	const SolidLayer made = readSolid(run.layer(), choices, run.progress.part(0, 0.9));
 	logNotes(run, made.surface);
 	const mcf::SolidReport& report = made.report;
 	if (report.outcome == mcf::SolidReport::Sound)
@@ -60,8 +62,15 @@ FilterSpec makeSolidFilter()
 			"not enough, as with large holes, soups of triangles or parts that run into each other, the "
 			"surface is wrapped: the new one is where the winding number of the triangles is one half.<br><br>"
 			"The log says what was done, and how far the result is from the input. A sheet that bounds "
-			"nothing is refused."),
-		FilterCategory::Remeshing, MeshModel::MM_FACENUMBER, {}, makeSolid};
+			"nothing is refused, unless it is given a thickness."),
+		FilterCategory::Remeshing, MeshModel::MM_FACENUMBER,
+		{
+			{ParameterKind::Length, "sheet_thickness", 0, "Thickness of sheets",
+				"What an open sheet that bounds nothing is to be thick, mesh units or percent of the diagonal: "
+				"its two sides move apart by half of it, and walls close its borders. 0: it is refused; "
+				"recommended for sheets: 0.5 to 2 %."},
+		},
+		makeSolid};
 }
 
 } // namespace mcfskel

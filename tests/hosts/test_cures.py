@@ -89,8 +89,8 @@ def test_make_solid(mesh):
 
 def test_a_sheet_is_given_a_thickness():
     layers = document(sheet())
-    assert "Uniform Mesh Resampling" in failing(layers, FULL)
-    layers.generate_resampled_uniform_mesh(offset=pymeshlab.PercentageValue(53), absdist=True)
+    assert "Make Solid" in failing(layers, FULL)
+    layers.apply_filter(SOLID, sheet_thickness=pymeshlab.PercentageValue(1))
     assert layers.apply_filter(FULL, repair="off", **COARSE)["components"] == 1
 
 

@@ -91,6 +91,30 @@ def test_a_sheet_is_refused():
     assert fingerprint(layers) == before
 
 
+def leaf() -> tuple[np.ndarray, np.ndarray]:
+    """A bent square."""
+    x, y = (axis.ravel() for axis in np.meshgrid(np.linspace(0, 1, 21), np.linspace(0, 1, 21), indexing="ij"))
+    first = (21 * np.arange(20)[:, None] + np.arange(20)).ravel()
+    faces = np.vstack([np.column_stack([first, first + 21, first + 22]),
+                       np.column_stack([first, first + 22, first + 1])])
+    return np.column_stack([x, y, 0.3 * x**2]), faces
+
+
+@pytest.mark.parametrize("mesh", [lambda: (np.eye(3), np.array([[0, 1, 2]])), leaf], ids=["flat", "bent"])
+def test_a_sheet_gets_the_thickness_that_is_asked_for(mesh):
+    vertices, faces = mesh()
+    layers = document((vertices, faces))
+    results = layers.apply_filter(SOLID, sheet_thickness=pymeshlab.PercentageValue(2))
+    assert results["repaired"] == 1 and results["distance_max"] == pytest.approx(1, rel=0.01)
+    solid = layers.current_mesh()
+    a, b, c = (vertices[faces[:, k]] for k in range(3))
+    area = np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2
+    assert signed_volume((solid.vertex_matrix(), solid.face_matrix())) == pytest.approx(
+        0.02 * diagonal(vertices) * area, rel=0.02)
+    skeleton = layers.apply_filter(FULL, target_length=pymeshlab.PercentageValue(1.5))
+    assert (skeleton["components"], skeleton["cycles"]) == (1, 0)
+
+
 def test_full_skeletonize_repairs_by_itself():
     """Nothing is asked of the user; one line in the log says what was done."""
     vertices, faces = missing(0.03)

@@ -290,6 +290,17 @@ TEST(MakeSolid, RefusesAnOpenSheet)
 	EXPECT_EQ(defectOf(sheet), Defect::OpenSheet);
 	EXPECT_EQ(defectOf(shapes::insideOut(sheet)), Defect::OpenSheet);
 	EXPECT_EQ(defectOf(sheet, Repair::Off), Defect::BorderEdges);
+	const SolidSurface thick =
+		solidSurface(sheet.points, sheet.triangles, {Repair::Auto, 0, false, 0.01});
+	EXPECT_EQ(thick.report.outcome, SolidReport::Mended);
+	EXPECT_NEAR(thick.report.distanceMax, 0.005, 1e-4);
+	EXPECT_NE(
+		thick.report.text().find("an open sheet given a thickness of 1 %"), std::string::npos);
+	EXPECT_EQ(thick.surface.vertexOfInput.size(), sheet.points.size());
+	EXPECT_THROW(solidSurface(sheet.points, sheet.triangles, {Repair::Auto, 0, false, -1}),
+		InvalidParameter);
+	EXPECT_THROW(
+		solidSurface(sheet.points, sheet.triangles, {Repair::Off, 0, false, 0.01}), InvalidInput);
 }
 
 TEST(MakeSolid, SaysThatADrawingIsFlat)

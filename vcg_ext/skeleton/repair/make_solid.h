@@ -12,6 +12,7 @@
 #include "mend.h"
 #include "overlap.h"
 #include "solid_pieces.h"
+#include "thicken_sheets.h"
 #include "winding_number.h"
 #include "wrap.h"
 
@@ -64,6 +65,8 @@ struct SolidReport
 	double distanceMean = 0, distanceMax = 0;
 	/// Edge length of the wrap; 0 if there is none.
 	double spacing = 0;
+	/// What an open sheet was given, see thickenedSheets(); 0 if there is none.
+	double sheetThickness = 0;
 
 	/// Whether the surface differs from that of checkedSurface().
 	bool isChanged() const { return outcome != Sound || leftOut.any(); }
@@ -91,10 +94,12 @@ struct SolidReport
 		if (outcome == Wrapped)
 			add(selfIntersections, "triangle that crosses others resolved",
 				"triangles that cross others resolved");
+		const auto percent = [](double part) { return detail::number(100 * part, 2) + " %"; };
+		if (sheetThickness > 0)
+			what.push_back("an open sheet given a thickness of " + percent(sheetThickness));
 		std::string list;
 		for (const std::string& item : what)
 			list += (list.empty() ? "" : ", ") + item;
-		const auto percent = [](double part) { return detail::number(100 * part, 2) + " %"; };
 		return (outcome == Mended ? std::string("The surface was mended")
 								  : "The surface was wrapped by winding numbers, with edges of "
 						   + percent(spacing) + " of its diagonal")
@@ -112,12 +117,16 @@ struct SolidChoices
 	/// Cavities are left out: there is no skeleton in them. Where `repair` is Off they stay, and a
 	/// note says so. A wrap leaves them out in any case.
 	bool withoutCavities;
+	/// The thickness that an open sheet gets, as a fraction of its diagonal, >= 0; 0: it is refused,
+	/// as it is where `repair` is Off.
+	double sheetThickness;
 
 	// NOLINTNEXTLINE(google-explicit-constructor): callers write the choices in braces.
-	SolidChoices(
-		Repair repair = Repair::Auto, double minComponent = 0, bool withoutCavities = false) :
+	SolidChoices(Repair repair = Repair::Auto, double minComponent = 0,
+		bool withoutCavities = false, double sheetThickness = 0) :
 			repair(repair),
-			minComponent(minComponent), withoutCavities(withoutCavities)
+			minComponent(minComponent), withoutCavities(withoutCavities),
+			sheetThickness(sheetThickness)
 	{
 	}
 };
@@ -421,8 +430,12 @@ public:
 	{
 	}
 
-	SolidSurface run(Repair repair, const Progress& progress)
+	/// @param sheetThickness  see SolidChoices.
+	SolidSurface run(Repair repair, double sheetThickness, const Progress& progress)
 	{
+		if (!(sheetThickness >= 0) || !std::isfinite(sheetThickness))
+			throw InvalidParameter("Parameter sheet_thickness must be at least 0.");
+		const bool isThickened = sheetThickness > 0 && repair != Repair::Off;
 		std::optional<InvalidInput> error;
 		try {
 			solid.surface = checkedSurface(
@@ -431,8 +444,11 @@ public:
 		catch (const InvalidInput& found) {
 			if (!isMended(found.defect()))
 				throw;
-			if (found.defect() != Defect::NotFinite && isFlat(points, triangles))
+			if (found.defect() != Defect::NotFinite && isFlat(points, triangles)) {
+				if (isThickened)
+					return thickened(sheetThickness, repair, progress.part(0.3, 1));
 				refuse(found, true);
+			}
 			if (repair == Repair::Off)
 				throw;
 			error = found;
@@ -460,7 +476,14 @@ public:
 			throw InvalidInput(*error);
 		if (mended.report.facesTurned > 0)
 			takeSidesAsGiven(mended, progress.part(0.6, 0.65));
-		wrapIt(mended.points, std::move(mended.triangles), error, progress.part(0.65, 1));
+		try {
+			wrapIt(mended.points, std::move(mended.triangles), error, progress.part(0.65, 1));
+		}
+		catch (const InvalidInput& found) {
+			if (!isThickened || found.defect() != Defect::OpenSheet)
+				throw;
+			return thickened(sheetThickness, repair, progress.part(0.9, 1));
+		}
 		return std::move(solid);
 	}
 
@@ -468,6 +491,29 @@ private:
 	const std::vector<Point3d>& points;
 	const std::vector<Triangle>& triangles;
 	SolidSurface solid;
+
+	/// The surface around an open sheet, see thickenedSheets(); wrapped where that crosses itself.
+	SolidSurface thickened(double thickness, Repair repair, const Progress& progress)
+	{
+		Box3d box;
+		for (const Triangle& t : triangles)
+			for (int v : t)
+				if (const Point3d& p = points[size_t(v)];
+					std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]))
+					box.Add(p);
+		ThickenedSheets sheets =
+			thickenedSheets(points, triangles, thickness * box.Diag(), progress.part(0, 0.3));
+		MendedSurface thick;
+		thick.points = roundedCoordinates(sheets.points, progress.cancelOnly());
+		thick.triangles = std::move(sheets.triangles);
+		thick.vertexOfInput = std::move(sheets.vertexOfInput);
+		thick.closed = true;
+		solid = {};
+		solid.report.sheetThickness = thickness;
+		if (!takeMended(thick, repair, progress.part(0.3, 0.6)))
+			wrapIt(thick.points, std::move(thick.triangles), {}, progress.part(0.6, 1));
+		return std::move(solid);
+	}
 
 	/// Whether surfaces with this defect are mended or wrapped.
 	static bool isMended(Defect defect)
@@ -837,9 +883,10 @@ private:
  *
  * @param points    mesh units. @param triangles corners as indices into `points`.
  * @param choices   repair: Auto: as above; Mend: no wrap; Off: checkedSurface() alone. For pieces
- *                  that are left out see keepSolidPieces().
+ *                  that are left out see keepSolidPieces(). An open sheet gets a thickness, if one is
+ *                  given, see thickenedSheets().
  * @throws InvalidInput if there is no solid: no faces, no volume, an open sheet; the error of
- *         checkedSurface() if `repair` allows no cure. SolverError if a wrap needs too many lattice
+ *         checkedSurface() if `repair` allows no cure. InvalidParameter for a negative thickness. SolverError if a wrap needs too many lattice
  *         nodes; Cancelled.
  * Complexity: for a sound surface as checkedSurface(), with `repair` Auto also as windingVolumes()
  * and selfIntersections(); else as mend() and wrap().
@@ -848,8 +895,8 @@ inline SolidSurface solidSurface(const std::vector<Point3d>& points,
 	const std::vector<Triangle>& triangles, const SolidChoices& choices = SolidChoices(),
 	const Progress& progress = Progress())
 {
-	SolidSurface solid =
-		detail::SolidMaker(points, triangles).run(choices.repair, progress.part(0, 0.95));
+	SolidSurface solid = detail::SolidMaker(points, triangles)
+							 .run(choices.repair, choices.sheetThickness, progress.part(0, 0.95));
 	const Cavities cavities = !choices.withoutCavities ? Cavities::Kept
 		: choices.repair == Repair::Off                ? Cavities::Reported
 													   : Cavities::LeftOut;
