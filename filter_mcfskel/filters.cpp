@@ -112,8 +112,8 @@ QString cureInMeshLab(vcg::tri::mcf::Defect defect)
 			   "the flat part.";
 	case Defect::OpenSheet:
 		return isOffered("generate_solid_mcf")
-			? " 'Make Solid' does the former, with 'sheet_thickness', 1 % say."
-			: " 'Uniform Mesh Resampling' does the former, with 'Absolute Distance' and an offset above 50 %.";
+			? " 'Make Solid' gives it one, with a 'sheet_thickness' of 1 %, for example."
+			: " 'Uniform Mesh Resampling' gives it one, with 'Absolute Distance' and an offset above 50 %.";
 	case Defect::Other:
 	case Defect::Empty:
 	case Defect::Flat: break;

@@ -66,8 +66,8 @@ FilterSpec makeSolidFilter()
 		FilterCategory::Remeshing, MeshModel::MM_FACENUMBER,
 		{
 			{ParameterKind::Length, "sheet_thickness", 0, "Thickness of sheets",
-				"What an open sheet that bounds nothing is to be thick, mesh units or percent of the diagonal: "
-				"its two sides move apart by half of it, and walls close its borders. 0: it is refused; "
+				"Thickness of an open sheet, which bounds no solid by itself; mesh units or percent of the "
+				"diagonal: both sides move outwards by half of it, and walls close the borders. 0: refused; "
 				"recommended for sheets: 0.5 to 2 %."},
 		},
 		makeSolid};

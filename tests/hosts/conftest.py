@@ -58,6 +58,15 @@ def arrays(name: str) -> tuple[np.ndarray, np.ndarray]:
     return mesh.vertex_matrix(), mesh.face_matrix()
 
 
+def sheet() -> tuple[np.ndarray, np.ndarray]:
+    """A bent square of 20 x 20 squares, open."""
+    x, y = (axis.ravel() for axis in np.meshgrid(np.linspace(0, 1, 21), np.linspace(0, 1, 21), indexing="ij"))
+    first = (21 * np.arange(20)[:, None] + np.arange(20)).ravel()
+    faces = np.vstack([np.column_stack([first, first + 21, first + 22]),
+                       np.column_stack([first, first + 22, first + 1])])
+    return np.column_stack([x, y, 0.3 * x**2]), faces
+
+
 def document(*meshes: tuple[Any, Any]) -> pymeshlab.MeshSet:
     """A document with layers made from (vertices, faces) and called mesh_0, mesh_1, ..."""
     layers = pymeshlab.MeshSet()

@@ -8,7 +8,7 @@ import numpy as np
 import pymeshlab
 import pytest
 
-from conftest import FULL, arrays, document, failing
+from conftest import FULL, arrays, document, failing, sheet
 from filter_names import SOLID
 from hostile.primitives import joined, sphere
 
@@ -42,14 +42,6 @@ def not_a_number() -> Mesh:
 def partly_flat() -> Mesh:
     vertices, faces = sphere(2)
     return joined((vertices, faces), (vertices * [0.3, 0.3, 0] + 3, faces))
-
-
-def sheet() -> Mesh:
-    x, y = (axis.ravel() for axis in np.meshgrid(np.linspace(0, 1, 21), np.linspace(0, 1, 21), indexing="ij"))
-    first = (21 * np.arange(20)[:, None] + np.arange(20)).ravel()
-    faces = np.vstack([np.column_stack([first, first + 21, first + 22]),
-                       np.column_stack([first, first + 22, first + 1])])
-    return np.column_stack([x, y, 0.3 * x**2]), faces
 
 
 def delete_not_finite(layers: pymeshlab.MeshSet) -> None:

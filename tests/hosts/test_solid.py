@@ -6,7 +6,7 @@ import numpy as np
 import pymeshlab
 import pytest
 
-from conftest import FULL, RESAMPLE, STEP, arrays, diagonal, document, failing, fingerprint, labels
+from conftest import FULL, RESAMPLE, STEP, arrays, diagonal, document, failing, fingerprint, labels, sheet
 from filter_names import PRUNE, REFINE, SMOOTH, SOLID
 from hostile.primitives import genus, is_two_manifold, signed_volume
 
@@ -91,16 +91,7 @@ def test_a_sheet_is_refused():
     assert fingerprint(layers) == before
 
 
-def leaf() -> tuple[np.ndarray, np.ndarray]:
-    """A bent square."""
-    x, y = (axis.ravel() for axis in np.meshgrid(np.linspace(0, 1, 21), np.linspace(0, 1, 21), indexing="ij"))
-    first = (21 * np.arange(20)[:, None] + np.arange(20)).ravel()
-    faces = np.vstack([np.column_stack([first, first + 21, first + 22]),
-                       np.column_stack([first, first + 22, first + 1])])
-    return np.column_stack([x, y, 0.3 * x**2]), faces
-
-
-@pytest.mark.parametrize("mesh", [lambda: (np.eye(3), np.array([[0, 1, 2]])), leaf], ids=["flat", "bent"])
+@pytest.mark.parametrize("mesh", [lambda: (np.eye(3), np.array([[0, 1, 2]])), sheet], ids=["flat", "bent"])
 def test_a_sheet_gets_the_thickness_that_is_asked_for(mesh):
     vertices, faces = mesh()
     layers = document((vertices, faces))

@@ -360,10 +360,8 @@ inline SingleComponent singleComponent(
 	std::vector<Triangle> triangles;
 	for (int v : own.ids) {
 		position.push_back(surface.position[v]);
-		surface.forEachOutgoing(v, [&](int h) {
-			if (h % 3 != 0) // each face once
-				return;
-			const Triangle t = surface.triangle(h / 3);
+		surface.forEachOwnFace(v, [&](int f) {
+			const Triangle t = surface.triangle(f);
 			triangles.push_back({vertices.place[t[0]], vertices.place[t[1]], vertices.place[t[2]]});
 		});
 	}

@@ -27,57 +27,10 @@
 #include <vector>
 
 using namespace vcg::tri::mcf;
+using curves::CurveMaker;
 using vcg::Point3d;
 
 namespace {
-
-/// Chains of points; points of different chains that coincide are one node.
-class CurveMaker
-{
-public:
-	CurveMaker& chain(const std::vector<Point3d>& points)
-	{
-		int last = -1;
-		for (const Point3d& p : points) {
-			int v = 0;
-			while (v < int(curve.position.size()) && Distance(curve.position[v], p) > 1e-9)
-				++v;
-			if (v == int(curve.position.size()))
-				curve.position.push_back(p);
-			if (last >= 0)
-				curve.edges.push_back({std::min(last, v), std::max(last, v)});
-			last = v;
-		}
-		return *this;
-	}
-	/// Straight from a to b in `pieces`.
-	CurveMaker& line(const Point3d& a, const Point3d& b, int pieces = 20)
-	{
-		std::vector<Point3d> points;
-		for (int i = 0; i <= pieces; ++i)
-			points.push_back(a + (b - a) * (double(i) / pieces));
-		return chain(points);
-	}
-	/// Every surface vertex has merged into the nearest node.
-	CurveSkeleton in(const SurfaceMesh& surface)
-	{
-		std::sort(curve.edges.begin(), curve.edges.end());
-		curve.radius.assign(curve.position.size(), 0);
-		curve.node.clear();
-		for (const Point3d& p : surface.position) {
-			int nearest = 0;
-			for (size_t v = 1; v < curve.position.size(); ++v)
-				if (SquaredDistance(p, curve.position[v])
-					< SquaredDistance(p, curve.position[nearest]))
-					nearest = int(v);
-			curve.node.push_back(nearest);
-		}
-		return curve;
-	}
-
-private:
-	CurveSkeleton curve;
-};
 
 /// A line from (from, 0, 0) to (to, 0, 0) that is aside of the x axis and zigzags.
 std::vector<Point3d> zigzag(double from, double to, double aside, double amount, int pieces = 40)

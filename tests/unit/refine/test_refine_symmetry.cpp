@@ -3,6 +3,7 @@
 
 // Curves in symmetric shapes that lack a branch on one side, or have one too many there.
 
+#include "curves.h"
 #include "shapes.h"
 
 #include <skeleton/refine/refine_symmetry.h>
@@ -14,6 +15,7 @@
 #include <vector>
 
 using namespace vcg::tri::mcf;
+using curves::CurveMaker;
 using vcg::Point3d;
 
 namespace {
@@ -22,39 +24,21 @@ namespace {
 class CurveInShape
 {
 public:
-	explicit CurveInShape(const shapes::Soup& soup) :
+	CurveInShape(const shapes::Soup& soup, CurveMaker maker) :
 			mesh(soup.mesh()), vertices(numbers(mesh.position.size())),
-			closest(mesh, vertices, 0.01)
+			closest(mesh, vertices, 0.01), curve(maker.in(mesh))
 	{
-	}
-
-	/// A straight line in steps of 0.005.
-	CurveInShape& line(const Point3d& a, const Point3d& b)
-	{
-		const int pieces = std::max(1, int(Distance(a, b) / 0.005));
-		int last = -1;
-		for (int i = 0; i <= pieces; ++i) {
-			const Point3d p = a + (b - a) * (double(i) / pieces);
-			int v = 0;
-			while (v < int(curve.position.size()) && Distance(curve.position[size_t(v)], p) > 1e-9)
-				++v;
-			if (v == int(curve.position.size())) {
-				curve.position.push_back(p);
-				curve.radius.push_back(0);
-			}
-			if (last >= 0)
-				curve.edges.push_back({std::min(last, v), std::max(last, v)});
-			last = v;
-		}
-		std::sort(curve.edges.begin(), curve.edges.end());
-		return *this;
 	}
 
 	bool makeSymmetric()
 	{
 		refining::KnownClearances clearances(closest);
 		const refining::SurfaceComponent component = {mesh, vertices, vertices};
-		return refining::makeSymmetric(curve, component, closest, clearances, Progress());
+		const auto symmetric =
+			refining::withImages(curve, component, closest, clearances, Progress());
+		if (symmetric)
+			curve = *symmetric;
+		return symmetric.has_value();
 	}
 
 	std::vector<Point3d> tips() const
@@ -64,8 +48,6 @@ public:
 			places.push_back(curve.position[size_t(tip)]);
 		return places;
 	}
-
-	CurveSkeleton curve;
 
 private:
 	static std::vector<int> numbers(size_t count)
@@ -78,6 +60,9 @@ private:
 	SurfaceMesh mesh;
 	std::vector<int> vertices;
 	ClosestSurface closest;
+
+public:
+	CurveSkeleton curve;
 };
 
 /// Whether each tip has one at its image, within a hundredth of the diagonal.
@@ -104,10 +89,13 @@ const auto alongY = [](const Point3d& p) { return Point3d(p[0], -p[1], p[2]); };
 
 TEST(RefineSymmetry, AMissingCornerIsAdded)
 {
-	CurveInShape scene(flatBox());
 	const Point3d left(-0.1, 0, 0), right(0.1, 0, 0);
-	scene.line(left, right).line(left, {-0.35, 0.25, 0});
-	scene.line(left, {-0.35, -0.25, 0}).line(right, {0.35, 0.25, 0});
+	CurveInShape scene(flatBox(),
+		CurveMaker()
+			.line(left, right, 40)
+			.line(left, {-0.35, 0.25, 0}, 60)
+			.line(left, {-0.35, -0.25, 0}, 60)
+			.line(right, {0.35, 0.25, 0}, 60));
 	ASSERT_EQ(scene.tips().size(), 3u);
 	EXPECT_TRUE(scene.makeSymmetric());
 	EXPECT_EQ(scene.tips().size(), 4u);
@@ -120,10 +108,15 @@ TEST(RefineSymmetry, AMissingCornerIsAdded)
 
 TEST(RefineSymmetry, AStubInThePlateGoesWhereTheOthersAreMore)
 {
-	CurveInShape scene(flatBox());
 	const Point3d left(-0.1, 0, 0), right(0.1, 0, 0);
-	scene.line(left, right).line(left, {-0.35, 0.25, 0}).line(left, {-0.35, -0.25, 0});
-	scene.line(right, {0.35, 0.25, 0}).line(right, {0.35, -0.25, 0}).line(right, {0.35, 0, 0});
+	CurveInShape scene(flatBox(),
+		CurveMaker()
+			.line(left, right, 40)
+			.line(left, {-0.35, 0.25, 0}, 60)
+			.line(left, {-0.35, -0.25, 0}, 60)
+			.line(right, {0.35, 0.25, 0}, 60)
+			.line(right, {0.35, -0.25, 0}, 60)
+			.line(right, {0.35, 0, 0}, 50));
 	EXPECT_TRUE(scene.makeSymmetric());
 	EXPECT_EQ(scene.tips().size(), 4u);
 	EXPECT_TRUE(areSymmetric(scene.tips(), alongX));
@@ -138,9 +131,9 @@ TEST(RefineSymmetry, ALimbThatOneSideLacks)
 				shapes::cells(7, 2, 2, [](int x, int y, int) { return x == 3 || y == 1; }), 3),
 			Point3d(-3.5, -1, -1)),
 		0.13);
-	CurveInShape scene(body);
 	const double arm = 0.13 * 0.5;
-	scene.line({0, -0.06, 0}, {0, arm, 0}).line({0, arm, 0}, {0.38, arm, 0});
+	CurveInShape scene(
+		body, CurveMaker().line({0, -0.06, 0}, {0, arm, 0}).line({0, arm, 0}, {0.38, arm, 0}, 76));
 	ASSERT_EQ(scene.tips().size(), 2u);
 	EXPECT_TRUE(scene.makeSymmetric());
 	EXPECT_TRUE(areSymmetric(scene.tips(), alongX));
@@ -149,15 +142,15 @@ TEST(RefineSymmetry, ALimbThatOneSideLacks)
 
 TEST(RefineSymmetry, WhatIsSymmetricOrBelongsToNoSymmetricShapeStays)
 {
-	CurveInShape whole(flatBox());
-	whole.line({-0.3, 0, 0}, {0.3, 0, 0});
+	CurveInShape whole(flatBox(), CurveMaker().line({-0.3, 0, 0}, {0.3, 0, 0}, 120));
 	EXPECT_FALSE(whole.makeSymmetric());
 	// One corner is pulled out.
-	CurveInShape odd(shapes::transformed(flatBox(), [](const Point3d& p) {
+	const shapes::Soup pulled = shapes::transformed(flatBox(), [](const Point3d& p) {
 		const double far = Distance(p, Point3d(0.4, 0.3, 0));
 		return p + Point3d(1, 1, 0) * (0.1 * std::exp(-far * far / 0.01));
-	}));
-	odd.line({-0.3, 0, 0}, {0.1, 0, 0}).line({0.1, 0, 0}, {0.4, 0.3, 0});
+	});
+	CurveInShape odd(pulled,
+		CurveMaker().line({-0.3, 0, 0}, {0.1, 0, 0}, 80).line({0.1, 0, 0}, {0.4, 0.3, 0}, 80));
 	const size_t before = odd.curve.position.size();
 	EXPECT_FALSE(odd.makeSymmetric());
 	EXPECT_EQ(odd.curve.position.size(), before);

@@ -17,6 +17,11 @@ namespace vcg::tri::mcf {
 /// sums; their cubes are far from the limits of double precision.
 constexpr double maxCoordinate = 1e36, minSize = 1e-36;
 
+inline bool isFinitePlace(const Point3d& p)
+{
+	return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+}
+
 /// Whether a point is finite and not too far from the origin.
 inline bool isUsablePlace(const Point3d& p)
 {

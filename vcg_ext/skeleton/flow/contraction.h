@@ -13,6 +13,7 @@
 #include <skeleton/core/parallel.h>
 #include <skeleton/core/parameters.h>
 #include <skeleton/core/progress.h>
+#include <skeleton/core/shape_limits.h>
 #include <skeleton/solver/biharmonic_cholesky.h>
 #include <skeleton/solver/biharmonic_pcg.h>
 
@@ -69,7 +70,7 @@ inline void contract(
 				system.M, system.D, system.b, detail::solverTolerance(parameters), part);
 		for (size_t i = 0; i < move.size(); ++i) {
 			const Point3d p = mesh.position[system.vertex[i]] + move[i];
-			if (!(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])))
+			if (!isFinitePlace(p))
 				throw SolverError(
 					"The contraction left the range of numbers: the mesh has degenerate "
 					"triangles. Resample it first.");

@@ -10,6 +10,7 @@
 #include "soup_repair.h"
 
 #include <skeleton/core/progress.h>
+#include <skeleton/core/shape_limits.h>
 #include <skeleton/core/large_arrays.h>
 #include <skeleton/core/ticker.h>
 #include <skeleton/mesh/components.h>
@@ -108,12 +109,9 @@ inline CheckedSurface checkedSurface(const std::vector<Point3d>& points,
 				throw InvalidInput("A face refers to vertex " + std::to_string(v) + " of "
 					+ std::to_string(points.size()) + ".");
 	});
-	const auto isFinite = [](const Point3d& p) {
-		return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
-	};
 	std::vector<size_t> notFinite;
 	detail::reportedLoop(int(points.size()), progress.part(0.02, 0.04), what, [&](int v) {
-		if (!isFinite(points[v]))
+		if (!isFinitePlace(points[v]))
 			notFinite.push_back(size_t(v));
 	});
 	if (!notFinite.empty()) {

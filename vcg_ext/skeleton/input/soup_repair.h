@@ -13,6 +13,7 @@
 #include <skeleton/core/errors.h>
 #include <skeleton/core/grouped_sort.h>
 #include <skeleton/core/progress.h>
+#include <skeleton/core/shape_limits.h>
 #include <skeleton/core/large_arrays.h>
 #include <skeleton/core/ticker.h>
 #include <skeleton/mesh/surface_mesh.h>
@@ -128,6 +129,19 @@ inline EdgeDefects edgeDefects(
 			note(defects.nonManifold, defects.nonManifoldPlaces, low, begin->high);
 	});
 	return defects;
+}
+
+/// The faces whose corners are all finite.
+inline std::vector<Triangle> finiteFaces(
+	const std::vector<Point3d>& points, const std::vector<Triangle>& triangles)
+{
+	std::vector<Triangle> finite;
+	finite.reserve(triangles.size());
+	for (const Triangle& t : triangles)
+		if (std::all_of(
+				t.begin(), t.end(), [&](int v) { return isFinitePlace(points[size_t(v)]); }))
+			finite.push_back(t);
+	return finite;
 }
 
 /// Removes faces that use a vertex twice and copies of a face (same corners, same orientation).

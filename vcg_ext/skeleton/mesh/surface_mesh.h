@@ -161,6 +161,17 @@ public:
 		} while (h != first);
 	}
 
+	/// Calls visit(f) for each face of which v is the first corner: over the vertices of whole
+	/// components, for each face once.
+	template <class Visitor>
+	void forEachOwnFace(int v, Visitor&& visit) const
+	{
+		forEachOutgoing(v, [&](int h) {
+			if (h % 3 == 0)
+				visit(h / 3);
+		});
+	}
+
 	int valence(int v) const
 	{
 		int count = 0;

@@ -255,11 +255,7 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 		extend();
 	};
 	progress.report(0, what);
-	for (size_t v = 0; v < skeleton.position.size(); ++v) {
-		if (v % nodesPerCheck == 0)
-			cancel.check();
-		skeleton.radius[v] = std::max(surface.clearance(skeleton.position[v], cancel), 0.0);
-	}
+	measureNodes(skeleton, clearances);
 	moveInside(skeleton, surface, cancel);
 	// A stub may be the start of a feature: only branches that do not stick out go before the
 	// extension.
@@ -295,20 +291,22 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 }
 
 /**
- * A refined curve with the branches that it lacks if the shape is symmetric, see makeSymmetric(),
+ * A refined curve with the branches that it lacks if the shape is symmetric, see withImages(),
  * centred once more; nothing if it lacks none, or if the centring fails. @throws Cancelled
  */
-inline std::optional<CurveSkeleton> madeSymmetric(CurveSkeleton skeleton,
+inline std::optional<CurveSkeleton> madeSymmetric(const CurveSkeleton& curve,
 	const ClosestSurface& surface, const SurfaceComponent& component, const LocalScale& scale,
 	const RefineParameters& parameters, const Progress& cancel)
 {
 	KnownClearances clearances(surface, cancel);
-	if (!makeSymmetric(skeleton, component, surface, clearances, cancel))
+	std::optional<CurveSkeleton> whole = withImages(curve, component, surface, clearances, cancel);
+	if (!whole)
 		return std::nullopt;
+	CurveSkeleton skeleton =
+		withWholeJunctions(*std::move(whole), parameters.junctionProminence, cancel);
 	const auto sample = [&] {
 		skeleton = evenlySampled(skeleton, surface, parameters.spacing, scale, cancel);
 	};
-	skeleton = withWholeJunctions(std::move(skeleton), parameters.junctionProminence, cancel);
 	sample();
 	try {
 		centreRounds(
@@ -489,10 +487,8 @@ inline std::optional<CurveSkeleton> broughtBack(
 	std::vector<Triangle> faces;
 	for (int v : component.vertices) {
 		points.push_back(component.mesh.position[v]);
-		component.mesh.forEachOutgoing(v, [&](int h) {
-			if (h % 3 != 0)
-				return;
-			const Triangle t = component.mesh.triangle(h / 3);
+		component.mesh.forEachOwnFace(v, [&](int f) {
+			const Triangle t = component.mesh.triangle(f);
 			faces.push_back({component.place[t[0]], component.place[t[1]], component.place[t[2]]});
 		});
 	}

@@ -10,6 +10,7 @@
 #include "refine_peaks.h"
 
 #include <skeleton/core/progress.h>
+#include <skeleton/core/shape_limits.h>
 #include <skeleton/core/ticker.h>
 #include <skeleton/graph/curve_skeleton.h>
 #include <skeleton/mesh/surface_mesh.h>
@@ -206,10 +207,9 @@ private:
 	{
 		const SurfaceMesh& mesh = component.mesh;
 		for (int v : component.vertices)
-			mesh.forEachOutgoing(v, [&](int h) {
-				if (h % 3 == 0)
-					visit(mesh.position[mesh.origin(h)], mesh.position[mesh.target(h)],
-						mesh.position[mesh.apex(h)]);
+			mesh.forEachOwnFace(v, [&](int f) {
+				const Triangle t = mesh.triangle(f);
+				visit(mesh.position[t[0]], mesh.position[t[1]], mesh.position[t[2]]);
 			});
 	}
 
@@ -259,9 +259,7 @@ private:
 
 inline bool isFinite(const CurveSkeleton& curve)
 {
-	return std::all_of(curve.position.begin(), curve.position.end(), [](const Point3d& p) {
-		return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
-	});
+	return std::all_of(curve.position.begin(), curve.position.end(), isFinitePlace);
 }
 
 /// The defect of a curve refined from another one, but for Outside; both in units of the diagonal.

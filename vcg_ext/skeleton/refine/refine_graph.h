@@ -69,6 +69,13 @@ inline void measureBranchEnds(CurveSkeleton& skeleton, KnownClearances& clearanc
 			skeleton.radius[v] = std::max(clearances.at(skeleton.position[v]), 0.0);
 }
 
+/// Sets the radius of each node to its distance from the surface; 0 outside. @throws Cancelled
+inline void measureNodes(CurveSkeleton& skeleton, KnownClearances& clearances)
+{
+	for (size_t v = 0; v < skeleton.position.size(); ++v)
+		skeleton.radius[v] = std::max(clearances.at(skeleton.position[v]), 0.0);
+}
+
 /**
  * Whether the segment from a to b is inside the surface, given its ends' distances from it or lower
  * bounds of them: two balls that touch each other cover the segment between their centres; else it

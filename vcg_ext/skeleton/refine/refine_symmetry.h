@@ -22,6 +22,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace vcg::tri::mcf::refining {
@@ -64,13 +65,6 @@ inline bool isSymmetricAlong(const CurveSkeleton& skeleton, const ClosestSurface
 	return true;
 }
 
-/// Sets the radius of each node to its distance from the surface; 0 outside. @throws Cancelled
-inline void measureAll(CurveSkeleton& skeleton, KnownClearances& clearances)
-{
-	for (size_t v = 0; v < skeleton.position.size(); ++v)
-		skeleton.radius[v] = std::max(clearances.at(skeleton.position[v]), 0.0);
-}
-
 /// The images of a tip under the maps of a symmetric shape.
 struct TipOrbit
 {
@@ -78,7 +72,7 @@ struct TipOrbit
 	{
 		const Eigen::Isometry3d* map; ///< of the tip to the image
 		Point3d place;
-		int tip; ///< that is there; -1 if none is
+		int tip; ///< at that place; -1: none
 	};
 
 	int tip;
@@ -96,11 +90,11 @@ struct TipOrbit
 };
 
 /**
- * The orbits of a skeleton's tips. A tip is at an image if it is the nearest one, in the same limb,
- * and if the tip whose image it is is the nearest to where it comes from. Where in a limb its tip
- * lies is less sure than that the limb is there: two places are in the same one if they are nearer
- * than the radius of the tip or 1 % of the diagonal, or in view of each other and nearer than 0.3
- * of the length of the branch, bounded by 2 and 8 % of the diagonal.
+ * The orbits of a skeleton's tips. A tip is at an image of another one if each is the tip nearest
+ * to the image of the other, and both are in the same limb. The place of a tip within its limb
+ * varies: two places are in the same limb if they are nearer than the radius of the tip or 1 % of
+ * the diagonal, or in view of each other and nearer than 0.3 of the length of the branch, bounded by
+ * 2 and 8 % of the diagonal.
  * @pre the radius of tips is their distance from the surface. @throws Cancelled
  * Complexity: O(M T (M + log T)) for T tips and M maps.
  */
@@ -199,8 +193,8 @@ inline bool addImage(CurveSkeleton& skeleton, const std::vector<std::vector<int>
 }
 
 /**
- * Adds the images of the terminal branches that are there for at least a half, of those first of
- * which the most are there. @return whether any was added. @throws Cancelled
+ * Adds the missing images of terminal branches of which at least half are present, of those first
+ * of which the most are present. @return whether any was added. @throws Cancelled
  * @pre the radii are the distances from the surface. @post the same.
  */
 inline bool addImages(CurveSkeleton& skeleton, const std::vector<TipOrbit>& orbits,
@@ -234,10 +228,9 @@ inline bool addImages(CurveSkeleton& skeleton, const std::vector<TipOrbit>& orbi
 }
 
 /**
- * Removes what is chance beside a branch that is there for at least a half of its images: branches
- * of which less than a half are there, if they are shorter than three radii of the ball at their
- * junction, and stubs in plates, see lackOfLobe(), of which no more than a half are there. The
- * shortest go first.
+ * Removes stray branches where another branch has at least half of its images, and more than they:
+ * those with fewer than half, if they are shorter than three radii of the ball at their junction,
+ * and stubs in plates, see lackOfLobe(), with at most half. The shortest go first.
  * @return whether any was removed.
  * @pre the radii are the distances from the surface. @throws Cancelled
  */
@@ -272,21 +265,22 @@ inline bool removeStubs(CurveSkeleton& skeleton, const std::vector<TipOrbit>& or
 }
 
 /**
- * Gives the branches of a symmetric shape their images. Where the flow is undecided, as before the
- * corners of a box or a blunt limb, one side may have a branch and the other none. Of a branch that
- * is there for at least a half of its images, the others are added; short branches that are there
- * for less go, see removeStubs(). A curve all of whose tips have their images is left as it is.
- * @return whether fewer tips lack images now, and none do if there are fewer tips; the radii are
- *         the distances from the surface then. Else nothing has changed but radii.
+ * The skeleton of a symmetric shape with the images of its branches. Where the flow is undecided, as
+ * before the corners of a box or a blunt limb, one side may have a branch and the other none. Where
+ * at least half of the images of a branch are present, the others are added; short branches of which
+ * fewer are present are removed, see removeStubs().
+ * @return its radii are the distances from the surface; nothing if no image is missing, if as many
+ *         are missing afterwards, or if some are and there are fewer tips.
  * @throws Cancelled. Complexity: symmetriesOf(), and if a tip's image is missing a closest point
  *         for each node and symmetry.
  */
-inline bool makeSymmetric(CurveSkeleton& skeleton, const SurfaceComponent& component,
-	const ClosestSurface& surface, KnownClearances& clearances, const Progress& progress)
+inline std::optional<CurveSkeleton> withImages(CurveSkeleton skeleton,
+	const SurfaceComponent& component, const ClosestSurface& surface, KnownClearances& clearances,
+	const Progress& progress)
 {
 	constexpr int maxRounds = 8;
 	if (tipsOf(skeleton.neighbours()).empty())
-		return false;
+		return std::nullopt;
 	measureBranchEnds(skeleton, clearances);
 	std::vector<Eigen::Isometry3d> symmetries =
 		symmetriesOf(component.mesh, component.vertices, surface, progress);
@@ -297,30 +291,28 @@ inline bool makeSymmetric(CurveSkeleton& skeleton, const SurfaceComponent& compo
 			some.begin(), some.end(), [](const TipOrbit& orbit) { return !orbit.isComplete(); });
 	};
 	if (incomplete(orbits) == 0)
-		return false;
+		return std::nullopt;
 	const auto isWrong = [&](const Eigen::Isometry3d& map) {
 		return !isSymmetricAlong(skeleton, surface, clearances, map, progress);
 	};
 	symmetries.erase(
 		std::remove_if(symmetries.begin(), symmetries.end(), isWrong), symmetries.end());
 	maps = generatedGroup(symmetries);
-	CurveSkeleton symmetric = skeleton;
-	measureAll(symmetric, clearances);
-	orbits = tipOrbits(symmetric, surface, clearances, maps);
+	measureNodes(skeleton, clearances);
+	orbits = tipOrbits(skeleton, surface, clearances, maps);
 	const auto before = incomplete(orbits);
 	const size_t tips = orbits.size();
 	for (int round = 0; round < maxRounds && incomplete(orbits) > 0; ++round) {
 		progress.check();
-		if (!removeStubs(symmetric, orbits, surface, progress)
-			&& !addImages(symmetric, orbits, surface, clearances))
+		if (!removeStubs(skeleton, orbits, surface, progress)
+			&& !addImages(skeleton, orbits, surface, clearances))
 			break;
-		orbits = tipOrbits(symmetric, surface, clearances, maps);
+		orbits = tipOrbits(skeleton, surface, clearances, maps);
 	}
 	const auto left = incomplete(orbits);
 	if (left >= before || (left > 0 && orbits.size() < tips))
-		return false;
-	skeleton = std::move(symmetric);
-	return true;
+		return std::nullopt;
+	return skeleton;
 }
 
 } // namespace vcg::tri::mcf::refining

@@ -496,11 +496,9 @@ private:
 	SolidSurface thickened(double thickness, Repair repair, const Progress& progress)
 	{
 		Box3d box;
-		for (const Triangle& t : triangles)
+		for (const Triangle& t : finiteFaces(points, triangles))
 			for (int v : t)
-				if (const Point3d& p = points[size_t(v)];
-					std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]))
-					box.Add(p);
+				box.Add(points[size_t(v)]);
 		ThickenedSheets sheets =
 			thickenedSheets(points, triangles, thickness * box.Diag(), progress.part(0, 0.3));
 		MendedSurface thick;
@@ -686,13 +684,7 @@ private:
 	void takeSidesAsGiven(MendedSurface& mended, const Progress& progress)
 	{
 		constexpr double better = 0.02; // of the area
-		std::vector<Triangle> faces;
-		for (const Triangle& t : triangles)
-			if (std::all_of(t.begin(), t.end(), [&](int v) {
-					const Point3d& p = points[size_t(v)];
-					return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
-				}))
-				faces.push_back(t);
+		std::vector<Triangle> faces = finiteFaces(points, triangles);
 		removeDegenerateFaces(points.size(), faces, progress.part(0, 0.1));
 		std::vector<int> partner =
 			pairedHalfEdges(mended.points, faces, nullptr, progress.part(0.1, 0.2));
@@ -805,24 +797,14 @@ private:
 	/// and measures the distances.
 	void finish(SurfaceMesh mesh, std::vector<int> vertexOfInput, const Progress& progress)
 	{
-		const auto isFinite = [&](const Point3d& p) {
-			return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
-		};
 		std::vector<char> used(points.size(), 0);
-		std::vector<Triangle> finite;
+		const std::vector<Triangle> finite = finiteFaces(points, triangles);
 		Box3d box;
-		for (const Triangle& t : triangles) {
-			bool whole = true;
-			for (int v : t)
-				whole &= isFinite(points[size_t(v)]);
-			if (!whole)
-				continue;
-			finite.push_back(t);
+		for (const Triangle& t : finite)
 			for (int v : t) {
 				used[size_t(v)] = 1;
 				box.Add(points[size_t(v)]);
 			}
-		}
 		std::vector<Point3d> lost;
 		std::vector<size_t> whose;
 		for (size_t v = 0; v < points.size(); ++v) {

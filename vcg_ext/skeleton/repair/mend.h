@@ -17,6 +17,7 @@
 
 #include <skeleton/core/errors.h>
 #include <skeleton/core/progress.h>
+#include <skeleton/core/shape_limits.h>
 #include <skeleton/core/large_arrays.h>
 #include <skeleton/input/coincident_points.h>
 #include <skeleton/input/soup_repair.h>
@@ -220,16 +221,9 @@ inline MendedSurface mend(const std::vector<Point3d>& points,
 	MendReport& report = mended.report;
 	mended.points = copiedArray(points, progress);
 	std::vector<Triangle>& faces = mended.triangles;
-	const auto isFinite = [&](int v) {
-		const Point3d& p = points[size_t(v)];
-		return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
-	};
-	faces.reserve(triangles.size());
-	for (const Triangle& t : triangles)
-		if (isFinite(t[0]) && isFinite(t[1]) && isFinite(t[2]))
-			faces.push_back(t);
+	faces = finiteFaces(points, triangles);
 	for (size_t v = 0; v < points.size(); ++v)
-		if (!isFinite(int(v)))
+		if (!isFinitePlace(points[v]))
 			mended.points[v] = Point3d(0, 0, 0); // of no face
 	report.facesDropped = int(triangles.size() - faces.size());
 	report.facesDropped += int(removeDegenerateFaces(points.size(), faces, progress.part(0, 0.1)));
@@ -254,7 +248,7 @@ inline MendedSurface mend(const std::vector<Point3d>& points,
 			removeDegenerateFaces(points.size(), merged, progress.part(0.15, 0.2));
 		if (defectsOf(merged) < defects) {
 			for (size_t v = 0; v < points.size(); ++v)
-				report.verticesMerged += isFinite(int(v)) && first[v] != int(v);
+				report.verticesMerged += isFinitePlace(points[v]) && first[v] != int(v);
 			report.facesDropped += int(dropped);
 			faces = std::move(merged);
 			vertexOfInput = first;

@@ -12,12 +12,11 @@
 
 #include <skeleton/core/disjoint_sets.h>
 #include <skeleton/core/progress.h>
+#include <skeleton/core/shape_limits.h>
 #include <skeleton/input/coincident_points.h>
 #include <skeleton/input/soup_repair.h>
 
 #include <algorithm>
-#include <cmath>
-#include <iterator>
 #include <set>
 #include <vector>
 
@@ -53,21 +52,10 @@ inline ThickenedSheets thickenedSheets(const std::vector<Point3d>& points,
 	using namespace detail;
 	ThickenedSheets thick;
 	thick.points = points;
-	const auto isFinite = [&](const Triangle& t) {
-		return std::all_of(t.begin(), t.end(), [&](int v) {
-			const Point3d& p = points[size_t(v)];
-			return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
-		});
-	};
-	std::vector<Triangle> faces;
-	std::copy_if(triangles.begin(), triangles.end(), std::back_inserter(faces), isFinite);
-	std::vector<char> used(points.size(), 0);
-	for (const Triangle& t : faces)
-		for (int v : t)
-			used[size_t(v)] = 1;
-	for (size_t v = 0; v < points.size(); ++v)
-		if (!used[v])
-			thick.points[v] = Point3d(0, 0, 0);
+	std::vector<Triangle> faces = finiteFaces(points, triangles);
+	for (Point3d& p : thick.points)
+		if (!isFinitePlace(p))
+			p = Point3d(0, 0, 0); // of no face
 	const std::vector<int> standsFor =
 		firstCoincident(thick.points, progress.part(0, 0.1), repairing);
 	for (Triangle& t : faces)

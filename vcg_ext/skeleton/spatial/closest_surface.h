@@ -312,11 +312,9 @@ private:
 			faceOfSample.push_back(surface.outgoing(vertices[i]) / 3);
 		});
 		detail::reportedLoop(count, progress.part(0.3, 1), sorting, [&](int i) {
-			surface.forEachOutgoing(vertices[i], [&](int h) {
-				if (h % 3 != 0) // each face once
-					return;
-				faces.push_back(h / 3);
-				sampleInside(h / 3, spacing, points);
+			surface.forEachOwnFace(vertices[i], [&](int f) {
+				faces.push_back(f);
+				sampleInside(f, spacing, points);
 			});
 		});
 		return points;

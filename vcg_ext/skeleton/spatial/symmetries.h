@@ -33,13 +33,12 @@ namespace detail {
 /// Calls visit(a, b, c) with the corners of each triangle of some components. @throws Cancelled
 template <class Visitor>
 void forEachTriangleOf(const SurfaceMesh& mesh, const std::vector<int>& vertices,
-	const Progress& progress, Visitor&& visit)
+	const Cancellation& cancel, Visitor&& visit)
 {
-	reportedLoop(int(vertices.size()), progress, "Looking for symmetries", [&](int i) {
-		mesh.forEachOutgoing(vertices[size_t(i)], [&](int h) {
-			if (h % 3 == 0)
-				visit(mesh.position[mesh.origin(h)], mesh.position[mesh.target(h)],
-					mesh.position[mesh.apex(h)]);
+	cancellableLoop(int(vertices.size()), cancel, [&](int i) {
+		mesh.forEachOwnFace(vertices[size_t(i)], [&](int f) {
+			const Triangle t = mesh.triangle(f);
+			visit(mesh.position[t[0]], mesh.position[t[1]], mesh.position[t[2]]);
 		});
 	});
 }
@@ -72,9 +71,9 @@ class SymmetryCandidates
 public:
 	/// @throws Cancelled. Complexity: O(F).
 	SymmetryCandidates(
-		const SurfaceMesh& mesh, const std::vector<int>& vertices, const Progress& progress)
+		const SurfaceMesh& mesh, const std::vector<int>& vertices, const Cancellation& cancel)
 	{
-		measure(mesh, vertices, progress);
+		measure(mesh, vertices, cancel);
 		// The normal of a mirror plane and the axis of a rotation are eigenvectors of the second
 		// moments. Where eigenvalues are alike, the eigenvectors are not known well.
 		constexpr double alike = 0.1;
@@ -87,7 +86,7 @@ public:
 			addNormal(toPoint(axis));
 			axes.push_back({axis, (i == 2 && first) || (i == 0 && last) ? mostTurns : 2});
 			if (axes.back().turns > 2)
-				addPlanesThrough(axis, mesh, vertices, progress);
+				addPlanesThrough(axis, mesh, vertices, cancel);
 		}
 		if (first || last)
 			for (int i = 0; i < 3; ++i) {
@@ -142,13 +141,13 @@ private:
 
 	/// The centroid, and the second moments S = int (x - m)(x - m)^T dA.
 	void measure(
-		const SurfaceMesh& mesh, const std::vector<int>& vertices, const Progress& progress)
+		const SurfaceMesh& mesh, const std::vector<int>& vertices, const Cancellation& cancel)
 	{
 		double whole = 0;
 		Point3d sum(0, 0, 0);
 		Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
 		forEachTriangleOf(
-			mesh, vertices, progress, [&](const Point3d& a, const Point3d& b, const Point3d& c) {
+			mesh, vertices, cancel, [&](const Point3d& a, const Point3d& b, const Point3d& c) {
 				const double area = ((b - a) ^ (c - a)).Norm() / 2;
 				const Point3d corners = a + b + c;
 				whole += area;
@@ -175,7 +174,7 @@ private:
 	 * of a shape that is symmetric in the plane at the angle psi have the argument n psi, modulo pi.
 	 */
 	void addPlanesThrough(const Eigen::Vector3d& axis, const SurfaceMesh& mesh,
-		const std::vector<int>& vertices, const Progress& progress)
+		const std::vector<int>& vertices, const Cancellation& cancel)
 	{
 		constexpr int orders = 8;
 		constexpr double minimum = 0.01; // of the moment of all that lies at one angle
@@ -183,7 +182,7 @@ private:
 		std::array<std::complex<double>, orders> moment = {};
 		std::array<double, orders> whole = {};
 		forEachTriangleOf(
-			mesh, vertices, progress, [&](const Point3d& a, const Point3d& b, const Point3d& c) {
+			mesh, vertices, cancel, [&](const Point3d& a, const Point3d& b, const Point3d& c) {
 				const Point3d p = (a + b + c) / 3 - mean;
 				const std::complex<double> z(p * u, p * v);
 				double size = ((b - a) ^ (c - a)).Norm() / 2 * std::norm(z);
@@ -281,7 +280,7 @@ inline bool areAlike(const Eigen::Isometry3d& one, const Eigen::Isometry3d& othe
 /// The vertices that are farthest in each of 26 directions, to the faces, edges and corners of a
 /// cube; of several, the first by its place. @throws Cancelled. Complexity: O(V).
 inline std::vector<int> outermost(
-	const SurfaceMesh& mesh, const std::vector<int>& vertices, const Progress& progress)
+	const SurfaceMesh& mesh, const std::vector<int>& vertices, const Cancellation& cancel)
 {
 	std::vector<Point3d> ways;
 	for (int x : {-1, 0, 1})
@@ -290,7 +289,7 @@ inline std::vector<int> outermost(
 				if (x || y || z)
 					ways.emplace_back(x, y, z);
 	std::vector<int> found(ways.size(), vertices.front());
-	reportedLoop(int(vertices.size()), progress, "Looking for symmetries", [&](int i) {
+	cancellableLoop(int(vertices.size()), cancel, [&](int i) {
 		const int v = vertices[size_t(i)];
 		for (size_t k = 0; k < ways.size(); ++k) {
 			const Point3d &one = mesh.position[v], &known = mesh.position[found[k]];
@@ -305,11 +304,11 @@ inline std::vector<int> outermost(
 /// Some of the vertices, chosen and ordered by their places alone. @throws Cancelled
 /// Complexity: O(V log V).
 inline std::vector<Point3d> someOf(const SurfaceMesh& mesh, const std::vector<int>& vertices,
-	size_t count, const Progress& progress)
+	size_t count, const Cancellation& cancel)
 {
 	std::vector<std::pair<std::uint64_t, Point3d>> drawn;
 	drawn.reserve(vertices.size());
-	reportedLoop(int(vertices.size()), progress, "Looking for symmetries", [&](int i) {
+	cancellableLoop(int(vertices.size()), cancel, [&](int i) {
 		const Point3d& p = mesh.position[vertices[size_t(i)]];
 		drawn.emplace_back(scattered(p), p);
 	});
@@ -370,21 +369,21 @@ inline std::vector<Eigen::Isometry3d> generatedGroup(
  */
 inline std::vector<Eigen::Isometry3d> symmetriesOf(const SurfaceMesh& mesh,
 	const std::vector<int>& vertices, const ClosestSurface& closest,
-	const Progress& progress = Progress())
+	const Cancellation& cancel = Cancellation())
 {
 	constexpr size_t samples = 300, fewSamples = 25;
 	constexpr double mayBe = 0.02, mean = 1.5e-3, farthest = 5e-3; // diagonals
 	constexpr int rounds = 4;
-	const detail::SymmetryCandidates candidates(mesh, vertices, progress);
-	std::vector<Point3d> points = detail::someOf(mesh, vertices, samples, progress);
+	const detail::SymmetryCandidates candidates(mesh, vertices, cancel);
+	std::vector<Point3d> points = detail::someOf(mesh, vertices, samples, cancel);
 	const size_t sparse = std::max<size_t>(1, points.size() / fewSamples);
 	// Corners and ends of limbs are few, but tell more than others.
-	for (int v : detail::outermost(mesh, vertices, progress))
+	for (int v : detail::outermost(mesh, vertices, cancel))
 		points.push_back(mesh.position[size_t(v)]);
 	const detail::SymmetryFit fit(closest, std::move(points));
 	std::vector<Eigen::Isometry3d> found;
 	const auto tryOut = [&](Eigen::Isometry3d map) {
-		progress.check();
+		cancel.check();
 		if (!fit.isNear(map, sparse, mayBe))
 			return false;
 		for (int i = 0; i < rounds; ++i)
