@@ -216,6 +216,29 @@ TEST(Refine, ACurveAroundACornerIsSampledAboutAsSparselyAsOthers)
 	EXPECT_LE(even.edges.size(), 10u) << "not the 400 that the curve had: 7, were there no corner";
 }
 
+TEST(Refine, ACurveThatGoesToAndFroInATubeIsStraightened)
+{
+	const SurfaceMesh mesh = shapes::subdivided(shapes::cells(10, 10, 1, [](int i, int j, int) {
+		return i == 0 || j == 0;
+	})).mesh();
+	std::vector<int> all(size_t(mesh.vertexSlots()));
+	std::iota(all.begin(), all.end(), 0);
+	const ClosestSurface surface(mesh, all, 0.1);
+	// Three times through the same arm, by ways a little beside each other, then around the corner.
+	CurveSkeleton curve = CurveMaker()
+							  .line(Point3d(9.5, 0.5, 0.5), Point3d(3, 0.45, 0.5), 50)
+							  .line(Point3d(3, 0.45, 0.5), Point3d(9, 0.5, 0.55), 50)
+							  .line(Point3d(9, 0.5, 0.55), Point3d(0.5, 0.5, 0.5), 50)
+							  .line(Point3d(0.5, 0.5, 0.5), Point3d(0.5, 9.5, 0.5), 50)
+							  .in(mesh);
+	for (size_t v = 0; v < curve.position.size(); ++v)
+		curve.radius[v] = surface.clearance(curve.position[v]);
+	const CurveSkeleton even = refining::evenlySampled(curve, surface, 2.5);
+	EXPECT_TRUE(isInside(even, mesh));
+	EXPECT_EQ(statistics(even).terminals, 2);
+	EXPECT_LE(statistics(even).length, 18.5) << "9 + 9, and a little beside the axis; 30 before";
+}
+
 TEST(Refine, ANeedlesEndsGetNoMoreNodesThanItsMiddle)
 {
 	// A double cone of a thousandth; the curve that is given ends where it is thick.

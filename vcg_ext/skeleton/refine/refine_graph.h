@@ -15,6 +15,7 @@
 #include <skeleton/graph/skeleton_branches.h>
 #include <skeleton/poles/sizing_field.h>
 #include <skeleton/spatial/closest_surface.h>
+#include <skeleton/spatial/point_tree.h>
 
 #include <vcg/space/distance3.h>
 #include <vcg/space/line3.h>
@@ -22,6 +23,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -511,6 +513,73 @@ inline BallChain withShortEdges(const BallChain& line, const std::vector<double>
 	return finer;
 }
 
+/// The search for the last points of a polyline in a ball, see PointTree::search().
+struct PointsFurtherOn
+{
+	const std::vector<int>& order;
+	const std::vector<double>& along;
+	Point3d middle;
+	double radius;
+	double start;           ///< along the polyline, the least
+	std::vector<int> found; ///< the last one first
+
+	const Point3d& centre() const { return middle; }
+	double reach() const { return radius; }
+	void visit(int slot, const Point3d& p)
+	{
+		constexpr size_t most = 8;
+		const int point = order[size_t(slot)];
+		if (along[size_t(point)] < start || Distance(p, middle) > radius)
+			return;
+		found.insert(
+			std::lower_bound(found.begin(), found.end(), point, std::greater<int>()), point);
+		if (found.size() > most)
+			found.pop_back();
+	}
+};
+
+/**
+ * A polyline without its loops: where it comes back to a point within the ball of an earlier one,
+ * or nearer to that than the next one is, by a segment inside and half as long as the way at most,
+ * what is between goes. The contraction of a needle may leave a curve that goes to and fro in it.
+ * @pre the shape has no handles: every way inside between two points is then as good as another.
+ * @param spacings at its points; on return at those that are left.
+ * Complexity: O(n log n) for n points of which few are in each ball. @throws Cancelled
+ */
+inline BallChain withoutLoops(const BallChain& line, std::vector<double>& spacings,
+	const ClosestSurface& surface, const Progress& progress)
+{
+	constexpr double longer = 2;
+	const std::vector<double> along = lengthsAlong(line.points);
+	const PointTree tree(line.points);
+	BallChain kept;
+	std::vector<double> ofKept;
+	for (size_t i = 0; i < line.points.size();) {
+		if (kept.points.size() % nodesPerCheck == 0)
+			progress.check();
+		kept.points.push_back(line.points[i]);
+		kept.radii.push_back(line.radii[i]);
+		ofKept.push_back(spacings[i]);
+		size_t next = i + 1;
+		if (next < line.points.size()) {
+			const double reach = std::max(line.radii[i], along[next] - along[i]);
+			PointsFurtherOn ball {
+				tree.order(), along, line.points[i], reach, along[i] + longer * reach, {}};
+			tree.search(ball);
+			for (int j : ball.found)
+				if (size_t(j) > next
+					&& isSegmentInside(surface, line.points[i], line.radii[i],
+						line.points[size_t(j)], line.radii[size_t(j)])) {
+					next = size_t(j);
+					break;
+				}
+		}
+		i = next;
+	}
+	spacings = std::move(ofKept);
+	return kept;
+}
+
 /**
  * A polyline without crowded nodes: one goes if the straight segment from the node kept
  * before it to the one after it is inside and shorter than 1.25 spacings.
@@ -668,8 +737,8 @@ inline CurveSkeleton withoutDoubledTips(
 /**
  * Samples each branch evenly, about `spacing` apart, less where the scale is smaller. Junctions and
  * tips keep their places; what had merged into a node goes to the one nearest along the branch.
- * Where a chord would leave the surface, the branch keeps its nodes, but for crowded ones, and only
- * its long edges are cut.
+ * Where a chord would leave the surface, the branch keeps its nodes, but for loops, see
+ * withoutLoops(), and crowded ones, and only its long edges are cut.
  * @pre radius holds the distances from the surface, or lower bounds. @post lower bounds.
  * @throws Cancelled
  */
@@ -678,6 +747,7 @@ inline CurveSkeleton evenlySampled(const CurveSkeleton& skeleton, const ClosestS
 {
 	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
 	const std::vector<Branch> branches = skeletonBranches(skeleton);
+	const bool hasCycles = statistics(skeleton).cycles > 0;
 	CurveSkeleton even;
 	std::vector<int> place(skeleton.position.size(), -1);
 	const auto keep = [&](int v) {
@@ -710,7 +780,9 @@ inline CurveSkeleton evenlySampled(const CurveSkeleton& skeleton, const ClosestS
 			? evenPoints(line, std::max(minimum, int(std::lround(length / spacing))))
 			: gradedPoints(line, spacings, minimum);
 		if (!isInside(chain, surface, progress)) {
-			const BallChain thinned = withoutCrowdedNodes(line, spacings, surface, progress);
+			const BallChain straight =
+				hasCycles ? line : withoutLoops(line, spacings, surface, progress);
+			const BallChain thinned = withoutCrowdedNodes(straight, spacings, surface, progress);
 			const BallChain kept = withShortEdges(thinned, spacings);
 			if (int(kept.points.size()) > minimum)
 				chain = kept;
