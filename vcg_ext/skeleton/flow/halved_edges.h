@@ -88,14 +88,14 @@ inline std::vector<char> coarseComponents(const MeasuredSurface& surface, double
  *
  * An epsilon below the default counts as the default, so that it does not decide the number of
  * vertices. So that a scene of many coarse bodies stays workable, the lengths are raised, all by
- * the same factor, where half a million vertices would be exceeded.
+ * the same factor, where a quarter of a million vertices would be exceeded.
  * @param coarse see coarseComponents().
  * @return a length for each component, mesh units; infinite for one that is fine enough.
  */
 inline std::vector<double> longestEdgesForFlow(
 	const MeasuredSurface& surface, const std::vector<char>& coarse, double epsilon)
 {
-	constexpr double maxVertices = 5e5;
+	constexpr double maxVertices = 2.5e5;
 	// Of area / length^2: halving leaves edges between half the length and the length.
 	constexpr double verticesOfArea = 3.5;
 	std::vector<double> longest(coarse.size(), std::numeric_limits<double>::infinity());
