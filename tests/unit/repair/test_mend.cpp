@@ -26,6 +26,11 @@ MendedSurface mendedOf(const shapes::Soup& soup)
 	return mend(soup.points, soup.triangles);
 }
 
+detail::SoupEdges edgesOf(const shapes::Soup& soup)
+{
+	return detail::sortedSoupEdges(soup.points.size(), soup.triangles, Progress());
+}
+
 /// Closed, in so many pieces, with this Euler characteristic, and the vertices of the input to the last bit.
 void expectMended(
 	const MendedSurface& surface, const shapes::Soup& soup, int pieces = 1, int euler = 2)
@@ -563,7 +568,8 @@ TEST(Mend, ClosesATJunctionOfSeveralFansOnce)
 								   {0.5, 1, 0}, {0, 1, 0}},
 		{{1, 0, 2}, {3, 4, 5}, {3, 6, 7}}};
 	std::vector<Triangle> faces = soup.triangles;
-	const ClosedSeams seams = closeSeams(soup.points, faces);
+	detail::SoupEdges edges = edgesOf(soup);
+	const ClosedSeams seams = closeSeams(soup.points, faces, edges);
 	EXPECT_EQ(seams.junctions, 1);
 	EXPECT_EQ(seams.merged, 0);
 	EXPECT_EQ(faces.size(), 4u);
@@ -580,7 +586,8 @@ TEST(Mend, AsksToCancelOftenWhereBordersOverlap)
 		soup.triangles.push_back({n, n + 1, n + 2});
 	}
 	int asked = 0;
-	closeSeams(soup.points, soup.triangles, Progress([&](int, const char*) {
+	detail::SoupEdges edges = edgesOf(soup);
+	closeSeams(soup.points, soup.triangles, edges, Progress([&](int, const char*) {
 		++asked;
 		return true;
 	}));
@@ -588,7 +595,8 @@ TEST(Mend, AsksToCancelOftenWhereBordersOverlap)
 	// A vertex with many borders is looked at once, not once for each.
 	asked = 0;
 	shapes::Soup fans = wheel(20000, false);
-	closeSeams(fans.points, fans.triangles, Progress([&](int, const char*) {
+	edges = edgesOf(fans);
+	closeSeams(fans.points, fans.triangles, edges, Progress([&](int, const char*) {
 		++asked;
 		return true;
 	}));

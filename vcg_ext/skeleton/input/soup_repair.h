@@ -305,12 +305,15 @@ inline RepairedSoup repairedSoup(const std::vector<Point3d>& points,
 	SoupEdges edges = sortedSoupEdges(points.size(), faces, progress.part(0.15, 0.35));
 	EdgeDefects defects = edgeDefects(points, edges, progress.part(0.35, 0.37));
 	std::vector<int>& vertexOfInput = result.vertexOfInput;
+	std::vector<int> first;
+	size_t copies = 0;
 	if (!defects.none()) {
-		std::vector<int> first = firstCoincident(points, progress.part(0.37, 0.45), repairing);
-		std::vector<Triangle> merged = copiedArray(faces, progress);
-		size_t copies = 0;
+		first = firstCoincident(points, progress.part(0.37, 0.45), repairing);
 		reportedLoop(int(first.size()), progress.part(0.45, 0.47), repairing,
 			[&](int v) { copies += first[v] != v; });
+	}
+	if (copies > 0) {
+		std::vector<Triangle> merged = copiedArray(faces, progress);
 		reportedLoop(int(merged.size()), progress.part(0.47, 0.5), repairing, [&](int f) {
 			for (int& v : merged[f])
 				v = first[v];

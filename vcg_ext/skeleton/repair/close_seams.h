@@ -40,19 +40,16 @@ struct BorderEdge
 	int from, to, face;
 };
 
-inline std::vector<BorderEdge> borderEdges(
-	size_t vertices, const std::vector<Triangle>& triangles, const Progress& progress)
+inline std::vector<BorderEdge> borderEdges(const SoupEdges& edges, const Progress& progress)
 {
 	std::vector<BorderEdge> border;
-	const SoupEdges edges = sortedSoupEdges(vertices, triangles, progress.part(0, 0.9));
-	forEachSoupEdge(
-		edges, progress.part(0.9, 1), [&](int low, const SoupEdge* begin, const SoupEdge* end) {
-			if (end - begin != 1)
-				return;
-			const bool forward = begin->forward;
-			border.push_back(
-				{forward ? low : begin->high, forward ? begin->high : low, int(begin->face)});
-		});
+	forEachSoupEdge(edges, progress, [&](int low, const SoupEdge* begin, const SoupEdge* end) {
+		if (end - begin != 1)
+			return;
+		const bool forward = begin->forward;
+		border.push_back(
+			{forward ? low : begin->high, forward ? begin->high : low, int(begin->face)});
+	});
 	return border;
 }
 
@@ -61,11 +58,11 @@ inline std::vector<BorderEdge> borderEdges(
 /**
  * Merges border vertices that nearly coincide, and splits border edges on which a border vertex
  * lies: both within a hundredth of the shortest edges there. What is not on a border stays.
- * @param points    mesh units. @param triangles are changed.
+ * @param points    mesh units. @param triangles are changed. @param edges  theirs, kept up to date.
  * @throws Cancelled. Complexity: O(F + B log B) for B border edges whose boxes hardly overlap.
  */
 inline ClosedSeams closeSeams(const std::vector<Point3d>& points, std::vector<Triangle>& triangles,
-	const Progress& progress = Progress())
+	detail::SoupEdges& edges, const Progress& progress = Progress())
 {
 	constexpr double nearness = 0.01; // of an edge
 	constexpr int maxRounds = 3;      // each splits at most one edge of a face
@@ -74,7 +71,7 @@ inline ClosedSeams closeSeams(const std::vector<Point3d>& points, std::vector<Tr
 	for (int round = 0; round < maxRounds; ++round) {
 		const Progress part = progress.part(double(round) / maxRounds, (round + 1.0) / maxRounds);
 		const std::vector<detail::BorderEdge> border =
-			detail::borderEdges(points.size(), triangles, part.part(0, 0.5));
+			detail::borderEdges(edges, part.part(0, 0.5));
 		if (border.empty())
 			break;
 		// Both ends: the faces may not be oriented coherently yet.
@@ -169,8 +166,10 @@ inline ClosedSeams closeSeams(const std::vector<Point3d>& points, std::vector<Tr
 			for (Triangle& t : triangles)
 				for (int& v : t)
 					v = vertices.find(v);
-		if (merged || junctions)
+		if (merged || junctions) {
 			detail::removeDegenerateFaces(points.size(), triangles, part.cancelOnly());
+			edges = detail::sortedSoupEdges(points.size(), triangles, part.cancelOnly());
+		}
 		if (!junctions)
 			break;
 	}

@@ -199,50 +199,63 @@ inline std::vector<size_t> nextAngles(
 	return next;
 }
 
+/// The fan of faces between two border half-edges of a vertex.
+struct BorderFan
+{
+	int out, into;  ///< border half-edges from and to the vertex
+	Point3d normal; ///< of its faces, the sum weighted by area
+};
+
+/// The fan that begins at a border half-edge. Complexity: O(n log n) for n faces.
+inline BorderFan borderFan(const std::vector<Point3d>& points,
+	const std::vector<Triangle>& triangles, const std::vector<int>& partner, int out)
+{
+	const auto origin = [&](int h) { return triangles[size_t(h) / 3][size_t(h) % 3]; };
+	const int vertex = origin(out);
+	std::vector<int> corners(1, out);
+	int leave = Fans::previous(out); // the other half-edge of the face at the vertex
+	for (int g = partner[size_t(leave)]; g >= 0; g = partner[size_t(leave)]) {
+		const int corner = origin(g) == vertex ? g : Fans::next(g);
+		leave = corner == g ? Fans::previous(corner) : corner;
+		corners.push_back(corner);
+	}
+	BorderFan fan = {out, leave, Point3d(0, 0, 0)};
+	std::sort(corners.begin(), corners.end()); // the sum depends on the order
+	for (int c : corners) {
+		const Triangle& t = triangles[size_t(c) / 3];
+		const Point3d& a = points[size_t(t[0])];
+		fan.normal += (points[size_t(t[1])] - a) ^ (points[size_t(t[2])] - a);
+	}
+	return fan;
+}
+
 /**
  * The loops of half-edges around the holes of a coherently oriented surface, as they run in the
  * faces. Where several fans of faces meet at a vertex, a loop continues at the next fan across the
  * gap, so that the gap can be filled and the vertex is not split. Where the fans face different
  * ways, a loop stays with its fan, and is split where it returns to the vertex: the open end of a
  * wing and the slit along its trailing edge are separate holes.
- * @throws Cancelled. Complexity: O(F log F).
+ * @throws Cancelled. Complexity: O(F + B log B) for B faces at border vertices.
  */
 inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& points,
 	const std::vector<Triangle>& triangles, const std::vector<int>& partner,
 	const Progress& progress = Progress())
 {
 	Ticker ticker(progress.cancelOnly(), repairing, double(partner.size()));
-	const Fans fans(triangles, partner);
 	const auto origin = [&](int h) { return triangles[size_t(h) / 3][size_t(h) % 3]; };
-	struct BorderFan
-	{
-		int out = -1, into = -1; ///< border half-edges from and to the vertex
-		Point3d normal = Point3d(0, 0, 0);
-	};
-	std::map<int, BorderFan> fanOf;
-	std::map<int, std::vector<int>> fansAt;
+	std::map<int, std::vector<BorderFan>> fansAt;
 	for (int h = 0; h < int(partner.size()); ++h)
-		if (partner[size_t(h)] < 0) {
-			const int start = fans.find(h);
-			fanOf[start].out = h;
-			fanOf[fans.find(Fans::next(h))].into = h;
-			fansAt[origin(h)].push_back(start);
-		}
-	for (int c = 0; c < int(partner.size()); ++c)
-		if (const auto fan = fanOf.find(fans.find(c)); fan != fanOf.end()) {
-			const Triangle& t = triangles[size_t(c) / 3];
-			const Point3d& a = points[size_t(t[0])];
-			fan->second.normal += (points[size_t(t[1])] - a) ^ (points[size_t(t[2])] - a);
-		}
+		if (partner[size_t(h)] < 0)
+			fansAt[origin(h)].push_back(borderFan(points, triangles, partner, h));
 	std::map<int, int> following; // of the half-edge into a vertex
 	std::set<int> splitting;      // vertices whose fans face different ways
 	for (const auto& [v, around] : fansAt) {
 		Point3d normal(0, 0, 0);
-		for (int fan : around)
-			normal += fanOf[fan].normal;
+		for (const BorderFan& fan : around)
+			normal += fan.normal;
 		bool alike = true;
-		for (int fan : around)
-			alike &= fanOf[fan].normal * normal > 0;
+		for (const BorderFan& fan : around)
+			alike &= fan.normal * normal > 0;
 		if (!alike)
 			splitting.insert(v);
 		// Seen from outside, each fan extends counter-clockwise from its border `out` to `into`.
@@ -254,16 +267,16 @@ inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& point
 			return std::atan2(d * y, d * x);
 		};
 		std::vector<double> from, to;
-		for (int fan : around) {
+		for (const BorderFan& fan : around) {
 			ticker.tick();
-			from.push_back(angle(origin(fanOf[fan].into)));
-			to.push_back(angle(origin(Fans::next(fanOf[fan].out))));
+			from.push_back(angle(origin(fan.into)));
+			to.push_back(angle(origin(Fans::next(fan.out))));
 		}
 		const std::vector<size_t> next = nextAngles(from, to, ticker);
 		const bool isRound =
 			alike && std::set<size_t>(next.begin(), next.end()).size() == around.size();
 		for (size_t i = 0; i < around.size(); ++i)
-			following[fanOf[around[i]].into] = fanOf[around[isRound ? next[i] : i]].out;
+			following[around[i].into] = around[isRound ? next[i] : i].out;
 	}
 	std::vector<std::vector<int>> loops;
 	std::vector<char> done(partner.size(), 0);
@@ -431,6 +444,42 @@ inline bool crossesOthers(const TriangleTree& tree, const std::vector<Triangle>&
 	return crossesOthers(tree, triangles, points, t, [](int) { return true; });
 }
 
+/// The triangles whose boxes meet that of a hole with at most `edges` edges: its filling, which is
+/// within the hole's box, can cross no others. @throws Cancelled.
+/// Complexity: O(F log n) for n holes apart.
+inline std::vector<Triangle> facesNearHoles(const std::vector<Point3d>& points,
+	const std::vector<Triangle>& triangles, const std::vector<std::vector<int>>& loops, int edges,
+	const Progress& progress)
+{
+	std::vector<Point3d> corners;
+	std::vector<Triangle> diagonals; // of the holes' boxes
+	for (const std::vector<int>& loop : loops) {
+		if (int(loop.size()) > edges)
+			continue;
+		Box3d box;
+		for (int h : loop)
+			box.Add(points[size_t(triangles[size_t(h) / 3][size_t(h) % 3])]);
+		const int first = int(corners.size());
+		corners.push_back(box.min);
+		corners.push_back(box.max);
+		diagonals.push_back({first, first + 1, first + 1});
+	}
+	std::vector<Triangle> near;
+	if (diagonals.empty())
+		return near;
+	const TriangleTree holes(corners, diagonals);
+	reportedLoop(int(triangles.size()), progress, "Filling holes", [&](int f) {
+		Box3d box;
+		for (int v : triangles[size_t(f)])
+			box.Add(points[size_t(v)]);
+		bool isNear = false;
+		holes.forEachFaceIn(box, [&](int) { isNear = true; });
+		if (isNear)
+			near.push_back(triangles[size_t(f)]);
+	});
+	return near;
+}
+
 } // namespace detail
 
 /**
@@ -456,8 +505,13 @@ inline FilledHoles fillHoles(const std::vector<Point3d>& points, std::vector<Tri
 	const double largest = *std::max_element(area.begin(), area.end());
 	std::set<std::pair<int, int>> edges =
 		detail::edgesBetween(triangles, detail::borderVertices(points.size(), triangles, partner));
-	const std::vector<Triangle> given = triangles;
-	const TriangleTree tree(points, given, progress.part(0, 0.3));
+	const std::vector<Triangle> near =
+		detail::facesNearHoles(points, triangles, loops, limits.edges, progress.part(0, 0.1));
+	if (near.empty()) {
+		done.left = int(loops.size());
+		return done;
+	}
+	const TriangleTree tree(points, near, progress.part(0.1, 0.3));
 	const double maxTurn = 1 - std::cos(limits.turn * M_PI / 180);
 	const Progress filling = progress.part(0.3, 1);
 	for (size_t i = 0; i < loops.size(); ++i) {
@@ -496,7 +550,7 @@ inline FilledHoles fillHoles(const std::vector<Point3d>& points, std::vector<Tri
 					if (b - a > 1)
 						fits &= chords.insert(border.edge(a, b))
 									.second; // a vertex may be on the loop twice
-				fits = fits && (anyhow || !detail::crossesOthers(tree, given, points, made.back()));
+				fits = fits && (anyhow || !detail::crossesOthers(tree, near, points, made.back()));
 			}
 			return fits;
 		};

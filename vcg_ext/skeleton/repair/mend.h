@@ -72,36 +72,30 @@ struct MendedSurface
 namespace detail {
 
 /// Removes pairs of faces with the same corners and opposite orientation: they enclose nothing.
-inline int removeBackToBack(std::vector<Triangle>& triangles)
+/// @param edges  of the triangles. @return how many. @pre no face is there twice. @throws Cancelled
+inline int removeBackToBack(
+	std::vector<Triangle>& triangles, const SoupEdges& edges, const Progress& progress)
 {
-	struct Known
-	{
-		Triangle sorted;
-		int face;
-		bool operator<(const Known& other) const
-		{
-			return sorted != other.sorted ? sorted < other.sorted : face < other.face;
-		}
-	};
-	std::vector<Known> faces;
-	for (size_t f = 0; f < triangles.size(); ++f) {
-		Triangle t = triangles[f];
-		std::sort(t.begin(), t.end());
-		faces.push_back({t, int(f)});
-	}
-	std::sort(faces.begin(), faces.end());
 	std::vector<char> drop(triangles.size(), 0);
-	int dropped = 0;
-	for (size_t i = 0; i + 1 < faces.size(); ++i)
-		if (faces[i].sorted == faces[i + 1].sorted) { // copies of the same turn are gone by now
-			drop[size_t(faces[i].face)] = drop[size_t(faces[i + 1].face)] = 1;
-			dropped += 2;
-			++i;
+	std::vector<std::pair<int, unsigned>> faces; // at an edge: the corner opposite, and the face
+	forEachSoupEdge(edges, progress, [&](int low, const SoupEdge* begin, const SoupEdge* end) {
+		if (end - begin < 2)
+			return;
+		faces.clear();
+		for (const SoupEdge* e = begin; e != end; ++e) {
+			const Triangle& t = triangles[e->face];
+			faces.emplace_back(t[0] + t[1] + t[2] - low - e->high, e->face);
 		}
+		std::sort(faces.begin(), faces.end());
+		for (size_t i = 1; i < faces.size(); ++i)
+			if (faces[i].first == faces[i - 1].first)
+				drop[faces[i].second] = drop[faces[i - 1].second] = 1;
+	});
 	size_t kept = 0;
 	for (size_t f = 0; f < triangles.size(); ++f)
 		if (!drop[f])
 			triangles[kept++] = triangles[f];
+	const int dropped = int(triangles.size() - kept);
 	triangles.resize(kept);
 	return dropped;
 }
@@ -232,30 +226,40 @@ inline MendedSurface mend(const std::vector<Point3d>& points,
 	std::vector<int>& vertexOfInput = mended.vertexOfInput;
 	vertexOfInput.resize(points.size());
 	std::iota(vertexOfInput.begin(), vertexOfInput.end(), 0);
-	const auto defectsOf = [&](const std::vector<Triangle>& some) {
-		const EdgeDefects defects = edgeDefects(mended.points,
-			sortedSoupEdges(points.size(), some, progress.cancelOnly()), progress.cancelOnly());
+	const auto edgesOf = [&](const std::vector<Triangle>& some) {
+		return sortedSoupEdges(mended.points.size(), some, progress.cancelOnly());
+	};
+	const auto defectsOf = [&](const SoupEdges& some) {
+		const EdgeDefects defects = edgeDefects(mended.points, some, progress.cancelOnly());
 		return defects.border + defects.nonManifold;
 	};
-	if (const size_t defects = defectsOf(faces)) {
+	SoupEdges edges = edgesOf(faces);
+	if (const size_t defects = defectsOf(edges)) {
 		const std::vector<int> first =
 			firstCoincident(mended.points, progress.part(0.1, 0.15), repairing);
 		std::vector<Triangle> merged = faces;
 		for (Triangle& t : merged)
 			for (int& v : t)
 				v = first[size_t(v)];
-		const size_t dropped =
-			removeDegenerateFaces(points.size(), merged, progress.part(0.15, 0.2));
-		if (defectsOf(merged) < defects) {
-			for (size_t v = 0; v < points.size(); ++v)
-				report.verticesMerged += isFinitePlace(points[v]) && first[v] != int(v);
-			report.facesDropped += int(dropped);
-			faces = std::move(merged);
-			vertexOfInput = first;
+		if (merged != faces) {
+			const size_t dropped =
+				removeDegenerateFaces(points.size(), merged, progress.part(0.15, 0.2));
+			SoupEdges mergedEdges = edgesOf(merged);
+			if (defectsOf(mergedEdges) < defects) {
+				for (size_t v = 0; v < points.size(); ++v)
+					report.verticesMerged += isFinitePlace(points[v]) && first[v] != int(v);
+				report.facesDropped += int(dropped);
+				faces = std::move(merged);
+				edges = std::move(mergedEdges);
+				vertexOfInput = first;
+			}
 		}
 	}
-	report.facesDropped += removeBackToBack(faces);
-	const ClosedSeams seams = closeSeams(mended.points, faces, progress.part(0.2, 0.4));
+	if (const int dropped = removeBackToBack(faces, edges, progress.cancelOnly())) {
+		report.facesDropped += dropped;
+		edges = edgesOf(faces);
+	}
+	const ClosedSeams seams = closeSeams(mended.points, faces, edges, progress.part(0.2, 0.4));
 	report.verticesMerged += seams.merged;
 	report.junctionsClosed = seams.junctions;
 	for (int& v : vertexOfInput)
@@ -264,29 +268,29 @@ inline MendedSurface mend(const std::vector<Point3d>& points,
 		return mended;
 
 	std::vector<int> partedFrom;
-	const auto turn = [&] {
-		return orientCoherently(faces,
-			sortedSoupEdges(mended.points.size(), faces, progress.cancelOnly()),
-			progress.cancelOnly());
-	};
 	// First over the edges with two faces only: the pairing at the others depends on it.
-	const int turnedFirst = turn();
-	const PartedSurface parted =
+	const int turnedFirst = orientCoherently(faces, edges, progress.cancelOnly());
+	PartedSurface parted =
 		partSurface(mended.points, faces, partedFrom, true, progress.part(0.4, 0.5));
 	report.edgesParted = parted.edges;
 	report.verticesParted = parted.vertices;
-	const int turnedThen = turn();
+	const bool isParted = parted.edges > 0 || parted.vertices > 0;
+	const int turnedThen = isParted ? orientCoherently(faces, edgesOf(faces), progress.cancelOnly())
+									: std::min(turnedFirst, 0);
 	report.oneSided = turnedThen < 0;
 	report.facesTurned = std::max(turnedFirst, 0) + std::max(turnedThen, 0);
 	if (report.oneSided)
 		return mended;
-	std::vector<int> partner =
-		pairedHalfEdges(mended.points, faces, nullptr, progress.part(0.5, 0.55));
+	std::vector<int> partner = isParted
+		? pairedHalfEdges(mended.points, faces, nullptr, progress.part(0.5, 0.55))
+		: std::move(parted.partner);
 	// A torn-off limb may be as small as a speck: it stays until bridgeGaps() has tried to join it.
 	Specks specks = specksOf(mended.points, faces, partner);
-	spareTornLimbs(mended.points, faces, partner, specks);
-	report.piecesDropped = dropSpecks(faces, partner, specks);
-	specks = specksOf(mended.points, faces, partner);
+	if (specks.count > 0) {
+		spareTornLimbs(mended.points, faces, partner, specks);
+		report.piecesDropped = dropSpecks(faces, partner, specks);
+		specks = specksOf(mended.points, faces, partner);
+	}
 	report.gapsBridged = bridgeGaps(
 		mended.points, faces, partner, specks.isOne, GapLimits(), progress.part(0.55, 0.6));
 	if (report.gapsBridged > 0) {

@@ -56,6 +56,7 @@ public:
 	int find(int corner) const { return fans.find(corner); }
 
 	static int next(int h) { return h % 3 == 2 ? h - 2 : h + 1; }
+	static int previous(int h) { return h % 3 == 0 ? h + 2 : h - 1; }
 
 private:
 	const std::vector<Triangle>& triangles;

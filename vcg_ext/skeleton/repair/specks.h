@@ -116,8 +116,6 @@ inline Specks specksOf(const std::vector<Point3d>& points, const std::vector<Tri
 inline void spareTornLimbs(const std::vector<Point3d>& points,
 	const std::vector<Triangle>& triangles, const std::vector<int>& partner, Specks& specks)
 {
-	if (!specks.count)
-		return;
 	const std::vector<int> piece = pieceOfFaces(partner);
 	std::map<int, std::vector<int>> faces;
 	std::vector<int> number(triangles.size(), -1); // within the piece

@@ -69,7 +69,8 @@ inline ThickenedSheets thickenedSheets(const std::vector<Point3d>& points,
 		return !known.insert(t).second;
 	};
 	faces.erase(std::remove_if(faces.begin(), faces.end(), isKnown), faces.end());
-	const ClosedSeams seams = closeSeams(thick.points, faces, progress.part(0.2, 0.4));
+	SoupEdges edges = sortedSoupEdges(points.size(), faces, progress.part(0.2, 0.25));
+	const ClosedSeams seams = closeSeams(thick.points, faces, edges, progress.part(0.25, 0.4));
 	const std::vector<int> partner =
 		pairedHalfEdges(thick.points, faces, nullptr, progress.part(0.4, 0.5));
 
