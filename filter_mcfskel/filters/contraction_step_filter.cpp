@@ -147,7 +147,7 @@ FilterSpec contractionStepFilter()
 	return {"generate_meso_skeleton_mcf", menuName("Contraction Step"),
 		helpPage(
 			"Contracts the surface by one or more steps of mean curvature flow that is drawn to the "
-			"medial poles, and mends its triangles: a surface becomes a meso-skeleton, part volume, "
+			"medial poles, and remeshes it locally: a surface becomes a meso-skeleton, part volume, "
 			"part sheet, part curve, and in the end a curve. Each step is a new layer; the vertex "
 			"quality is the local thickness.<br><br>"
 			"Starts from a surface, or carries on from the layer of an earlier step: step by step it "

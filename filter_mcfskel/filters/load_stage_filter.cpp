@@ -82,7 +82,7 @@ FilterSpec loadStageFilter()
 	return {"load_stage_mcf", menuName("Load Stage"),
 		helpPage(
 			"Reads a file that 'Save Stage' wrote into a new layer: a stage of the contraction, on "
-			"which 'Contraction Step' and 'Collapse to Curve' carry on as if it had never left, or a "
+			"which 'Contraction Step' and 'Collapse to Curve' continue with the same results, or a "
 			"skeleton. If the surface that a stage comes from is among the layers, unchanged, it gets "
 			"its correspondence <i>mcfskel_node</i> again."),
 		FilterCategory::Remeshing, MeshModel::MM_NONE,

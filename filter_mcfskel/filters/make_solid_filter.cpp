@@ -55,9 +55,9 @@ FilterSpec makeSolidFilter()
 {
 	return {"generate_solid_mcf", menuName("Make Solid"),
 		helpPage(
-			"Makes the closed, two-manifold surface of the solid that a mesh means, as a new layer, as "
-			"gently as that goes. A surface that is sound stays as it is. Small defects are mended where "
-			"they are: copies of faces, coincident vertices, edges with more than two faces, faces turned "
+			"Makes the closed, two-manifold surface of the solid that a mesh describes, as a new layer, "
+			"with as few changes as possible. A surface that is sound stays as it is. Small defects are mended where "
+			"they are: duplicate faces, coincident vertices, edges with more than two faces, faces turned "
 			"against their neighbours, T-junctions, small holes; the rest keeps its vertices. Where that is "
 			"not enough, as with large holes, soups of triangles or parts that run into each other, the "
 			"surface is wrapped: the new one is where the winding number of the triangles is one half.<br><br>"

@@ -70,10 +70,11 @@ FilterSpec measureSkeletonFilter()
 	FilterSpec spec = {"compute_skeleton_measures_mcf", menuName("Measure Skeleton"),
 		helpPage(
 			"Measures how good the current skeleton is of its surface. <i>inside_fraction</i>: part of "
-			"its length that is inside; <i>out_depth_max</i>: how far outside it gets. <i>medial</i>: "
+			"its length that is inside; <i>out_depth_max_pct</i>: how far outside it gets. <i>medial</i>: "
 			"its distance to the medial axis, the centres of balls inside that touch the surface at two "
-			"places at least 60 degrees apart; <i>off_centre_mean</i>: the same relative to the "
-			"thickness, 0 in the middle and 1 on the surface. <i>cover</i>: distance from the surface "
+			"places at least 60 degrees apart; <i>off_centre_mean</i>: the mean of 1 - d / R for its "
+			"distance d from the surface and the radius R of the nearest of these balls, 0 in the middle "
+			"and 1 on the surface. <i>cover</i>: distance from the surface "
 			"to the skeleton. <i>recon</i>: distance from the surface to the union of the skeleton's "
 			"balls, what the skeleton does not describe; <i>ball_volume_fraction</i>: the part of the "
 			"volume that they fill. <i>spurs</i>: branches that describe nothing. "

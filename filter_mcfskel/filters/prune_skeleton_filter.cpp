@@ -69,8 +69,8 @@ FilterSpec pruneSkeletonFilter()
 	return {"generate_pruned_skeleton_mcf", menuName("Prune Skeleton"),
 		helpPage(
 			"Removes branches of the current skeleton that end in a tip and merges junctions that are "
-			"one, as a new layer NAME_pruned: first the sure spurs, whose end lies within the ball at "
-			"the junction that they hang from, then branches below the detail, then those that are too "
+			"one, as a new layer NAME_pruned: first spurs, whose end ball hardly sticks out of the ball "
+			"at their junction, then branches below the detail, then those that are too "
 			"short, then those that are too thin. Cycles and components stay as they are.<br><br>"
 			"What had merged into a removed branch goes to its junction: <i>mcfskel_node</i> of the "
 			"surface follows."),

@@ -54,13 +54,13 @@ FilterSpec refineSkeletonFilter()
 	return {"generate_refined_skeleton_mcf", menuName("Refine Skeleton"),
 		helpPage(
 			"Makes the current skeleton a better one of its surface, as a new layer NAME_refined: "
-			"removes spurs, makes one of shattered junctions, samples the branches evenly, centres the "
+			"removes spurs, merges junctions that lie close together, samples the branches evenly, centres the "
 			"nodes in the maximal balls of the surface and smooths the branches, extends the tips to "
 			"the ends of their features, and grows branches into limbs that the curve lacks. "
 			"Components and cycles stay as they are, and nothing leaves the shape: a component for which "
-			"that cannot be had keeps its curve as it is. The log says so, and the result "
+			"this fails keeps its curve unchanged. The log says so, and the result "
 			"<i>refined</i> is the fraction of the components that are refined.<br><br>"
-			"Its <i>mcfskel_significance</i> tells how much of the shape the branch of each node stands for. The "
+			"Its <i>mcfskel_significance</i> tells how much of the shape the branch of each node describes. The "
 			"surface's <i>mcfskel_node</i> follows. This stage goes beyond the paper."),
 		FilterCategory::Remeshing, MeshModel::MM_NONE,
 		{surfaceParameter("The surface that the skeleton is refined in."),
@@ -72,7 +72,7 @@ FilterSpec refineSkeletonFilter()
 				"Spur prominence",
 				"A terminal branch whose end ball sticks out of the ball at its junction by less than "
 				"this part of the latter's radius is a spur, 0 to 1, and so is one that ends where a "
-				"shorter one does. More removes small features, 0 none."}
+				"shorter one does. Larger values remove small features, 0 removes nothing."}
 				.asAdvanced(),
 			adaptive[0], adaptive[1]},
 		refineSkeleton};

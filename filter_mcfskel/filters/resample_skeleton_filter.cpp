@@ -49,7 +49,7 @@ FilterSpec resampleSkeletonFilter()
 		FilterCategory::Remeshing, MeshModel::MM_NONE,
 		{{ParameterKind::Length, "longest_edge", 0.1, "Longest edge",
 			 "No edge is longer, mesh units or percent of the diagonal, above 0. The paper measures at "
-			 "0.1 %; edges as long as a branch bends leave the middle of the shape."},
+			 "0.1 %; edges that are long compared to the bends of a branch cut its corners."},
 			{ParameterKind::Length, "smoothing", 0.5, "Smoothing length",
 				"Waves along a branch shorter than about six times this are flattened, mesh units or "
 				"percent of the diagonal. 0: no smoothing; recommended: up to 2 %, more may leave the "

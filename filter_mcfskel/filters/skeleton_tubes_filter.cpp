@@ -68,7 +68,7 @@ FilterSpec skeletonTubesFilter()
 			"local thickness of the shape, whatever the radius of the tubes."),
 		FilterCategory::Remeshing, MeshModel::MM_NONE,
 		{{ParameterKind::Length, "radius", 0.4, "Radius",
-			 "Of the tubes; with the local radius the least one."},
+			 "Of the tubes; with the local radius the minimum."},
 			{ParameterKind::Boolean, "local_radius", 0, "Local radius",
 				"The tubes are as thick as the shape, by <i>mcfskel_radius</i>. They fill much of it, and "
 				"where the curve bends within its radius they pass through themselves."},

@@ -266,9 +266,9 @@ def skeletonize(vertices: Any, faces: npt.ArrayLike | None = None, *,
     mesh = layers.current_mesh_id()
     results = apply(layers, FILTER, options)
     if not results.get("converged", 1):
-        warnings.warn(f"The contraction has not converged within max_iterations="
-                      f"{int(results['iterations'])}: raise max_iterations, or expect a skeleton that "
-                      "is off the middle.", SkeletonWarning, stacklevel=2)
+        warnings.warn(f"The contraction has not converged after {int(results['iterations'])} iterations: the "
+                      "skeleton may be off the middle. Raise max_iterations, or repair self-intersections first.",
+                      SkeletonWarning, stacklevel=2)
     if results["refined"] < 1 and _is_to_be_refined(defaults | options):
         warnings.warn(f"{1 - results['refined']:.0%} of the components are not refined: their curves are those of "
                       "the flow, which may be off the middle, and partly outside where the surface crosses itself "

@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What hangs on each constant of the library.
+"""What depends on each constant of the library.
 
 Copies the library, makes every number that a `constexpr double NAME = NUMBER` or the default of a parameter holds
 one that the environment can change, and builds the command-line program once. Then it runs each shape with each
@@ -204,7 +204,7 @@ def table(constants: list[Constant], changes: dict[str, tuple[list[str], list[st
         less, more = changes[name]
         meaning = constant.meaning.replace("|", "\\|")
         lines.append(f"| `{name}` | {constant.value} | {meaning} | {shown(less)} | {shown(more)} |")
-    lines += ["", f"No tip and no cycle of any shape hangs on these {len(quiet)}:", "", "| header | constants |",
+    lines += ["", f"No tip and no cycle of any shape depends on these {len(quiet)}:", "", "| header | constants |",
               "|---|---|"]
     of_header: dict[str, list[str]] = {}
     for name in sorted(quiet):

@@ -48,8 +48,8 @@ namespace vcg::tri {
  * run.WriteNodes(mesh);
  * \endcode
  *
- * Both ways give the same result, to the last bit, but that Do() alone tries a second way where the
- * first fails, see mcf::skeletonize(), and can join the pieces.
+ * Both ways give the same result, to the last bit, except that only Do() makes a second attempt
+ * where the first fails, see mcf::skeletonize(), and can join the pieces.
  *
  * MeshType is any TriMesh with vertices and triangles, in float or double; it needs no adjacency,
  * no normals, and may have deleted elements. The mesh should bound a solid: closed, two-manifold,

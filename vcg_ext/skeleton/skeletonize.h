@@ -582,9 +582,9 @@ inline Skeletonization skeletonizeWithSheets(const SurfaceInput& input, const Pa
  * Where a shape is thinner than the edges of its resampling, the resampled surface loses parts or
  * crosses itself, and its curve cannot be refined, since that would leave the surface. Then the
  * input is contracted as well, without resampling, and the better curve is taken, see
- * detail::isBetter(), with a note. Of several components only those are contracted again whose
- * curve could not be refined, unless that is true of all. Sheets that would leave a thicket of
- * curves are given up, see detail::skeletonizeWithSheets().
+ * detail::isBetter(), with a note. If some components could be refined, only the others are
+ * contracted again. Sheets that would leave far longer curves beside them are dropped, see
+ * detail::skeletonizeWithSheets().
  *
  * @param parameters all of them are read; the default epsilon is larger for more than 50
  *                   components, see sharedAmong(). A shape that is too thin to resample adaptively,

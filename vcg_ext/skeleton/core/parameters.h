@@ -17,7 +17,7 @@ namespace vcg::tri::mcf {
 /// Where the medial poles of the surface come from (Sec. 4.5).
 enum class PoleMethod {
 	Voronoi, ///< the Voronoi diagram of the vertices, as in the paper; needs Qhull: see has_qhull.h
-	Balls    ///< shrinking balls (Ma, Bae, Choi 2012): the same poles, faster, and never outside
+	Balls    ///< shrinking balls (Ma, Bae, Choi 2012): nearly the same poles, faster, never outside
 };
 
 /// What is done with a mesh that does not bound a solid: see make_solid.h.
@@ -75,7 +75,7 @@ struct Parameters
 	double relativeLength = 0.6;
 	/// Rounds of the resampling; >= 0.
 	int resampleIterations = 5;
-	/// Measure the noise of the surface and smooth it before the resampling: see noise.h.
+	/// Measure the noise of the surface and smooth it before the resampling: see denoise.h.
 	bool denoise = true;
 	/// Refine the curve at the end: see refine.h.
 	bool refine = true;
