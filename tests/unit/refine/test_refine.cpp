@@ -237,6 +237,15 @@ TEST(Refine, ACurveThatGoesToAndFroInATubeIsStraightened)
 	EXPECT_TRUE(isInside(even, mesh));
 	EXPECT_EQ(statistics(even).terminals, 2);
 	EXPECT_LE(statistics(even).length, 18.5) << "9 + 9, and a little beside the axis; 30 before";
+	// What had merged into a node of a loop goes to where the loop was cut, all else to its neighbour.
+	for (size_t s = 0; s < curve.node.size(); ++s) {
+		const Point3d &before = curve.position[size_t(curve.node[s])],
+					  &after = even.position[size_t(even.node[s])];
+		if (before[0] < 3 || before[1] > 1)
+			EXPECT_LE(Distance(before, after), 2.5);
+		else
+			EXPECT_LE(after[1], 1) << "in the same arm";
+	}
 }
 
 TEST(Refine, ANeedlesEndsGetNoMoreNodesThanItsMiddle)
@@ -900,9 +909,10 @@ TEST(Refine, KeepsTinyCycles)
 									.chain({{0, 0, 0}, {-d, 0, d}, {d, d, d}, {0, 0, 0}})
 									.in(mesh);
 	ASSERT_EQ(statistics(rough).cycles, 2);
-	const CurveSkeleton s = refine(rough, mesh);
-	EXPECT_EQ(statistics(s).cycles, 2);
-	EXPECT_EQ(statistics(s).components, 1);
+	const Refinement refined = refineChecked(rough, mesh);
+	EXPECT_EQ(refined.report.refined, 1);
+	EXPECT_EQ(statistics(refined.skeleton).cycles, 2);
+	EXPECT_EQ(statistics(refined.skeleton).components, 1);
 }
 
 TEST(Refine, MovesACurveThatStartsOutsideIn)

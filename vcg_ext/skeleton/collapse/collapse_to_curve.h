@@ -116,8 +116,7 @@ inline void contractAllFaces(GluedComplex& complex, const Progress& progress)
 /// The smaller of the lengths at two nodes, see Stage::epsilonAt().
 inline double lengthAt(const Stage& stage, int A, int B, double ofDiagonal)
 {
-	const double own = stage.epsilonAt(A, ofDiagonal);
-	return B < stage.mesh.vertexSlots() ? std::min(own, stage.epsilonAt(B, ofDiagonal)) : own;
+	return std::min(stage.epsilonAt(A, ofDiagonal), stage.epsilonAt(B, ofDiagonal));
 }
 
 /// Merges nodes that are closer than `shortestEdge`, see lengthAt(); each component keeps an edge.

@@ -13,6 +13,8 @@
 #include <skeleton/graph/skeleton_branches.h>
 #include <skeleton/flow/stage.h>
 #include <skeleton/mesh/component_meshes.h>
+#include <skeleton/core/ticker.h>
+#include <skeleton/spatial/point_tree.h>
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +31,7 @@ namespace vcg::tri::mcf::detail {
  * @param component  that each node belongs to.
  * @param held       for each node, whether it is held in its place.
  * @post if there are junctions, radius of these and of tips is that of their balls; held: infinite.
- * @throws Cancelled. Complexity: in each component, O(surface vertices * (junctions + tips)).
+ * @throws Cancelled. Complexity: O(V log V + N log V).
  */
 inline CurveSkeleton withoutSpurs(CurveSkeleton skeleton, const Stage& stage,
 	const std::vector<int>& component, const std::vector<char>& held, double minimum,
@@ -43,25 +45,33 @@ inline CurveSkeleton withoutSpurs(CurveSkeleton skeleton, const Stage& stage,
 		return skeleton;
 	const ComponentVertices vertices(
 		componentOfSurfaceVertices(stage, progress), int(stage.diagonal.size()), progress);
-	for (size_t v = 0; v < neighbours.size(); ++v) {
-		if (held[v]) {
+	std::vector<std::vector<size_t>> ends(vertices.ids.size()); // of each component
+	for (size_t v = 0; v < neighbours.size(); ++v)
+		if (held[v])
 			skeleton.radius[v] = infinity;
+		else if (neighbours[v].size() != 2)
+			ends[size_t(component[v])].push_back(v);
+	for (size_t c = 0; c < ends.size(); ++c) {
+		if (ends[c].empty())
 			continue;
-		}
-		if (neighbours[v].size() == 2)
-			continue;
-		progress.report(double(v) / neighbours.size(), "Collapsing to curves");
-		double squared = infinity;
-		for (int s : vertices.ids[component[v]])
-			squared = std::min(squared, SquaredDistance(skeleton.position[v], (*stage.surface)[s]));
-		skeleton.radius[v] = std::sqrt(squared);
+		progress.report(double(c) / double(ends.size()), "Collapsing to curves");
+		std::vector<Point3d> points;
+		for (int s : vertices.ids[c])
+			points.push_back((*stage.surface)[s]);
+		const PointTree tree(points, progress.cancelOnly());
+		cancellableLoop(int(ends[c].size()), progress, [&](int i) {
+			const size_t v = ends[c][size_t(i)];
+			skeleton.radius[v] = tree.distance(skeleton.position[v]);
+		});
 	}
 	return withoutTerminalBranches(
-		skeleton, minimum, [](const CurveSkeleton& s, const Branch& branch) {
+		skeleton, minimum,
+		[](const CurveSkeleton& s, const Branch& branch) {
 			const bool isHeld = std::any_of(branch.nodes.begin(), branch.nodes.end(),
 				[&](int v) { return std::isinf(s.radius[v]); });
 			return isHeld ? infinity : terminalProminence(s, branch);
-		});
+		},
+		progress.cancelOnly());
 }
 
 } // namespace vcg::tri::mcf::detail

@@ -10,6 +10,7 @@
 #include "curve_skeleton.h"
 
 #include <skeleton/core/progress.h>
+#include <skeleton/core/ticker.h>
 #include <skeleton/mesh/components.h>
 #include <skeleton/mesh/surface_mesh.h>
 #include <skeleton/spatial/point_tree.h>
@@ -90,7 +91,9 @@ inline Bridges joinPieces(
 		std::vector<Point3d> points;
 		for (int v : vertices[size_t(newest)])
 			points.push_back(surface.position[size_t(v)]);
-		const PointTree tree(points);
+		const Progress cancel = progress.cancelOnly();
+		const PointTree tree(points, cancel);
+		detail::Ticker ticker(cancel, what, double(vertices.size()));
 		int nearest = -1;
 		for (int piece = 0; piece < count; ++piece) {
 			if (isJoined[size_t(piece)])
@@ -99,6 +102,7 @@ inline Bridges joinPieces(
 			if (!points.empty()
 				&& betweenBoxes(box[size_t(newest)], box[size_t(piece)]) < best.distance)
 				for (int v : vertices[size_t(piece)]) {
+					ticker.tick();
 					const Point3d& p = surface.position[size_t(v)];
 					if (fromBox(box[size_t(newest)], p) >= best.distance)
 						continue;

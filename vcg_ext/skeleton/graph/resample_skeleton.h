@@ -203,12 +203,10 @@ inline CurveSkeleton resampledSkeleton(const CurveSkeleton& skeleton, double lon
 	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
 	const std::vector<Branch> branches = skeletonBranches(skeleton);
 	const std::vector<BranchRecord> table = branchTable(skeleton, branches);
+	const FewestEdges fewest(branches);
 	double length = 0;
-	std::map<std::pair<int, int>, int> parallel;
-	for (const Branch& branch : branches) {
+	for (const Branch& branch : branches)
 		length += branchLength(skeleton, branch);
-		++parallel[std::minmax(branch.first(), branch.last())];
-	}
 	// Smoothing needs points closer to each other than the length of the waves to flatten.
 	const double spacing = smoothing > 0 ? std::min(longestEdge, smoothing) : longestEdge;
 	if (length / spacing > maxNodes)
@@ -236,8 +234,7 @@ inline CurveSkeleton resampledSkeleton(const CurveSkeleton& skeleton, double lon
 		progress.report(double(b) / double(branches.size()), what);
 		const Branch& branch = branches[b];
 		const bool freeCycle = branch.isClosed() && neighbours[branch.first()].size() == 2;
-		const bool hasTwin = parallel[std::minmax(branch.first(), branch.last())] > 1;
-		const int minimum = branch.isClosed() ? 3 : hasTwin ? 2 : 1;
+		const int minimum = fewest.of(branch);
 		SampledBranch old;
 		old.isFreeCycle = freeCycle;
 		for (int v : branch.nodes) {

@@ -11,6 +11,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 #include <vector>
 
 namespace vcg::tri::mcf {
@@ -74,6 +76,31 @@ inline std::vector<Branch> skeletonBranches(const CurveSkeleton& skeleton)
 		}
 	return branches;
 }
+
+/// The fewest edges with which a branch keeps its place in a graph in which two nodes share at most
+/// one edge: 3 of a closed one, 2 beside another one with the same ends, else 1.
+class FewestEdges
+{
+public:
+	explicit FewestEdges(const std::vector<Branch>& branches)
+	{
+		for (const Branch& branch : branches)
+			++withEnds[ends(branch)];
+	}
+
+	int of(const Branch& branch) const
+	{
+		return branch.isClosed() ? 3 : withEnds.at(ends(branch)) > 1 ? 2 : 1;
+	}
+
+private:
+	std::map<std::pair<int, int>, int> withEnds;
+
+	static std::pair<int, int> ends(const Branch& branch)
+	{
+		return std::minmax(branch.first(), branch.last());
+	}
+};
 
 /// Length of a branch, mesh units.
 inline double branchLength(const CurveSkeleton& skeleton, const Branch& branch)

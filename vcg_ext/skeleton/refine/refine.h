@@ -93,7 +93,9 @@ struct RefineParameters
 	/// @throws InvalidParameter naming the first parameter that is out of its range.
 	void check() const
 	{
-		require(spacing > 0 && spacing <= 0.1, "spacing", "between 0 and 10 % of the diagonal");
+		// With a lower one, a curve has more nodes than it may have at the end, see CurveBounds.
+		require(
+			spacing >= 5e-4 && spacing <= 0.1, "spacing", "between 0.05 and 10 % of the diagonal");
 		require(spurProminence >= 0 && spurProminence <= 1, "spur_prominence", "between 0 and 1");
 		require(junctionProminence >= 0 && junctionProminence <= 1, "junction_prominence",
 			"between 0 and 1");
@@ -184,10 +186,11 @@ inline void centreRounds(CurveSkeleton& skeleton, const ClosestSurface& surface,
  * Refines the skeleton of one component, in coordinates where the component's diagonal is 1. Stops
  * early where the curve exceeds CurveBounds, or where nodes are outside and cannot be moved in by
  * exact closest points: the caller checks whether the curve can be the result, see defectOf().
+ * @param scale  its lower bound is raised where there would be too many nodes.
  * @throws SolverError, Cancelled
  */
 inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurface& surface,
-	const SurfaceComponent& component, LocalScale scale, const RefineParameters& parameters,
+	const SurfaceComponent& component, LocalScale& scale, const RefineParameters& parameters,
 	const Progress& progress)
 {
 	const char* what = "Refining the skeleton";
@@ -501,7 +504,13 @@ inline std::optional<CurveSkeleton> broughtBack(
 		edges.push_back({a, b});
 	constexpr double maxOutside = 0.1; // of the edges: more is no slip, but another curve
 	constexpr double maxEdges = 1000;  // which take ten seconds
+	size_t asked = 0;
+	const auto checkNowAndThen = [&] {
+		if (asked++ % nodesPerCheck == 0)
+			progress.check();
+	};
 	const auto isOutside = [&](const std::array<int, 2>& edge) {
+		checkNowAndThen();
 		return !solid.segmentIsInside(place[edge[0]], place[edge[1]], detail::outsideTolerance);
 	};
 	if (double(std::count_if(edges.begin(), edges.end(), isOutside))
@@ -520,6 +529,7 @@ inline std::optional<CurveSkeleton> broughtBack(
 		}
 		const std::vector<Point3d>& places = into.places();
 		const auto isInside = [&](const std::array<int, 2>& edge) {
+			checkNowAndThen();
 			return solid.segmentIsInside(places[edge[0]], places[edge[1]], tolerance);
 		};
 		const std::vector<std::array<int, 2>>& bent = into.curveEdges();
@@ -560,13 +570,13 @@ inline Defect refineChecked(CurveSkeleton& refined, ClosestSurface& surface,
 	const CurveSkeleton unrefined = refined;
 	const InsideCheck inside(surface, component);
 	size_t nodes = 0;
-	const auto attempt = [&](const LocalScale& own, double from, double to) {
+	const auto attempt = [&](LocalScale own, double from, double to) {
+		const double spacing = parameters.spacing * own.minimum(component.vertices);
 		try {
 			CurveSkeleton curve = refineComponent(
 				unrefined, surface, component, own, parameters, progress.part(from, to));
 			nodes = curve.position.size();
 			const Progress end = progress.cancelOnly();
-			const double spacing = parameters.spacing * own.minimum(component.vertices);
 			Defect defect = defectOf(curve, unrefined, spacing, inside, end);
 			if (defect == Defect::Outside && !own.isUniform())
 				if (auto back = broughtBack(curve, component, end);

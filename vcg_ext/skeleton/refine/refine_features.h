@@ -278,18 +278,22 @@ inline bool leadsIntoLoneCorner(const CurveSkeleton& skeleton, const SurfaceComp
 }
 
 /// The nearest node in view from a point that is nearer than `farthest`; -1 if there is none.
-/// Complexity: O(N), and O(log V) for each node that comes nearer than those before it.
+/// Complexity: O(N), and O(log N + log V) for each node up to that one, by distance.
 inline int nearestInView(const CurveSkeleton& skeleton, const ClosestSurface& surface,
 	const Point3d& point, double radius, double farthest)
 {
-	int nearest = -1;
+	using Node = std::pair<double, int>; // distance, node
+	std::vector<Node> nodes;
 	for (size_t v = 0; v < skeleton.position.size(); ++v)
-		if (const double distance = Distance(skeleton.position[v], point); distance < farthest
-			&& isSegmentInside(surface, point, radius, skeleton.position[v], skeleton.radius[v])) {
-			farthest = distance;
-			nearest = int(v);
-		}
-	return nearest;
+		if (const double distance = Distance(skeleton.position[v], point); distance < farthest)
+			nodes.emplace_back(distance, int(v));
+	std::priority_queue<Node, std::vector<Node>, std::greater<Node>> byDistance(
+		std::greater<Node>(), std::move(nodes));
+	for (; !byDistance.empty(); byDistance.pop())
+		if (const size_t v = size_t(byDistance.top().second);
+			isSegmentInside(surface, point, radius, skeleton.position[v], skeleton.radius[v]))
+			return int(v);
+	return -1;
 }
 
 /**

@@ -513,6 +513,17 @@ inline BallChain withShortEdges(const BallChain& line, const std::vector<double>
 	return finer;
 }
 
+/// Measures the distances from the surface of which nothing but 0 is known. @throws Cancelled
+inline void measureUnknown(BallChain& line, const ClosestSurface& surface, const Progress& progress)
+{
+	for (size_t i = 0; i < line.points.size(); ++i) {
+		if (i % nodesPerCheck == 0)
+			progress.check();
+		if (line.radii[i] <= 0)
+			line.radii[i] = std::max(surface.clearance(line.points[i]), 0.0);
+	}
+}
+
 /// The search for the last points of a polyline in a ball, see PointTree::search().
 struct PointsFurtherOn
 {
@@ -544,10 +555,11 @@ struct PointsFurtherOn
  * what is between goes. The contraction of a needle may leave a curve that goes to and fro in it.
  * @pre the shape has no handles: every way inside between two points is then as good as another.
  * @param spacings at its points; on return at those that are left.
+ * @param keptOf   gets, for each of its points, the last one up to it that is left.
  * Complexity: O(n log n) for n points of which few are in each ball. @throws Cancelled
  */
 inline BallChain withoutLoops(const BallChain& line, std::vector<double>& spacings,
-	const ClosestSurface& surface, const Progress& progress)
+	std::vector<int>& keptOf, const ClosestSurface& surface, const Progress& progress)
 {
 	constexpr double longer = 2;
 	const std::vector<double> along = lengthsAlong(line.points);
@@ -574,7 +586,8 @@ inline BallChain withoutLoops(const BallChain& line, std::vector<double>& spacin
 					break;
 				}
 		}
-		i = next;
+		for (; i < next; ++i)
+			keptOf[i] = int(kept.points.size()) - 1;
 	}
 	spacings = std::move(ofKept);
 	return kept;
@@ -633,7 +646,7 @@ inline bool isInside(BallChain& chain, const ClosestSurface& surface, const Prog
  * Removes the nodes where a branch doubles back: it turns by more than 120 degrees, and the way
  * from the node before to the one after it is inside and shorter. The contraction of a long thin
  * part leaves such folds, which centring would keep, on top of each other. What had merged into
- * such a node goes to the one before.
+ * such a node goes to the one before. Cycles keep three edges.
  * @pre radius holds the distances from the surface, or lower bounds. @throws Cancelled
  */
 inline CurveSkeleton withoutFolds(
@@ -643,11 +656,14 @@ inline CurveSkeleton withoutFolds(
 	std::vector<int> target(skeleton.position.size());
 	std::iota(target.begin(), target.end(), 0);
 	bool isAny = false;
-	for (const Branch& branch : skeletonBranches(skeleton)) {
+	const std::vector<Branch> branches = skeletonBranches(skeleton);
+	const FewestEdges fewest(branches);
+	for (const Branch& branch : branches) {
 		progress.check();
+		int edges = int(branch.nodes.size()) - 1;
 		std::vector<int> kept;
 		for (int next : branch.nodes) {
-			while (kept.size() >= 2) {
+			while (kept.size() >= 2 && edges > fewest.of(branch)) {
 				const int before = kept[kept.size() - 2], node = kept.back();
 				const Point3d &p = skeleton.position[before], &q = skeleton.position[node],
 							  &r = skeleton.position[next];
@@ -657,6 +673,7 @@ inline CurveSkeleton withoutFolds(
 					break;
 				target[node] = before;
 				isAny = true;
+				--edges;
 				kept.pop_back();
 			}
 			kept.push_back(next);
@@ -760,15 +777,11 @@ inline CurveSkeleton evenlySampled(const CurveSkeleton& skeleton, const ClosestS
 	for (size_t v = 0; v < place.size(); ++v)
 		if (neighbours[v].size() != 2)
 			keep(int(v));
-	std::map<std::pair<int, int>, int> parallel;
-	for (const Branch& branch : branches)
-		++parallel[std::minmax(branch.first(), branch.last())];
+	const FewestEdges fewest(branches);
 	for (const Branch& branch : branches) {
 		progress.check();
 		keep(branch.first()); // of a free cycle
-		const int minimum = branch.isClosed()                          ? 3
-			: parallel[std::minmax(branch.first(), branch.last())] > 1 ? 2
-																	   : 1;
+		const int minimum = fewest.of(branch);
 		BallChain line;
 		for (int v : branch.nodes) {
 			line.points.push_back(skeleton.position[v]);
@@ -779,13 +792,21 @@ inline CurveSkeleton evenlySampled(const CurveSkeleton& skeleton, const ClosestS
 		BallChain chain = scale.isUniform()
 			? evenPoints(line, std::max(minimum, int(std::lround(length / spacing))))
 			: gradedPoints(line, spacings, minimum);
+		std::vector<double> from = lengthsAlong(line.points);
 		if (!isInside(chain, surface, progress)) {
+			measureUnknown(line, surface, progress);
+			std::vector<int> keptOf(line.points.size());
+			std::iota(keptOf.begin(), keptOf.end(), 0);
 			const BallChain straight =
-				hasCycles ? line : withoutLoops(line, spacings, surface, progress);
+				hasCycles ? line : withoutLoops(line, spacings, keptOf, surface, progress);
 			const BallChain thinned = withoutCrowdedNodes(straight, spacings, surface, progress);
-			const BallChain kept = withShortEdges(thinned, spacings);
-			if (int(kept.points.size()) > minimum)
-				chain = kept;
+			BallChain kept = withShortEdges(thinned, spacings);
+			if (int(kept.points.size()) > minimum) {
+				chain = std::move(kept);
+				const std::vector<double> along = lengthsAlong(straight.points);
+				for (size_t i = 0; i < from.size(); ++i)
+					from[i] = along[size_t(keptOf[i])];
+			}
 		}
 		const int segments = int(chain.points.size()) - 1;
 		std::vector<int> ids(1, place[branch.first()]);
@@ -797,7 +818,7 @@ inline CurveSkeleton evenlySampled(const CurveSkeleton& skeleton, const ClosestS
 		ids.push_back(place[branch.last()]);
 		for (int k = 0; k < segments; ++k)
 			even.edges.push_back({std::min(ids[k], ids[k + 1]), std::max(ids[k], ids[k + 1])});
-		const std::vector<double> from = lengthsAlong(line.points), to = lengthsAlong(chain.points);
+		const std::vector<double> to = lengthsAlong(chain.points);
 		int k = 0;
 		for (size_t i = 1; i + 1 < branch.nodes.size(); ++i) {
 			const double s = from[i] / from.back() * to.back();

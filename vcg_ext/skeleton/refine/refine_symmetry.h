@@ -145,12 +145,12 @@ inline std::vector<TipOrbit> tipOrbits(const CurveSkeleton& skeleton, const Clos
 
 /**
  * Adds the image of a terminal branch: from the image of its tip to the first ball of the skeleton
- * that is met, or to the nearest node in view.
+ * that is met; where the image ends before, or leaves the surface, to the nearest node in view.
  * @param neighbours  of the nodes that the branch has.
  * @param balls       of all nodes; takes in the new ones.
  * @pre the radii are the distances from the surface. @post the same.
- * @return whether it was added: not where the image of the tip is in one of the balls, or where the
- *         image leaves the surface. @throws Cancelled
+ * @return whether it was added: not where the image of the tip is outside or in one of the balls,
+ *         or where an edge would leave the surface. @throws Cancelled
  */
 inline bool addImage(CurveSkeleton& skeleton, const std::vector<std::vector<int>>& neighbours,
 	HoldingBalls& balls, int tip, const Eigen::Isometry3d& map, const ClosestSurface& surface,
