@@ -369,6 +369,19 @@ TEST(MeanCurvatureSkeleton, CancelledOrRefusedLeavesBothMeshesAsTheyWere)
 	EXPECT_THROW(MeanCurvatureSkeleton<DoubleMesh>::Do(mesh, skeleton), mcf::InvalidInput);
 }
 
+TEST(MeanCurvatureSkeleton, MarksOfBridgesOfAnEarlierSkeletonGo)
+{
+	DoubleMesh mesh, skeleton;
+	fill(mesh, shapes::joined({shapes::capsule(), shapes::moved(shapes::capsule(), {0, 0, 9})}));
+	auto params = coarse<DoubleMesh>();
+	params.join = true;
+	MeanCurvatureSkeleton<DoubleMesh>::Do(mesh, skeleton, params);
+	EXPECT_TRUE(HasPerVertexAttribute(skeleton, "mcfskel_bridge"));
+	params.join = false;
+	MeanCurvatureSkeleton<DoubleMesh>::Do(mesh, skeleton, params);
+	EXPECT_FALSE(HasPerVertexAttribute(skeleton, "mcfskel_bridge"));
+}
+
 TEST(MeanCurvatureSkeleton, AttributesOfAnotherTypeOnTheSkeletonAreRefused)
 {
 	DoubleMesh mesh;

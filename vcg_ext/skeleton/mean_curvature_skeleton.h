@@ -478,9 +478,11 @@ private:
 		else if (tri::HasPerVertexAttribute(
 					 skeleton, significanceAttribute)) // of an earlier skeleton
 			tri::Allocator<SkeletonMesh>::DeletePerVertexAttribute(skeleton, significanceAttribute);
-		if (!curve.bridge.empty())
+		if (!sheets && !curve.bridge.empty())
 			mcf::writeScalarAttribute(
 				skeleton, bridgeAttribute, [&](size_t slot) { return double(curve.bridge[slot]); });
+		else if (tri::HasPerVertexAttribute(skeleton, bridgeAttribute))
+			tri::Allocator<SkeletonMesh>::DeletePerVertexAttribute(skeleton, bridgeAttribute);
 		if (tri::HasPerVertexQuality(skeleton))
 			for (size_t v = 0; v < radius.size(); ++v)
 				skeleton.vert[v].Q() = typename SkeletonMesh::VertexType::QualityType(radius[v]);

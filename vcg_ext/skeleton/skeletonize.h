@@ -119,12 +119,23 @@ struct Skeletonization
 	Bridges bridges;
 	PhaseSeconds seconds;
 
+	/// The components whose curve is cut or not refined, ascending.
+	std::vector<int> doubtful() const
+	{
+		std::vector<int> components = cut.which;
+		for (const RefineReport::Kept& kept : refinement.kept)
+			components.push_back(kept.component);
+		std::sort(components.begin(), components.end());
+		components.erase(std::unique(components.begin(), components.end()), components.end());
+		return components;
+	}
+
 	/// Sets `refined` from the refinement and the cut curves.
 	void countRefined()
 	{
 		refined = cut.components == 0
 			? refinement.fraction()
-			: double(std::max(refinement.refined - cut.components, 0)) / refinement.components;
+			: double(refinement.components - int(doubtful().size())) / refinement.components;
 	}
 
 	/// For each vertex of `surface` its node of the skeleton.
@@ -333,17 +344,6 @@ private:
 /// The second attempt, without resampling, is made on surfaces of at most this many vertices.
 constexpr int maxVerticesAsItIs = 100000;
 
-/// The components of the contracted surface whose curve is not refined or was cut, ascending.
-inline std::vector<int> doubtfulComponents(const Skeletonization& result)
-{
-	std::vector<int> doubtful = result.cut.which;
-	for (const RefineReport::Kept& kept : result.refinement.kept)
-		doubtful.push_back(kept.component);
-	std::sort(doubtful.begin(), doubtful.end());
-	doubtful.erase(std::unique(doubtful.begin(), doubtful.end()), doubtful.end());
-	return doubtful;
-}
-
 /// One component of a surface as a mesh of its own.
 struct SingleComponent
 {
@@ -390,7 +390,7 @@ inline Skeletonization partOfComponent(
  * not be refined, and takes the curves that are better, see isBetter(). The stages, the poles and
  * the surface stay those of the resampling.
  * @param asItIs    the parameters, without resampling.
- * @param doubtful  components of the resampled surface, see doubtfulComponents().
+ * @param doubtful  components of the resampled surface, see Skeletonization::doubtful().
  * @param component of each vertex of the resampled surface; there are `components`.
  * @return whether the components of both surfaces pair off; if not, nothing is changed.
  * @throws Cancelled
@@ -501,7 +501,7 @@ inline Skeletonization skeletonizeThin(const SurfaceInput& input, const Paramete
 	int components = 0;
 	const std::vector<int> component =
 		connectedComponents(*result.surface, &components, progress.cancelOnly());
-	const std::vector<int> doubtful = doubtfulComponents(result);
+	const std::vector<int> doubtful = result.doubtful();
 	if (int(doubtful.size()) < components
 		&& replaceThinCurves(result, input, asItIs, doubtful, component, components,
 			progress.part(once, 1), observer, refinement))

@@ -95,6 +95,27 @@ TEST(SizingField, SharpEdgesAreNotThin)
 	EXPECT_TRUE(fieldOf(box.mesh(), 0.1).empty());
 }
 
+TEST(SizingField, IsThatOfAComponentAlone)
+{
+	const shapes::Soup strip = shapes::transformed(
+		shapes::cells(80, 8, 1, [](int, int, int) { return true; }),
+		[](const vcg::Point3d& p) { return vcg::Point3d(0.05 * p[0], 0.05 * p[1], 0.02 * p[2]); });
+	const SurfaceMesh alone = strip.mesh();
+	const SizingField field = fieldOf(alone, 0.1);
+	ASSERT_FALSE(field.empty());
+	// The other one lies on it, back to back.
+	const shapes::Soup other = shapes::moved(strip, {0, 0, 0.02});
+	for (const bool isFirst : {true, false}) {
+		const SurfaceMesh both =
+			(isFirst ? shapes::joined({strip, other}) : shapes::joined({other, strip})).mesh();
+		const SizingField beside = fieldOf(both, 0.1);
+		ASSERT_EQ(int(beside.size()), both.vertexSlots());
+		const size_t first = isFirst ? 0 : field.size();
+		for (size_t v = 0; v < field.size(); ++v)
+			EXPECT_NEAR(beside[first + v], field[v], 1e-9);
+	}
+}
+
 TEST(SizingField, AShapeOfOneScaleHasNone)
 {
 	const SurfaceMesh torus = shapes::torus(1, 0.3, 90, 30).mesh();

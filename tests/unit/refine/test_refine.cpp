@@ -248,6 +248,28 @@ TEST(Refine, ACurveThatGoesToAndFroInATubeIsStraightened)
 	}
 }
 
+TEST(Refine, ACurveThatComesBackFromAnEndKeepsItsReach)
+{
+	const SurfaceMesh mesh = shapes::subdivided(shapes::cells(40, 10, 1, [](int i, int j, int) {
+		return i == 0 || j == 0;
+	})).mesh();
+	std::vector<int> all(size_t(mesh.vertexSlots()));
+	std::iota(all.begin(), all.end(), 0);
+	const ClosestSurface surface(mesh, all, 0.1);
+	CurveSkeleton curve = CurveMaker()
+							  .line(Point3d(0.5, 9.5, 0.5), Point3d(0.5, 0.5, 0.5), 50)
+							  .line(Point3d(0.5, 0.5, 0.5), Point3d(39.5, 0.5, 0.5), 200)
+							  .line(Point3d(39.5, 0.5, 0.5), Point3d(3, 0.45, 0.5), 200)
+							  .in(mesh);
+	for (size_t v = 0; v < curve.position.size(); ++v)
+		curve.radius[v] = surface.clearance(curve.position[v]);
+	const CurveSkeleton even = refining::evenlySampled(curve, surface, 2.5);
+	double farthest = 0;
+	for (const Point3d& p : even.position)
+		farthest = std::max(farthest, p[0]);
+	EXPECT_GT(farthest, 39.5 - 2 * 1.25 * 2.5);
+}
+
 TEST(Refine, ANeedlesEndsGetNoMoreNodesThanItsMiddle)
 {
 	// A double cone of a thousandth; the curve that is given ends where it is thick.

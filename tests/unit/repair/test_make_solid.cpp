@@ -303,6 +303,15 @@ TEST(MakeSolid, RefusesAnOpenSheet)
 		solidSurface(sheet.points, sheet.triangles, {Repair::Off, 0, false, 0.01}), InvalidInput);
 }
 
+TEST(MakeSolid, RefusesASheetWithoutArea)
+{
+	const shapes::Soup onALine = {{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}};
+	const shapes::Soup inOnePlace = shapes::scaled(shapes::box(), 0);
+	for (const shapes::Soup& soup : {onALine, inOnePlace})
+		EXPECT_THROW(solidSurface(soup.points, soup.triangles, {Repair::Auto, 0, false, 0.01}),
+			InvalidInput);
+}
+
 TEST(MakeSolid, SaysThatADrawingIsFlat)
 {
 	// Turned, so that its flatness is that of rounded coordinates.

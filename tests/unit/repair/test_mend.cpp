@@ -575,6 +575,40 @@ TEST(Mend, ClosesATJunctionOfSeveralFansOnce)
 	EXPECT_EQ(faces.size(), 4u);
 }
 
+TEST(Mend, ACornerOnItsOwnOppositeEdgeIsNoTJunction)
+{
+	const shapes::Soup soup = {
+		{{0, 0, 0}, {1, 0, 0}, {0.4, 0.001, 0}, {0.7, 0, 0}, {0.6, -1, 0}, {0.8, -1, 0}},
+		{{0, 1, 2}, {3, 4, 5}}};
+	std::vector<Triangle> faces = soup.triangles;
+	detail::SoupEdges edges = edgesOf(soup);
+	EXPECT_EQ(closeSeams(soup.points, faces, edges).junctions, 1);
+	const std::vector<Triangle> expected = {{0, 3, 2}, {3, 4, 5}, {3, 1, 2}};
+	EXPECT_EQ(faces, expected);
+	faces = {{0, 1, 2}};
+	edges = detail::sortedSoupEdges(soup.points.size(), faces, Progress());
+	EXPECT_EQ(closeSeams(soup.points, faces, edges).junctions, 0);
+	EXPECT_EQ(faces.size(), 1u);
+}
+
+TEST(Mend, WhereFacesDisagreeABorderThatEndsIsNoHole)
+{
+	// A body, then three faces at one edge that all run the same way along it.
+	shapes::Soup soup = shapes::tetrahedron();
+	const int a = int(soup.points.size());
+	for (const Point3d& p : {Point3d(5, 0, 0), Point3d(5, 0, 1), Point3d(6, 0, 0.5),
+			 Point3d(4.5, 0.9, 0.5), Point3d(4.5, -0.9, 0.5)})
+		soup.points.push_back(p);
+	for (int apex = 2; apex < 5; ++apex)
+		soup.triangles.push_back({a, a + 1, a + apex});
+	std::vector<int> partedFrom;
+	const PartedSurface parted = partSurface(soup.points, soup.triangles, partedFrom, true);
+	for (const std::vector<int>& loop :
+		detail::holeLoops(soup.points, soup.triangles, parted.partner))
+		for (int h : loop)
+			EXPECT_LT(parted.partner[size_t(h)], 0) << "only borders are around holes";
+}
+
 TEST(Mend, AsksToCancelOftenWhereBordersOverlap)
 {
 	std::mt19937 random(1);

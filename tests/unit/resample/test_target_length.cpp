@@ -70,3 +70,25 @@ TEST(TargetLength, GrowsWithTheShape)
 	EXPECT_NEAR(
 		defaultTargetLength(shapes::scaled(shapes::torus(), 1e6).mesh())[0] / length, 1e6, 1);
 }
+
+TEST(TargetLength, ManySlenderBodiesTogetherGetNoMoreCutsThanOne)
+{
+	shapes::Soup soup;
+	for (int i = 0; i < 6000; ++i) {
+		const int first = int(soup.points.size());
+		const shapes::Soup hair = shapes::moved(shapes::box(1, 1e-3, 1e-3), {0, 0.01 * i, 0});
+		soup.points.insert(soup.points.end(), hair.points.begin(), hair.points.end());
+		for (const auto& [a, b, c] : hair.triangles)
+			soup.triangles.push_back({first + a, first + b, first + c});
+	}
+	const SurfaceMesh surface = soup.mesh();
+	const MeasuredSurface measured(surface);
+	const std::vector<double> cuts =
+		cutsOfLongEdges(measured, defaultTargetLength(measured, Parameters()));
+	EXPECT_LE(std::accumulate(cuts.begin(), cuts.end(), 0.0), 2.1e6);
+	// A single one keeps its length beside a large one that takes most of the cuts.
+	const shapes::Soup hair = shapes::box(1, 1e-3, 1e-3);
+	const shapes::Soup needle = shapes::moved(shapes::box(1, 1e-9, 1e-9), {0, 1, 0});
+	EXPECT_EQ(defaultTargetLength(shapes::joined({hair, needle}).mesh())[0],
+		defaultTargetLength(shapes::joined({hair, shapes::moved(hair, {0, 1, 0})}).mesh())[0]);
+}

@@ -35,7 +35,8 @@ std::vector<Eigen::Isometry3d> groupOf(const SurfaceMesh& mesh)
 	std::vector<int> all(mesh.position.size());
 	std::iota(all.begin(), all.end(), 0);
 	const ClosestSurface closest(mesh, all, 0.01);
-	const std::vector<Eigen::Isometry3d> maps = generatedGroup(symmetriesOf(mesh, all, closest));
+	const std::vector<Eigen::Isometry3d> maps =
+		generatedGroup(SymmetryFinder(mesh, all, closest).found());
 	for (const Eigen::Isometry3d& map : maps)
 		for (const Point3d& p : mesh.position) {
 			const Eigen::Vector3d image = map * Eigen::Vector3d(p[0], p[1], p[2]);

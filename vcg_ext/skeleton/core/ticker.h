@@ -29,6 +29,8 @@ public:
 		if (++count % reportEvery == 0)
 			progress.report(double(count) / expected, what);
 	}
+	/// Checks for cancellation now. @throws Cancelled
+	void check() const { progress.check(); }
 
 private:
 	static constexpr std::uint64_t reportEvery = 1 << 15;

@@ -12,6 +12,7 @@
 #include <skeleton/core/parallel.h>
 #include <skeleton/core/progress.h>
 #include <skeleton/core/ticker.h>
+#include <skeleton/mesh/component_meshes.h>
 #include <skeleton/mesh/measured_surface.h>
 #include <skeleton/mesh/surface_mesh.h>
 #include <skeleton/mesh/unit_frame.h>
@@ -21,6 +22,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <queue>
 #include <utility>
 #include <vector>
@@ -204,27 +206,40 @@ inline bool isThin(const SurfaceMesh& mesh, const NeighbourLists& neighbours,
 }
 
 /**
- * Whether there is surface diametrically opposite a vertex on its ball: so in a tube or a plate,
- * but not at a sharp edge or in a corner, where the ball touches both sides at nearly a right
- * angle, nor at a tip.
+ * Whether there is surface of the same component diametrically opposite a vertex on its ball: so in
+ * a tube or a plate, but not at a sharp edge or in a corner, where the ball touches both sides at
+ * nearly a right angle, nor at a tip.
  */
 class OppositeSides
 {
 public:
+	/// @param isWanted  of each component, whether of() will be asked for its vertices.
 	/// @throws Cancelled. Complexity: O(V log V).
-	OppositeSides(const SurfaceMesh& mesh, const PoleSet& poles, const Progress& progress) :
-			mesh(mesh), poles(poles), normal(mesh.vertexNormals(progress)),
-			frame(mesh.position, progress), tree(frame.in(mesh.position, progress), progress)
+	OppositeSides(const SurfaceMesh& mesh, const PoleSet& poles, const std::vector<int>& component,
+		const std::vector<char>& isWanted, const Progress& progress) :
+			mesh(mesh),
+			poles(poles), component(component), normal(mesh.vertexNormals(progress)),
+			frame(mesh.position, progress),
+			vertices(component, int(isWanted.size()), progress.cancelOnly()), tree(isWanted.size())
 	{
+		for (size_t c = 0; c < isWanted.size(); ++c) {
+			if (!isWanted[c])
+				continue;
+			std::vector<Point3d> points;
+			for (int v : vertices.ids[c])
+				points.push_back(frame.in(mesh.position[v]));
+			tree[c].emplace(points, progress.cancelOnly());
+		}
 	}
 
 	/// The vertex nearest to the point opposite v on its ball; -1 if it is not near.
-	/// @pre poles.has(v). Complexity: O(log V).
+	/// @pre poles.has(v), and its component is wanted. Complexity: O(log V).
 	int of(int v) const
 	{
 		constexpr double farthest = 0.7; // radii; 1 where the sides are at a right angle
 		const Point3d across = poles.centre[v] * 2 - mesh.position[v];
-		const int nearest = tree.nearest(frame.in(across));
+		const size_t c = size_t(component[v]);
+		const int nearest = vertices.ids[c][size_t(tree[c]->nearest(frame.in(across)))];
 		return Distance(mesh.position[nearest], across) <= farthest * poles.radius[v] ? nearest
 																					  : -1;
 	}
@@ -235,9 +250,11 @@ public:
 private:
 	const SurfaceMesh& mesh;
 	const PoleSet& poles;
+	const std::vector<int>& component;
 	std::vector<Point3d> normal;
 	UnitFrame frame;
-	PointTree tree;
+	ComponentVertices vertices;
+	std::vector<std::optional<PointTree>> tree; ///< of each component
 };
 
 /// For each component the fraction of its seeds that are back to back with the vertex across; 1
@@ -321,7 +338,10 @@ inline SizingField sizingField(const MeasuredSurface& surface, const PoleSet& po
 		return field;
 	for (auto& [length, v] : seeds)
 		length = std::max(length, shortestLength * surface.diagonal(component[v]));
-	const detail::OppositeSides opposite(mesh, poles, progress.part(0.6, 0.7));
+	std::vector<char> hasSeeds(size_t(surface.components()), 0);
+	for (const auto& [length, v] : seeds)
+		hasSeeds[size_t(component[v])] = 1;
+	const detail::OppositeSides opposite(mesh, poles, component, hasSeeds, progress.part(0.6, 0.7));
 	std::vector<int> across(size_t(mesh.vertexSlots()), -1); // of seeds
 	std::vector<double> minimum(bound.size(), infinity);
 	const auto forget = [&](const auto& isNone) {

@@ -28,6 +28,7 @@
 #include <numeric>
 #include <optional>
 #include <set>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -524,35 +525,29 @@ inline void measureUnknown(BallChain& line, const ClosestSurface& surface, const
 	}
 }
 
-/// The search for the last points of a polyline in a ball, see PointTree::search().
-struct PointsFurtherOn
+/// The search for points of a polyline in a ball, see PointTree::search().
+template <class Found>
+struct PointsInBall
 {
 	const std::vector<int>& order;
-	const std::vector<double>& along;
 	Point3d middle;
 	double radius;
-	double start;           ///< along the polyline, the least
-	std::vector<int> found; ///< the last one first
+	const Found& found; ///< found(point)
 
 	const Point3d& centre() const { return middle; }
 	double reach() const { return radius; }
 	void visit(int slot, const Point3d& p)
 	{
-		constexpr size_t most = 8;
-		const int point = order[size_t(slot)];
-		if (along[size_t(point)] < start || Distance(p, middle) > radius)
-			return;
-		found.insert(
-			std::lower_bound(found.begin(), found.end(), point, std::greater<int>()), point);
-		if (found.size() > most)
-			found.pop_back();
+		if (Distance(p, middle) <= radius)
+			found(order[size_t(slot)]);
 	}
 };
 
 /**
  * A polyline without its loops: where it comes back to a point within the ball of an earlier one,
  * or nearer to that than the next one is, by a segment inside and half as long as the way at most,
- * what is between goes. The contraction of a needle may leave a curve that goes to and fro in it.
+ * what is between goes if it lies beside the rest. The contraction of a needle may leave a curve
+ * that goes to and fro in it.
  * @pre the shape has no handles: every way inside between two points is then as good as another.
  * @param spacings at its points; on return at those that are left.
  * @param keptOf   gets, for each of its points, the last one up to it that is left.
@@ -561,9 +556,38 @@ struct PointsFurtherOn
 inline BallChain withoutLoops(const BallChain& line, std::vector<double>& spacings,
 	std::vector<int>& keptOf, const ClosestSurface& surface, const Progress& progress)
 {
-	constexpr double longer = 2;
+	constexpr double longer = 2, beside = 1.25; // beside: spacings
+	constexpr size_t mostTried = 8;
 	const std::vector<double> along = lengthsAlong(line.points);
 	const PointTree tree(line.points);
+	const auto forEachNear = [&](size_t i, double reach, const auto& found) {
+		PointsInBall<std::decay_t<decltype(found)>> ball {
+			tree.order(), line.points[i], reach, found};
+		tree.search(ball);
+	};
+	// Points further on to which the polyline comes back, the last one first.
+	const auto returns = [&](size_t i) {
+		const double reach = std::max(line.radii[i], along[i + 1] - along[i]);
+		std::vector<int> found;
+		forEachNear(i, reach, [&](int j) {
+			if (size_t(j) > i + 1 && along[size_t(j)] >= along[i] + longer * reach)
+				found.push_back(j);
+		});
+		std::sort(found.begin(), found.end(), std::greater<int>());
+		found.resize(std::min(found.size(), mostTried));
+		return found;
+	};
+	// Whether the points between i and j lie beside those up to i or from j on.
+	const auto isBesideRest = [&](size_t i, size_t j) {
+		for (size_t k = i + 1; k < j; ++k) {
+			bool isNear = false;
+			forEachNear(k, beside * spacings[k],
+				[&](int other) { isNear |= size_t(other) <= i || size_t(other) >= j; });
+			if (!isNear)
+				return false;
+		}
+		return true;
+	};
 	BallChain kept;
 	std::vector<double> ofKept;
 	for (size_t i = 0; i < line.points.size();) {
@@ -573,19 +597,14 @@ inline BallChain withoutLoops(const BallChain& line, std::vector<double>& spacin
 		kept.radii.push_back(line.radii[i]);
 		ofKept.push_back(spacings[i]);
 		size_t next = i + 1;
-		if (next < line.points.size()) {
-			const double reach = std::max(line.radii[i], along[next] - along[i]);
-			PointsFurtherOn ball {
-				tree.order(), along, line.points[i], reach, along[i] + longer * reach, {}};
-			tree.search(ball);
-			for (int j : ball.found)
-				if (size_t(j) > next
-					&& isSegmentInside(surface, line.points[i], line.radii[i],
-						line.points[size_t(j)], line.radii[size_t(j)])) {
+		if (next < line.points.size())
+			for (int j : returns(i))
+				if (isSegmentInside(surface, line.points[i], line.radii[i], line.points[size_t(j)],
+						line.radii[size_t(j)])
+					&& isBesideRest(i, size_t(j))) {
 					next = size_t(j);
 					break;
 				}
-		}
 		for (; i < next; ++i)
 			keptOf[i] = int(kept.points.size()) - 1;
 	}

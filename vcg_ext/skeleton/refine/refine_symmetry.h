@@ -271,7 +271,7 @@ inline bool removeStubs(CurveSkeleton& skeleton, const std::vector<TipOrbit>& or
  * fewer are present are removed, see removeStubs().
  * @return its radii are the distances from the surface; nothing if no image is missing, if as many
  *         are missing afterwards, or if some are and there are fewer tips.
- * @throws Cancelled. Complexity: symmetriesOf(), and if a tip's image is missing a closest point
+ * @throws Cancelled. Complexity: SymmetryFinder, and if a tip's image is missing a closest point
  *         for each node and symmetry.
  */
 inline std::optional<CurveSkeleton> withImages(CurveSkeleton skeleton,
@@ -282,14 +282,17 @@ inline std::optional<CurveSkeleton> withImages(CurveSkeleton skeleton,
 	if (tipsOf(skeleton.neighbours()).empty())
 		return std::nullopt;
 	measureBranchEnds(skeleton, clearances);
-	std::vector<Eigen::Isometry3d> symmetries =
-		symmetriesOf(component.mesh, component.vertices, surface, progress);
-	std::vector<Eigen::Isometry3d> maps = generatedGroup(symmetries);
-	std::vector<TipOrbit> orbits = tipOrbits(skeleton, surface, clearances, maps);
 	const auto incomplete = [](const std::vector<TipOrbit>& some) {
 		return std::count_if(
 			some.begin(), some.end(), [](const TipOrbit& orbit) { return !orbit.isComplete(); });
 	};
+	const SymmetryFinder finder(component.mesh, component.vertices, surface, progress);
+	// Fitting takes long. Where no image is missing under any map that may be a symmetry, none will be.
+	if (incomplete(tipOrbits(skeleton, surface, clearances, finder.possible())) == 0)
+		return std::nullopt;
+	std::vector<Eigen::Isometry3d> symmetries = finder.found();
+	std::vector<Eigen::Isometry3d> maps = generatedGroup(symmetries);
+	std::vector<TipOrbit> orbits = tipOrbits(skeleton, surface, clearances, maps);
 	if (incomplete(orbits) == 0)
 		return std::nullopt;
 	const auto isWrong = [&](const Eigen::Isometry3d& map) {

@@ -123,7 +123,10 @@ inline ClosedSeams closeSeams(const std::vector<Point3d>& points, std::vector<Tr
 				const Point3d along = points[size_t(b)] - points[size_t(a)];
 				const double t = whole > 0 ? (p - points[size_t(a)]) * along / (whole * whole) : 0;
 				const double away = Distance(p, points[size_t(a)] + along * t);
-				if (t > nearness && t < 1 - nearness && away <= maximum && away < nearest) {
+				const Triangle& face = triangles[size_t(border[size_t(e)].face)];
+				const int apex = face[0] + face[1] + face[2] - a - b;
+				if (v != apex && t > nearness && t < 1 - nearness && away <= maximum
+					&& away < nearest) {
 					nearest = away;
 					edge = e;
 					at = t;
@@ -149,8 +152,6 @@ inline ClosedSeams closeSeams(const std::vector<Point3d>& points, std::vector<Tr
 			int from = border[e].from;
 			inserted.emplace_back(1, border[e].to);
 			for (size_t i = 0; i < inserted.size(); ++i) {
-				if (inserted[i].second == apex)
-					continue;
 				const Triangle piece = {from, inserted[i].second, apex};
 				if (i == 0)
 					triangles[f] = piece;

@@ -14,6 +14,7 @@
 #include <skeleton/core/ticker.h>
 #include <skeleton/input/soup_repair.h>
 #include <skeleton/mesh/surface_mesh.h>
+#include <skeleton/spatial/box_tree.h>
 #include <skeleton/spatial/triangle_tree.h>
 
 #include <vcg/space/intersection/triangle_triangle3.h>
@@ -234,7 +235,8 @@ inline BorderFan borderFan(const std::vector<Point3d>& points,
  * faces. Where several fans of faces meet at a vertex, a loop continues at the next fan across the
  * gap, so that the gap can be filled and the vertex is not split. Where the fans face different
  * ways, a loop stays with its fan, and is split where it returns to the vertex: the open end of a
- * wing and the slit along its trailing edge are separate holes.
+ * wing and the slit along its trailing edge are separate holes. Where faces at a crowded edge still
+ * disagree, a border may end at a vertex: it is no hole.
  * @throws Cancelled. Complexity: O(F + B log B) for B faces at border vertices.
  */
 inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& points,
@@ -285,19 +287,25 @@ inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& point
 			continue;
 		std::vector<int> loop;
 		std::map<int, size_t> placeOf; // in the loop, of the half-edge from a splitting vertex
-		for (int at = h; !done[size_t(at)]; at = following[at]) {
+		for (int at = h; !done[size_t(at)];) {
+			ticker.tick();
 			done[size_t(at)] = 1;
 			loop.push_back(at);
 			if (splitting.count(origin(at)))
 				placeOf[origin(at)] = loop.size() - 1;
-			const auto first = placeOf.find(origin(Fans::next(at)));
-			if (first == placeOf.end())
-				continue;
-			const auto begin = loop.begin() + std::ptrdiff_t(first->second);
-			for (auto inner = begin; inner != loop.end(); ++inner)
-				placeOf.erase(origin(*inner));
-			loops.emplace_back(begin, loop.end());
-			loop.erase(begin, loop.end());
+			if (const auto first = placeOf.find(origin(Fans::next(at))); first != placeOf.end()) {
+				const auto begin = loop.begin() + std::ptrdiff_t(first->second);
+				for (auto inner = begin; inner != loop.end(); ++inner)
+					placeOf.erase(origin(*inner));
+				loops.emplace_back(begin, loop.end());
+				loop.erase(begin, loop.end());
+			}
+			const auto next = following.find(at);
+			if (next == following.end()) {
+				loop.clear();
+				break;
+			}
+			at = next->second;
 		}
 		if (!loop.empty())
 			loops.push_back(std::move(loop));
@@ -451,29 +459,24 @@ inline std::vector<Triangle> facesNearHoles(const std::vector<Point3d>& points,
 	const std::vector<Triangle>& triangles, const std::vector<std::vector<int>>& loops, int edges,
 	const Progress& progress)
 {
-	std::vector<Point3d> corners;
-	std::vector<Triangle> diagonals; // of the holes' boxes
+	std::vector<Box3d> boxes;
 	for (const std::vector<int>& loop : loops) {
 		if (int(loop.size()) > edges)
 			continue;
-		Box3d box;
+		boxes.emplace_back();
 		for (int h : loop)
-			box.Add(points[size_t(triangles[size_t(h) / 3][size_t(h) % 3])]);
-		const int first = int(corners.size());
-		corners.push_back(box.min);
-		corners.push_back(box.max);
-		diagonals.push_back({first, first + 1, first + 1});
+			boxes.back().Add(points[size_t(triangles[size_t(h) / 3][size_t(h) % 3])]);
 	}
 	std::vector<Triangle> near;
-	if (diagonals.empty())
+	if (boxes.empty())
 		return near;
-	const TriangleTree holes(corners, diagonals);
+	const BoxTree holes(boxes, progress.cancelOnly());
 	reportedLoop(int(triangles.size()), progress, "Filling holes", [&](int f) {
 		Box3d box;
 		for (int v : triangles[size_t(f)])
 			box.Add(points[size_t(v)]);
 		bool isNear = false;
-		holes.forEachFaceIn(box, [&](int) { isNear = true; });
+		holes.forEachIn(box, [&](int) { isNear = true; });
 		if (isNear)
 			near.push_back(triangles[size_t(f)]);
 	});

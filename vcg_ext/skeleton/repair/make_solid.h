@@ -705,7 +705,6 @@ private:
 		constexpr int samples = 4000;
 		constexpr double ofThickness = 0.4, thinPart = 0.05; // of the area
 		constexpr int maxNodes = 6000000;
-		turnOutward(given, faces, progress.part(0, 0.05));
 		Box3d box;
 		double area = 0;
 		for (const Triangle& t : faces) {
@@ -713,8 +712,12 @@ private:
 				box.Add(given[size_t(v)]);
 			area += areaVector(given, t).Norm();
 		}
-		if (!(area > 0))
-			throw InvalidInput(*error);
+		if (!(area > 0)) {
+			if (error)
+				throw InvalidInput(*error);
+			refuse(error, true);
+		}
+		turnOutward(given, faces, progress.part(0, 0.05));
 		TriangleTree tree(given, faces, progress.part(0.05, 0.1));
 		std::vector<SurfacePlace> places = placesByArea(given, faces, samples);
 		const std::vector<double> weights =

@@ -48,7 +48,7 @@ inline std::vector<double> cutsOfLongEdges(
  * (Table 1); c components share them, but none gets fewer than 3000, or than 200000 / c where there
  * are many. L is at most 8 epsilon, beyond which the flow leaves the shape, and at least a
  * twentieth of epsilon: of a wire much thinner than epsilon the flow sees no more. Where edges
- * would still be cut more than two million times (see cutsOfLongEdges()), it is longer.
+ * would still be cut more than two million times in all (see cutsOfLongEdges()), it is longer.
  *
  * @param surface    closed triangle mesh of any number of components.
  * @param parameters targetLength > 0 is taken instead, as a fraction of the diagonal of each
@@ -83,8 +83,18 @@ inline std::vector<double> defaultTargetLength(
 			shortestOfEpsilon * epsilon, 8 * epsilon);
 	}
 	const std::vector<double> cuts = cutsOfLongEdges(surface, length);
+	// The components with the most cuts share what the others leave.
+	std::vector<double> ascending = cuts;
+	std::sort(ascending.begin(), ascending.end());
+	double left = maxCuts, most = maxCuts;
+	for (size_t i = 0; i < ascending.size(); ++i) {
+		most = left / double(ascending.size() - i);
+		if (ascending[i] > most)
+			break;
+		left -= ascending[i];
+	}
 	for (int c = 0; c < count; ++c)
-		length[c] *= std::max(1.0, cuts[c] / maxCuts);
+		length[c] *= std::max(1.0, cuts[c] / most);
 	return length;
 }
 

@@ -215,11 +215,12 @@ public:
 	{
 	}
 
-	/// Whether every `step`th point has its image near the surface, in the mean.
-	bool isNear(const Eigen::Isometry3d& map, size_t step, double near) const
+	/// Whether about `some` of the points have their images near the surface, in the mean.
+	bool isNear(const Eigen::Isometry3d& map, size_t some, double near) const
 	{
 		double sum = 0;
 		size_t count = 0;
+		const size_t step = std::max<size_t>(1, points.size() / some);
 		for (size_t i = 0; i < points.size(); i += step, ++count)
 			sum += closest.closest(mapped(map, points[i])).distance;
 		return sum <= near * double(count);
@@ -350,55 +351,94 @@ inline std::vector<Eigen::Isometry3d> generatedGroup(
 }
 
 /**
- * Reflections and rotations that map some components of a surface, taken together, to themselves:
- * the images of points are within 0.15 % of the diagonal of it in the mean, and all, those that are
- * outermost among them, within 0.5 %. They generate the others, see generatedGroup().
+ * Finds the reflections and rotations that map some components of a surface, taken together, to
+ * themselves: the images of points are within 0.15 % of the diagonal of it in the mean, and all,
+ * those that are outermost among them, within 0.5 %. They generate the others, see generatedGroup().
  *
  * Candidates are reflections along the principal axes and half turns around them and, where moments
  * are alike as those of prisms and stars, rotations of up to the eighth order around the third
  * axis, and reflections in planes through it by the moments of these orders, in the planes of the
  * coordinates and in those halfway between them. So those of a cube are found if it is aligned with
  * the coordinates.
- *
- * @param mesh      compact; its diagonal is about 1.
- * @param vertices  of these components.
- * @param closest   of them.
- * @return in a fixed order.
- * @throws Cancelled. Complexity: O(V + F), and some tens of closest points for each candidate,
- *         thousands for one that is nearly right.
  */
-inline std::vector<Eigen::Isometry3d> symmetriesOf(const SurfaceMesh& mesh,
-	const std::vector<int>& vertices, const ClosestSurface& closest,
-	const Cancellation& cancel = Cancellation())
+class SymmetryFinder
 {
-	constexpr size_t samples = 300, fewSamples = 25;
-	constexpr double mayBe = 0.02, mean = 1.5e-3, farthest = 5e-3; // diagonals
-	constexpr int rounds = 4;
-	const detail::SymmetryCandidates candidates(mesh, vertices, cancel);
-	std::vector<Point3d> points = detail::someOf(mesh, vertices, samples, cancel);
-	const size_t sparse = std::max<size_t>(1, points.size() / fewSamples);
-	// Corners and ends of limbs are few, but tell more than others.
-	for (int v : detail::outermost(mesh, vertices, cancel))
-		points.push_back(mesh.position[size_t(v)]);
-	const detail::SymmetryFit fit(closest, std::move(points));
-	std::vector<Eigen::Isometry3d> found;
-	const auto tryOut = [&](Eigen::Isometry3d map) {
+public:
+	/// @param mesh      compact; its diagonal is about 1.
+	/// @param vertices  of these components.
+	/// @param closest   of them.
+	/// @throws Cancelled. Complexity: O(V + F).
+	SymmetryFinder(const SurfaceMesh& mesh, const std::vector<int>& vertices,
+		const ClosestSurface& closest, const Cancellation& cancel = Cancellation()) :
+			candidates(mesh, vertices, cancel),
+			cancel(cancel), fit(closest, samplesOf(mesh, vertices, cancel))
+	{
+	}
+
+	/// The candidates that may be symmetries, as far as few points show; in a fixed order.
+	/// @throws Cancelled. Complexity: some tens of closest points for each candidate.
+	std::vector<Eigen::Isometry3d> possible() const
+	{
+		std::vector<Eigen::Isometry3d> maps;
+		const auto add = [&](const Eigen::Isometry3d& map) {
+			if (mayBe(map))
+				maps.push_back(map);
+			return false;
+		};
+		candidates.forEachReflection(add);
+		candidates.forEachRotation(add);
+		return maps;
+	}
+
+	/// The symmetries, fitted to the surface; in a fixed order.
+	/// @throws Cancelled. Complexity: as possible(), and thousands of closest points for each of them.
+	std::vector<Eigen::Isometry3d> found() const
+	{
+		constexpr double mean = 1.5e-3, farthest = 5e-3; // diagonals
+		constexpr int rounds = 4;
+		std::vector<Eigen::Isometry3d> maps;
+		const auto tryOut = [&](Eigen::Isometry3d map) {
+			if (!mayBe(map))
+				return false;
+			for (int i = 0; i < rounds; ++i)
+				map = fit.fitted(map);
+			if (!fit.holds(map, mean, farthest)
+				|| detail::areAlike(map, Eigen::Isometry3d::Identity()))
+				return false;
+			if (std::none_of(maps.begin(), maps.end(),
+					[&](const auto& known) { return detail::areAlike(known, map); }))
+				maps.push_back(map);
+			return true;
+		};
+		candidates.forEachReflection(tryOut);
+		candidates.forEachRotation(tryOut);
+		return maps;
+	}
+
+private:
+	static constexpr size_t samples = 300;
+	detail::SymmetryCandidates candidates;
+	Cancellation cancel;
+	detail::SymmetryFit fit;
+
+	static std::vector<Point3d> samplesOf(
+		const SurfaceMesh& mesh, const std::vector<int>& vertices, const Cancellation& cancel)
+	{
+		std::vector<Point3d> points = detail::someOf(mesh, vertices, samples, cancel);
+		// Corners and ends of limbs are few, but tell more than others.
+		for (int v : detail::outermost(mesh, vertices, cancel))
+			points.push_back(mesh.position[size_t(v)]);
+		return points;
+	}
+
+	bool mayBe(const Eigen::Isometry3d& map) const
+	{
+		constexpr double near = 0.02; // diagonals
+		constexpr size_t fewSamples = 25;
 		cancel.check();
-		if (!fit.isNear(map, sparse, mayBe))
-			return false;
-		for (int i = 0; i < rounds; ++i)
-			map = fit.fitted(map);
-		if (!fit.holds(map, mean, farthest) || detail::areAlike(map, Eigen::Isometry3d::Identity()))
-			return false;
-		if (std::none_of(found.begin(), found.end(),
-				[&](const auto& known) { return detail::areAlike(known, map); }))
-			found.push_back(map);
-		return true;
-	};
-	candidates.forEachReflection(tryOut);
-	candidates.forEachRotation(tryOut);
-	return found;
-}
+		return fit.isNear(map, fewSamples, near);
+	}
+};
 
 } // namespace vcg::tri::mcf
 

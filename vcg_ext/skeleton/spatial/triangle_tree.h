@@ -264,9 +264,15 @@ private:
 			}
 			return;
 		}
+		// A split of many may take long, and the ticker counts leaves.
+		constexpr int many = 1 << 13;
+		if (end - begin >= many)
+			ticker.check();
 		Box3d spread;
 		for (int i = begin; i < end; ++i)
 			spread.Add(middle[size_t(ids[size_t(i)])]);
+		if (end - begin >= many)
+			ticker.check();
 		const int axis = spread.MaxDim();
 		const int half = (begin + end) / 2;
 		std::nth_element(
