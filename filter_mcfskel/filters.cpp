@@ -187,7 +187,7 @@ const std::vector<FilterSpec>& catalogue()
 }
 
 Outcome runFilter(const FilterSpec& filter, MeshDocument& document,
-	const ParameterValues& parameters, const std::function<void(const QString&)>& log,
+	const ParameterReader& parameters, const std::function<void(const QString&)>& log,
 	const HostCallback& callback)
 {
 	Outcome outcome;
@@ -195,7 +195,8 @@ Outcome runFilter(const FilterSpec& filter, MeshDocument& document,
 		if (filter.needsLayer && !document.mm())
 			throw vcg::tri::mcf::InvalidInput(
 				"There is no layer: open a closed triangle mesh first.");
-		FilterRun run {document, parameters, log, hostProgress(callback), std::nullopt};
+		const ParameterValues values = parameters();
+		FilterRun run {document, values, log, hostProgress(callback), std::nullopt};
 		if (document.mm())
 			run.current.emplace(*document.mm());
 		const MeshModel* const before = document.mm();

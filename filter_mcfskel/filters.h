@@ -140,6 +140,9 @@ struct Outcome
 	QString error;
 };
 
+/// Reads the values of a filter's parameters from the host's.
+using ParameterReader = std::function<ParameterValues()>;
+
 /// Receives the progress in percent and what is being done; returns false to cancel. May be empty.
 using HostCallback = std::function<bool(int percent, const char* what)>;
 
@@ -148,7 +151,7 @@ using HostCallback = std::function<bool(int percent, const char* what)>;
  * the user's work would be lost. After an error the document is unchanged.
  */
 Outcome runFilter(const FilterSpec& filter, MeshDocument& document,
-	const ParameterValues& parameters, const std::function<void(const QString&)>& log,
+	const ParameterReader& parameters, const std::function<void(const QString&)>& log,
 	const HostCallback& callback);
 
 } // namespace mcfskel

@@ -63,7 +63,7 @@ bool FilterMcfskelPlugin::applyFilter(QAction* action, MeshDocument& document,
 	const RichParameterList& parameters, vcg::CallBackPos* callback)
 {
 	const FilterSpec& filter = host::filterOf(ID(action));
-	const ParameterValues values = host::readParameters(parameters, filter, document);
+	const auto values = [&] { return host::readParameters(parameters, filter, document); };
 	const auto writeLog = [this](const QString& line) {
 		MeshFilterInterface::Log(line.toStdString());
 	};

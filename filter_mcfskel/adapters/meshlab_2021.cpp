@@ -111,7 +111,7 @@ std::map<std::string, QVariant> FilterMcfskelPlugin::applyFilter(const QAction* 
 	const auto progress = callback;
 #endif
 	const FilterSpec& filter = host::filterOf(ID(action));
-	const ParameterValues values = host::readParameters(parameters, filter, document);
+	const auto values = [&] { return host::readParameters(parameters, filter, document); };
 	const Outcome outcome = runFilter(
 		filter, document, values, [this](const QString& line) { log(line.toStdString()); },
 		progress);

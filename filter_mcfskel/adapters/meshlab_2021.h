@@ -13,8 +13,6 @@
 #define MCFSKEL_MESHLAB_2021_H
 
 #include "../filters.h"
-#if !MCFSKEL_IN_MESHLAB
-#endif
 
 class FilterMcfskelPlugin : public QObject,
 							public FilterPlugin

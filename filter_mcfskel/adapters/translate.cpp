@@ -27,6 +27,24 @@ double diagonalOf(const MeshDocument& document)
 	return document.mm() ? referenceDiagonal(*document.mm()) : 0;
 }
 
+/// Sets the default of a parameter for the current layer.
+void setDefault(
+	ParameterValues& values, const ParameterSpec& p, const MeshDocument& document, double diagonal)
+{
+	switch (p.kind) {
+	case ParameterKind::Boolean:
+	case ParameterKind::Integer:
+	case ParameterKind::Choice: values.set(p.name, p.defaultValue); break;
+	case ParameterKind::Real: values.set(p.name, toReal(Scalarm(p.defaultValue))); break;
+	case ParameterKind::Length: values.setLength(p, defaultLength(p, diagonal), diagonal); break;
+	case ParameterKind::Layer:
+		values.set(p.name, document.mm() ? int(document.mm()->id()) : -1);
+		break;
+	case ParameterKind::FileToOpen:
+	case ParameterKind::FileToSave: values.setText(p.name, QString()); break;
+	}
+}
+
 } // namespace
 
 const FilterSpec& filterOf(int id)
@@ -64,7 +82,11 @@ ParameterValues readParameters(
 {
 	const double diagonal = diagonalOf(document);
 	ParameterValues values;
-	for (const ParameterSpec& p : filter.parameters)
+	for (const ParameterSpec& p : filter.parameters) {
+		if (!list.hasParameter(p.name)) {
+			setDefault(values, p, document, diagonal);
+			continue;
+		}
 		switch (p.kind) {
 		case ParameterKind::Boolean: values.set(p.name, list.getBool(p.name)); break;
 		case ParameterKind::Integer: values.set(p.name, list.getInt(p.name)); break;
@@ -75,6 +97,7 @@ ParameterValues readParameters(
 		case ParameterKind::FileToOpen: values.setText(p.name, list.getOpenFileName(p.name)); break;
 		case ParameterKind::FileToSave: values.setText(p.name, list.getSaveFileName(p.name)); break;
 		}
+	}
 	return values;
 }
 

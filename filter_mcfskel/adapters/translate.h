@@ -17,7 +17,8 @@ const FilterSpec& filterOf(int id);
 /// A filter's parameters with their defaults for the current layer.
 void addParameters(RichParameterList& list, const FilterSpec& filter, ParameterDocument& document);
 
-/// The values of a filter's parameters.
+/// The values of a filter's parameters; the defaults of those that the list lacks, as scripts lack
+/// those that are newer than they are.
 ParameterValues readParameters(
 	const RichParameterList& list, const FilterSpec& filter, const MeshDocument& document);
 

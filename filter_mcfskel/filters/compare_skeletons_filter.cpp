@@ -41,6 +41,7 @@ Results compareSkeletons(FilterRun& run)
 		throw mcf::InvalidInput(
 			"A skeleton compared with itself differs nowhere: give another layer as the parameter "
 			"other.");
+	requireOneFrame(run.layer(), *otherLayer);
 	const CurveLayer other = skeletonOn(run, *otherLayer);
 	const double diagonal = sharedDiagonal(run, mine, other);
 	if (!(diagonal > 0))

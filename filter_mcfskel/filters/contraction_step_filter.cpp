@@ -111,7 +111,7 @@ Results contractionStep(FilterRun& run)
 		made = &edit.addSurface(run.layer(), baseName(run.layer()) + "_solid", *contracted.mesh,
 			run.progress.cancelOnly());
 		edit.writeNodes(run.layer(), *contracted.vertexOfSlot, last->node);
-		contracted = compactSurface(contracted.mesh, contracted.hollow);
+		contracted = compactSurface(contracted.mesh, contracted.hollow, contracted.soundWith);
 		link = linkTo(*made, contracted);
 	}
 	addStages(edit, run, stages, link, run.progress.part(0.95, 1));

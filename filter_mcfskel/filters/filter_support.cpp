@@ -280,12 +280,12 @@ mcf::NoteCallback noteLog(const FilterRun& run)
 	return [&run](const std::string& note) { run.log(QString::fromStdString(note)); };
 }
 
-SurfaceLayer compactSurface(
-	std::shared_ptr<const mcf::SurfaceMesh> mesh, std::shared_ptr<const mcf::SurfaceMesh> hollow)
+SurfaceLayer compactSurface(std::shared_ptr<const mcf::SurfaceMesh> mesh,
+	std::shared_ptr<const mcf::SurfaceMesh> hollow, mcf::Repair soundWith)
 {
 	auto identity = std::make_shared<std::vector<int>>(size_t(mesh->vertexSlots()));
 	std::iota(identity->begin(), identity->end(), 0);
-	return {std::move(mesh), identity, {}, {}, std::move(hollow)};
+	return {std::move(mesh), identity, {}, {}, std::move(hollow), soundWith};
 }
 
 PoledSurface surfaceWithPoles(

@@ -83,9 +83,10 @@ void logNotes(const FilterRun& run, const SurfaceLayer& surface);
 /// Writes the library's notes into the log; valid as long as the run.
 vcg::tri::mcf::NoteCallback noteLog(const FilterRun& run);
 
-/// A new layer with this mesh, in which slots are vertices. @param hollow see SurfaceLayer.
+/// A new layer with this mesh, in which slots are vertices.
+/// @param hollow see SurfaceLayer, as for `soundWith`.
 SurfaceLayer compactSurface(std::shared_ptr<const vcg::tri::mcf::SurfaceMesh> mesh,
-	std::shared_ptr<const vcg::tri::mcf::SurfaceMesh> hollow);
+	std::shared_ptr<const vcg::tri::mcf::SurfaceMesh> hollow, vcg::tri::mcf::Repair soundWith);
 
 /// A surface together with its poles.
 struct PoledSurface

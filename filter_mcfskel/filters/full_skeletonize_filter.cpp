@@ -111,7 +111,7 @@ Results fullSkeletonize(FilterRun& run)
 	if (!isInput) {
 		made = &edit.addSurface(run.layer(), name + (isResampled ? "_resampled" : "_solid"),
 			*result.surface, run.progress.cancelOnly());
-		contracted = compactSurface(result.surface, read.hollow);
+		contracted = compactSurface(result.surface, read.hollow, read.soundWith);
 	}
 	const SurfaceLink link = linkTo(made ? *made : run.layer(), contracted);
 	addStages(edit, run, *kept, link, run.progress.part(0.99, 1));

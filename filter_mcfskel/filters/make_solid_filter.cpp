@@ -32,7 +32,7 @@ Results makeSolid(FilterRun& run)
 	MeshModel& layer = edit.addSurface(
 		run.layer(), baseName(run.layer()) + "_solid", mesh, run.progress.part(0.95, 1));
 	if (!hollow)
-		edit.attachSurface(layer, compactSurface(made.surface.mesh, nullptr));
+		edit.attachSurface(layer, compactSurface(made.surface.mesh, nullptr, mcf::Repair::Auto));
 	Results results = repairResults(report);
 	results.merge(Results {
 		{"vertices", mesh.vertexCount()},

@@ -27,8 +27,9 @@ Results resample(FilterRun& run)
 	logNotes(run, surface);
 	mcf::ResampledSurface made =
 		mcf::resampledSurface(*surface.mesh, parameters, run.progress.part(0.1, 1), noteLog(run));
-	const SurfaceLayer resampled = compactSurface(
-		std::make_shared<const mcf::SurfaceMesh>(std::move(made.mesh)), surface.hollow);
+	const SurfaceLayer resampled =
+		compactSurface(std::make_shared<const mcf::SurfaceMesh>(std::move(made.mesh)),
+			surface.hollow, surface.soundWith);
 	const mcf::SurfaceMesh& mesh = *resampled.mesh;
 
 	DocumentEdit edit(run.document);

@@ -11,14 +11,20 @@
 #include <skeleton/support.h>
 
 #include <QDir>
+#include <QFile>
 #include <QFileInfo>
 #include <QRegularExpression>
 #include <QSet>
+#include <QTemporaryDir>
+#include <QXmlStreamReader>
 #include <QXmlStreamWriter>
 
 #include <algorithm>
+#include <memory>
+#include <new>
 #include <optional>
 #include <ostream>
+#include <utility>
 
 namespace mcfskel {
 
@@ -32,8 +38,54 @@ struct SavedLayer
 	LayerAsRead layer;
 	StageLayer stage;
 	std::shared_ptr<const CurveLayer> curve;
-	QString path; ///< from the project's folder
+	QString name; ///< of the file
 };
+
+/// Where a project goes.
+struct ProjectPlace
+{
+	QString file;
+	QDir folder;
+	QString layers; ///< the folder of the layers, from `folder`
+
+	QString pathOf(const SavedLayer& saved) const { return layers + "/" + saved.name; }
+	QString fileOf(const SavedLayer& saved) const { return folder.filePath(pathOf(saved)); }
+};
+
+/// The names of the layer files that the project there, if there is one, has in its folder.
+QSet<QString> ownNames(const ProjectPlace& place)
+{
+	QSet<QString> names;
+	QFile file(place.file);
+	if (!file.open(QIODevice::ReadOnly))
+		return names;
+	const QString layers = QDir::cleanPath(place.folder.absoluteFilePath(place.layers));
+	QXmlStreamReader xml(&file);
+	while (!xml.atEnd())
+		if (xml.readNext() == QXmlStreamReader::StartElement && xml.name() == QString("MLMesh")) {
+			const QString path = xml.attributes().value(QString("filename")).toString();
+			const QFileInfo named(QDir::cleanPath(place.folder.absoluteFilePath(path)));
+			if (named.path() == layers && named.isFile())
+				names.insert(named.fileName());
+		}
+	return names;
+}
+
+/// What no layer's file may be called, in lower case and without ".ply": what is there and is not
+/// the project's own. A layer may have been loaded from it.
+QSet<QString> takenNames(const ProjectPlace& place)
+{
+	const QSet<QString> own = ownNames(place);
+	const QDir layers(place.folder.filePath(place.layers));
+	QSet<QString> taken;
+	for (QString name :
+		layers.entryList(QDir::AllEntries | QDir::Hidden | QDir::System | QDir::NoDotAndDotDot))
+		if (!own.contains(name) && name.endsWith(".ply", Qt::CaseInsensitive)) {
+			name.chop(4);
+			taken.insert(name.toLower());
+		}
+	return taken;
+}
 
 /// A name for a layer's file, unique even on systems that ignore case.
 QString fileName(const MeshModel& layer, QSet<QString>& taken)
@@ -73,13 +125,13 @@ void takeState(const FilterRun& run, const MeshModel& layer, SavedLayer& item)
 }
 
 /// The layers, all read before any file is written: it may hold the state of another layer.
-std::vector<SavedLayer> layersToSave(const FilterRun& run, const QString& folder)
+std::vector<SavedLayer> layersToSave(const FilterRun& run, const ProjectPlace& place)
 {
 	std::vector<SavedLayer> saved;
-	QSet<QString> taken;
+	QSet<QString> taken = takenNames(place);
 	for (const MeshModel* found : host::layersOf(run.document)) {
 		const MeshModel& layer = *found;
-		SavedLayer item {LayerAsRead(layer), {}, nullptr, folder + "/" + fileName(layer, taken)};
+		SavedLayer item {LayerAsRead(layer), {}, nullptr, fileName(layer, taken)};
 		takeState(run, layer, item);
 		if (!layer.cm.textures.empty())
 			run.log("The textures of '" + layer.label() + "' are not saved.");
@@ -88,11 +140,10 @@ std::vector<SavedLayer> layersToSave(const FilterRun& run, const QString& folder
 	return saved;
 }
 
-void writeLayer(MeshDocument& document, const SavedLayer& saved, const QDir& place,
+void writeLayer(MeshDocument& document, const SavedLayer& saved, const QString& file,
 	const mcf::Progress& progress)
 {
 	const MeshModel& layer = saved.layer.in(document);
-	const QString file = place.filePath(saved.path);
 	if (saved.stage)
 		writeStageFile(file, layer, saved.stage, progress);
 	else if (saved.curve)
@@ -101,8 +152,102 @@ void writeLayer(MeshDocument& document, const SavedLayer& saved, const QDir& pla
 		writeMeshFile(file, layer, progress);
 }
 
+/// The files of the layers. They are written to a folder inside theirs first, and take their places
+/// together. Unless they are kept in the end, all is as it was.
+class LayerFiles
+{
+public:
+	/// @throws FileError
+	explicit LayerFiles(const ProjectPlace& place) :
+			place(place), isNew(!QFileInfo::exists(place.folder.filePath(place.layers)))
+	{
+		const QString layers = place.folder.filePath(place.layers);
+		if (!place.folder.exists() || !place.folder.mkpath(place.layers))
+			throw FileError("Cannot make the folder '" + layers.toStdString() + "'.");
+		drafts = std::make_unique<QTemporaryDir>(layers + "/.mcfskel-XXXXXX");
+		if (drafts->isValid() && QDir(drafts->path()).mkdir(replaced)) {
+			drafts->setAutoRemove(false); // the destructor does, once what was replaced is back
+			return;
+		}
+		const std::string why = drafts->errorString().toStdString();
+		removeFolders();
+		throw FileError("Cannot write into the folder '" + layers.toStdString()
+			+ (why.empty() ? "'." : "': " + why));
+	}
+
+	~LayerFiles()
+	{
+		try {
+			if (!isKept)
+				putBack();
+			removeFolders();
+		}
+		catch (const std::bad_alloc&) {
+			// What was replaced is still there, in the folder of the drafts.
+		}
+	}
+
+	LayerFiles(const LayerFiles&) = delete;
+	LayerFiles& operator=(const LayerFiles&) = delete;
+
+	/// Where a layer is to be written.
+	QString draftOf(const SavedLayer& saved) const { return drafts->filePath(saved.name); }
+
+	/// Puts all drafts in their places. @throws FileError
+	void takePlaces(const std::vector<SavedLayer>& layers)
+	{
+		moved.reserve(2 * layers.size());
+		for (const SavedLayer& saved : layers) {
+			const QString file = place.fileOf(saved);
+			if (QFileInfo::exists(file)) {
+				if (!QFileInfo(file).isWritable())
+					throw FileError("Cannot write '" + file.toStdString() + "': Permission denied");
+				move(file, drafts->filePath(replaced + QString("/") + saved.name));
+			}
+			move(draftOf(saved), file);
+		}
+	}
+
+	/// From here on they stay.
+	void keep() { isKept = true; }
+
+private:
+	/// A folder in that of the drafts, for what they replace: no layer's file has such a name.
+	static constexpr char replaced[] = "replaced";
+
+	void move(const QString& from, const QString& to)
+	{
+		moved.emplace_back(from, to);
+		QFile file(from);
+		if (file.rename(to))
+			return;
+		moved.pop_back();
+		throw FileError(QString("Cannot write '%1': %2").arg(to, file.errorString()).toStdString());
+	}
+
+	void putBack()
+	{
+		for (; !moved.empty(); moved.pop_back())
+			QFile::rename(moved.back().second, moved.back().first);
+	}
+
+	void removeFolders()
+	{
+		drafts->remove();
+		if (isNew && !isKept)
+			place.folder.rmdir(place.layers);
+	}
+
+	ProjectPlace place;
+	bool isNew;
+	bool isKept = false;
+	std::unique_ptr<QTemporaryDir> drafts;
+	std::vector<std::pair<QString, QString>> moved; ///< from, to
+};
+
 /// The project as MeshLab writes it, without what it says of the camera.
-QByteArray projectText(MeshDocument& document, const std::vector<SavedLayer>& layers)
+QByteArray projectText(
+	MeshDocument& document, const std::vector<SavedLayer>& layers, const ProjectPlace& place)
 {
 	QByteArray text;
 	QXmlStreamWriter xml(&text);
@@ -121,7 +266,7 @@ QByteArray projectText(MeshDocument& document, const std::vector<SavedLayer>& la
 		const MeshModel& layer = saved.layer.in(document);
 		xml.writeStartElement("MLMesh");
 		xml.writeAttribute("label", layer.label());
-		xml.writeAttribute("filename", saved.path);
+		xml.writeAttribute("filename", place.pathOf(saved));
 		xml.writeAttribute("visible", layer.isVisible() ? "1" : "0");
 		xml.writeAttribute("idInFile", "-1");
 		QString matrix = "\n";
@@ -153,37 +298,37 @@ Results saveProject(FilterRun& run)
 	QString project = requiredName(run.parameters.text("file"), "to write");
 	if (QFileInfo(project).suffix().compare("mlp", Qt::CaseInsensitive) != 0)
 		project += ".mlp";
-	const QDir place = QFileInfo(project).absoluteDir();
-	const QString folder = QFileInfo(project).completeBaseName() + "_layers";
-	std::vector<SavedLayer> layers = layersToSave(run, folder);
+	const ProjectPlace place {project, QFileInfo(project).absoluteDir(),
+		QFileInfo(project).completeBaseName() + "_layers"};
+	std::vector<SavedLayer> layers = layersToSave(run, place);
 	if (host::rasterCount(run.document) > 0)
 		run.log("The raster layers are not saved.");
-	const QByteArray text = projectText(run.document, layers);
-	const bool isNew = !QFileInfo::exists(place.filePath(folder));
-	if (!place.exists() || !place.mkpath(folder))
-		throw FileError("Cannot make the folder '" + place.filePath(folder).toStdString() + "'.");
+	const QByteArray text = projectText(run.document, layers, place);
+	LayerFiles files(place);
 	for (size_t i = 0; i < layers.size(); ++i) {
 		const mcf::Progress part = run.progress.part(
 			double(i) / double(layers.size()), double(i + 1) / double(layers.size()));
-		// No cancelling once the first file is replaced: an existing project would be left with a
-		// mixture of old and new layers.
+		const QString draft = files.draftOf(layers[i]);
 		try {
-			writeLayer(run.document, layers[i], place, i == 0 ? part : part.showOnly());
+			writeLayer(run.document, layers[i], draft, part);
 		}
-		catch (...) {
-			if (isNew && i == 0)
-				place.rmdir(folder);
-			throw;
+		catch (const FileError& error) {
+			// The user knows the file by the name that it was to get.
+			throw FileError(QString::fromUtf8(error.what())
+								.replace(draft, place.fileOf(layers[i]))
+								.toStdString());
 		}
 	}
+	files.takePlaces(layers);
 	writeFile(project, [&](std::ostream& out) { out.write(text.constData(), text.size()); });
+	files.keep();
 	for (const SavedLayer& saved : layers) {
 		MeshModel& layer = saved.layer.in(run.document);
 		const QString label = layer.label();
-		layer.setFileName(place.filePath(saved.path));
+		layer.setFileName(place.fileOf(saved));
 		layer.setLabel(label);
 	}
-	run.log(QString("Wrote '%1' and the folder '%2'.").arg(project, folder));
+	run.log(QString("Wrote '%1' and the folder '%2'.").arg(project, place.layers));
 	return {{"layers", int(layers.size())}};
 }
 

@@ -6,9 +6,12 @@
 #include "../layers/fields.h"
 
 #include <skeleton/curves.h>
+#include <skeleton/solid.h>
 #include <skeleton/state.h>
 #include <skeleton/support.h>
 #include <skeleton/surface.h>
+
+#include <vcg/space/box3.h>
 
 #include <algorithm>
 #include <cmath>
@@ -60,29 +63,74 @@ struct NodeBearers
 	std::vector<int> ofSlot;
 };
 
-/// Those of a layer with mcfskel_node: all of a surface; of what is none by itself, such as a mesh
-/// with holes that was repaired, the vertices that have a node.
+/// Those of a layer with mcfskel_node that have a node: pieces without a skeleton have none.
 NodeBearers nodeBearers(const MeshModel& layer, const mcf::Progress& progress)
 {
 	NodeBearers result {LayerAsRead(layer), {}, {}};
+	const std::vector<int> shown = readNodes(layer);
+	std::vector<vcg::Point3d> places;
+	std::vector<char> bears;
+	size_t next = 0;
+	for (const CVertexO& v : layer.cm.vert) {
+		places.emplace_back(v.cP()[0], v.cP()[1], v.cP()[2]);
+		bears.push_back(!v.IsD() && next < shown.size() && shown[next++] >= 0);
+	}
 	try {
 		const SurfaceLayer surface = readSurface(layer, progress);
-		result.position = surface.mesh->position;
-		result.ofSlot = *surface.vertexOfSlot;
-	}
-	catch (const mcf::InvalidInput&) {
-		const std::vector<int> shown = readNodes(layer);
-		size_t next = 0;
-		for (const CVertexO& v : layer.cm.vert) {
-			const vcg::Point3d place(v.cP()[0], v.cP()[1], v.cP()[2]);
-			const bool bears =
-				!v.IsD() && next < shown.size() && shown[next++] >= 0 && mcf::isUsablePlace(place);
-			result.ofSlot.push_back(bears ? int(result.position.size()) : -1);
-			if (bears)
-				result.position.push_back(place);
+		for (size_t slot = 0; slot < places.size(); ++slot) {
+			const int v = (*surface.vertexOfSlot)[slot];
+			bears[slot] = bears[slot] && v >= 0;
+			if (bears[slot])
+				places[slot] = surface.mesh->position[size_t(v)];
 		}
 	}
+	catch (const mcf::InvalidInput&) {
+		// No surface by itself, such as a mesh with holes that was repaired.
+	}
+	for (size_t slot = 0; slot < places.size(); ++slot) {
+		const bool is = bears[slot] && mcf::isUsablePlace(places[slot]);
+		result.ofSlot.push_back(is ? int(result.position.size()) : -1);
+		if (is)
+			result.position.push_back(places[slot]);
+	}
 	return result;
+}
+
+/// Whether places are those of another sampling of a surface: most of them lie on it, and they
+/// reach as far as it does. Repairs and resampling move less, and other shapes are farther away.
+bool areOf(const mcf::SurfaceMesh& surface, const std::vector<vcg::Point3d>& places,
+	const mcf::Progress& progress)
+{
+	constexpr double away = 0.01, boxesApart = 0.05; // of the diagonal
+	constexpr double most = 0.8;
+	constexpr size_t samples = 1000;
+	vcg::Box3d box;
+	for (const vcg::Point3d& p : places)
+		box.Add(p);
+	const vcg::Box3d whole = surface.bounds(progress);
+	const double diagonal = whole.Diag();
+	if (box.IsNull() || vcg::Distance(box.min, whole.min) > boxesApart * diagonal
+		|| vcg::Distance(box.max, whole.max) > boxesApart * diagonal)
+		return false;
+	const std::vector<mcf::Triangle> faces = surface.triangles(progress);
+	const mcf::TriangleTree tree(surface.position, faces, progress);
+	const size_t step = std::max<size_t>(1, places.size() / samples);
+	size_t seen = 0, on = 0;
+	for (size_t i = 0; i < places.size(); i += step) {
+		++seen;
+		on += tree.closest(places[i], away * diagonal).face >= 0;
+	}
+	return double(on) > most * double(seen);
+}
+
+/// The layers of the surfaces that the skeletons of a document remember.
+std::vector<int> rememberedLayers(const FilterRun& run)
+{
+	std::vector<int> ids;
+	for (const MeshModel* layer : host::layersOf(run.document))
+		if (const MeshModel* surface = layerOf(run.document, surfaceOfCurve(*layer)))
+			ids.push_back(int(surface->id()));
+	return ids;
 }
 
 } // namespace
@@ -97,6 +145,15 @@ CurveLayer skeletonOn(const FilterRun& run, const MeshModel& layer)
 	for (double& r : radius)
 		r = std::isfinite(r) ? std::max(r, 0.0) : 0;
 	return curve;
+}
+
+void requireOneFrame(const MeshModel& one, const MeshModel& other)
+{
+	if (one.cm.Tr != other.cm.Tr)
+		throw mcf::InvalidInput("The layers '" + one.label().toStdString() + "' and '"
+			+ other.label().toStdString()
+			+ "' have different transformations, so that their coordinates do not go together: "
+			  "apply those of both with 'Matrix: Freeze Current Matrix' first.");
 }
 
 ParameterSpec surfaceParameter(const QString& whatFor)
@@ -116,6 +173,8 @@ std::optional<SkeletonSurface> findSurface(
 		id == run.current->id() ? rememberedLayer(run, curve) : run.document.getMesh(id);
 	if (!layer)
 		return std::nullopt;
+	if (layer->cm.Tr != run.layer().cm.Tr && layer != rememberedLayer(run, curve))
+		requireOneFrame(run.layer(), *layer);
 	return SkeletonSurface {LayerAsRead(*layer), readSurface(*layer, progress)};
 }
 
@@ -213,20 +272,26 @@ void addDerivedSkeleton(FilterRun& run, const CurveLayer& curve, mcf::CurveSkele
 			if (skeleton.radius[v] < 0)
 				skeleton.radius[v] = before[v];
 	}
-	// Surfaces of the same name got their correspondence from the one that was contracted.
+	// The input and the solid got their correspondence from the surface that was contracted. Their
+	// names are alike, but so may be those of another body, or of a surface of another skeleton.
 	std::vector<int> kin;
 	if (fits) {
 		const QString name = baseName(remembered->in(run.document));
-		for (const MeshModel* layer : host::layersOf(run.document))
-			if (int(layer->id()) != remembered->id() && layer->cm.fn > 0
-				&& lostState(*layer).isEmpty() && !readNodes(*layer).empty()
-				&& baseName(*layer) == name)
-				kin.push_back(int(layer->id()));
+		const std::vector<int> ofSkeletons = rememberedLayers(run);
+		for (const MeshModel* layer : host::layersOf(run.document)) {
+			const int id = int(layer->id());
+			if (id != remembered->id() && layer->cm.fn > 0 && lostState(*layer).isEmpty()
+				&& !readNodes(*layer).empty() && baseName(*layer) == name
+				&& std::find(ofSkeletons.begin(), ofSkeletons.end(), id) == ofSkeletons.end())
+				kin.push_back(id);
+		}
 	}
 	std::vector<std::pair<NodeBearers, std::vector<int>>> others;
 	for (int id : kin)
 		if (const MeshModel* layer = run.document.getMesh(id)) {
-			NodeBearers other = nodeBearers(*layer, progress.part(0.5, 0.7));
+			NodeBearers other = nodeBearers(*layer, progress.part(0.5, 0.65));
+			if (!areOf(*own.mesh, other.position, progress.part(0.65, 0.7)))
+				continue;
 			std::vector<int> node = mcf::transferredNodes(
 				*own.mesh, skeleton.node, other.position, progress.part(0.7, 1));
 			others.emplace_back(std::move(other), std::move(node));

@@ -21,6 +21,9 @@ namespace mcfskel {
 /// else 0.
 CurveLayer skeletonOn(const FilterRun& run, const MeshModel& layer);
 
+/// For layers whose coordinates are combined. @throws InvalidInput if their matrices differ.
+void requireOneFrame(const MeshModel& one, const MeshModel& other);
+
 /// The parameter `surface`; its default, the skeleton's own layer, stands for the surface that the
 /// skeleton remembers.
 ParameterSpec surfaceParameter(const QString& whatFor);
@@ -33,7 +36,8 @@ struct SkeletonSurface
 };
 
 /// The surface that the parameter names; none if it names none and the skeleton remembers none that
-/// is still there and unchanged. @throws InvalidInput as readSurface(); Cancelled
+/// is still there and unchanged. @throws InvalidInput as readSurface(), and as requireOneFrame()
+/// for one that the skeleton does not remember; Cancelled
 std::optional<SkeletonSurface> findSurface(
 	const FilterRun& run, const CurveLayer& curve, const vcg::tri::mcf::Progress& progress);
 
@@ -63,9 +67,9 @@ std::vector<double> clearances(const std::vector<vcg::Point3d>& nodes,
 
 /**
  * Adds a layer NAME_suffix with a skeleton made from that of the current layer, and writes its
- * correspondence on the surface that this one remembers and on all surfaces NAME with mcfskel_node.
- * Such a surface that had to be repaired, and cannot be read as it is, gets the nodes of the nearest
- * vertices of the former where it had nodes.
+ * correspondence on the surface that this one remembers. Other surfaces NAME with mcfskel_node that
+ * lie where that one does, and that no skeleton remembers, are what it was made from: where they
+ * had nodes they get those of its nearest vertices.
  * The radius is measured anew if the correspondence is known and `measureRadius` is set.
  * @param curve  the skeleton of the current layer.
  * @throws InvalidInput as readSurface(), for the surface that is remembered; Cancelled

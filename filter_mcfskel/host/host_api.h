@@ -77,9 +77,11 @@ inline MeshModel* currentLayer(ParameterDocument& document)
 	return document.mm();
 }
 
+/// The id of the layer that a parameter names; -1 if it names none.
 inline int layerId(const RichParameterList& list, const QString& name)
 {
-	return list.getMesh(name)->id();
+	const MeshModel* const layer = list.getMesh(name);
+	return layer ? layer->id() : -1;
 }
 
 inline void updateBoxAndNormals(MeshModel& layer)

@@ -5,8 +5,6 @@
 #include "fields.h"
 #include "fill_layers.h"
 
-#include <QFileInfo>
-
 #include <algorithm>
 #include <new>
 
@@ -248,12 +246,6 @@ bool isCurve(const MeshModel& layer)
 	return layer.cm.fn == 0 && layer.cm.en > 0;
 }
 
-/// Whether a layer has the name that a filter gives.
-bool isMade(const MeshModel& layer)
-{
-	return baseName(layer) != QFileInfo(layer.label()).completeBaseName();
-}
-
 } // namespace
 
 const MeshModel* DocumentEdit::surfaceToOutline() const
@@ -314,7 +306,7 @@ void DocumentEdit::present()
 		if (layer == outline)
 			looks.emplace_back(id, host::Look::Outline);
 		// What was made from the same surface before would hide the new layer.
-		const bool isKin = baseName(*layer) == baseName(shown) && isMade(*layer);
+		const bool isKin = baseName(*layer) == baseName(shown) && hasMadeName(*layer);
 		if (layer != &shown && layer != outline && (isNew || isSource || isKin))
 			document.setVisible(id, false);
 	}

@@ -37,17 +37,34 @@ vcg::Color4b partColour(int part)
 }
 
 /// The face of a surface with these corners, in any order; -1 if there is none.
-int faceOf(const mcf::SurfaceMesh& surface, const mcf::Triangle& corners)
+/// @param valence of each vertex of the surface.
+int faceOf(
+	const mcf::SurfaceMesh& surface, const std::vector<int>& valence, const mcf::Triangle& corners)
 {
+	if (*std::min_element(corners.begin(), corners.end()) < 0)
+		return -1;
+	// Around a hub, a corner of very many faces, each of these would cost a walk over all of them.
+	const int fewest = *std::min_element(corners.begin(), corners.end(),
+		[&](int a, int b) { return valence[size_t(a)] < valence[size_t(b)]; });
 	const auto has = [&](int v) { return std::count(corners.begin(), corners.end(), v) == 1; };
 	int found = -1;
-	if (corners[0] >= 0)
-		surface.forEachOutgoing(corners[0], [&](int h) {
-			const mcf::Triangle t = surface.triangle(h / 3);
-			if (has(t[0]) && has(t[1]) && has(t[2]))
-				found = h / 3;
-		});
+	surface.forEachOutgoing(fewest, [&](int h) {
+		const mcf::Triangle t = surface.triangle(h / 3);
+		if (has(t[0]) && has(t[1]) && has(t[2]))
+			found = h / 3;
+	});
 	return found;
+}
+
+/// The valence of each vertex. @throws Cancelled
+std::vector<int> valences(const mcf::SurfaceMesh& surface, const mcf::Progress& progress)
+{
+	std::vector<int> result = mcf::detail::filledArray(size_t(surface.vertexSlots()), 0, progress);
+	mcf::detail::cancellableLoop(surface.halfEdgeSlots(), progress, [&](int h) {
+		if (surface.isFace(h / 3))
+			++result[size_t(surface.origin(h))];
+	});
+	return result;
 }
 
 } // namespace
@@ -108,6 +125,7 @@ std::vector<int> facePartsOfSlots(const MeshModel& layer, const SurfaceLayer& su
 	const std::vector<int>& ofFace, const mcf::Progress& progress)
 {
 	const CMeshO& mesh = layer.cm;
+	const std::vector<int> valence = valences(*surface.mesh, progress.cancelOnly());
 	std::vector<int> ofSlot;
 	ofSlot.reserve(mesh.face.size());
 	mcf::detail::reportedLoop(int(mesh.face.size()), progress, "Writing the layer", [&](int slot) {
@@ -117,7 +135,7 @@ std::vector<int> facePartsOfSlots(const MeshModel& layer, const SurfaceLayer& su
 			mcf::Triangle corners;
 			for (int k = 0; k < 3; ++k)
 				corners[size_t(k)] = (*surface.vertexOfSlot)[vcg::tri::Index(mesh, face.cV(k))];
-			found = faceOf(*surface.mesh, corners);
+			found = faceOf(*surface.mesh, valence, corners);
 		}
 		ofSlot.push_back(found < 0 ? -1 : ofFace[size_t(found)]);
 	});

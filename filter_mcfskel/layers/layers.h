@@ -43,6 +43,9 @@ struct SurfaceLayer
 	std::vector<char> turned = {};
 	/// The surface with the cavities that `mesh` lacks, see LeftOutPieces::hollow; null if none.
 	std::shared_ptr<const vcg::tri::mcf::SurfaceMesh> hollow = nullptr;
+	/// The repair that has nothing left to do on it, cavities included, as it has made or checked
+	/// this surface or the one that it was resampled from. Off: nothing is known.
+	vcg::tri::mcf::Repair soundWith = vcg::tri::mcf::Repair::Off;
 };
 
 /// Which layer a stage or skeleton comes from.
@@ -91,6 +94,10 @@ QString baseName(QString name);
 /// The same for the layer's name.
 QString baseName(const MeshModel& layer);
 
+/// Whether a layer has a name that a filter gives, such as NAME_meso_4(1). NAME(1) is none: hosts
+/// number layers of one name.
+bool hasMadeName(const MeshModel& layer);
+
 /**
  * Reads and checks a surface layer; the layer itself is not changed.
  * @throws InvalidInput if it is empty, has no faces, is a stage of the contraction, is not a closed
@@ -112,7 +119,8 @@ struct SolidLayer
 };
 
 /**
- * As readSurface(), with what does not bound a solid repaired: see solidSurface().
+ * As readSurface(), with what does not bound a solid repaired: see solidSurface(). The surface in
+ * the layer's state is taken where that would leave it as it is.
  * @throws InvalidInput as readSurface(), for what `choices` do not repair; SolverError, Cancelled.
  */
 SolidLayer readSolid(const MeshModel& layer, const vcg::tri::mcf::SolidChoices& choices,
@@ -158,6 +166,10 @@ CurveLayer readCurve(const MeshModel& layer);
 
 /// As above, but finds skeletons as readStage() finds stages: with edits, in copies and in files.
 CurveLayer readCurve(const MeshModel& layer, const StateSources& sources);
+
+/// The surface that the skeleton on a layer remembers, wherever its nodes are by now; a link to no
+/// layer if there is none.
+SurfaceLink surfaceOfCurve(const MeshModel& layer);
 
 /// Puts a skeleton into a new, empty layer.
 void fillCurve(MeshModel& layer, const CurveLayer& curve);

@@ -63,21 +63,42 @@ double referenceDiagonal(const MeshModel& layer)
 	return std::isfinite(diagonal) ? diagonal : 0;
 }
 
-QString baseName(QString name)
+namespace {
+
+/// Finds what the filters append to names.
+const QRegularExpression& appendedName()
+{
+	static const QRegularExpression appended(
+		"_(solid|resampled|meso_\\d+|skeleton|refined|poles|pruned|smoothed|medial|balls|tubes)$");
+	return appended;
+}
+
+/// A name without copy number and file type.
+QString plainName(QString name)
 {
 	static const QRegularExpression copyNumber("\\(\\d+\\)$");
 	static const QRegularExpression fileType("\\.[A-Za-z0-9]{1,5}$");
-	static const QRegularExpression appended(
-		"_(solid|resampled|meso_\\d+|skeleton|refined|poles|pruned|smoothed|medial|balls|tubes)$");
 	name.remove(copyNumber);
 	name.remove(fileType);
-	name.remove(appended);
+	return name;
+}
+
+} // namespace
+
+QString baseName(QString name)
+{
+	name = plainName(name).remove(appendedName());
 	return name.isEmpty() ? QString("mesh") : name;
 }
 
 QString baseName(const MeshModel& layer)
 {
 	return baseName(layer.label());
+}
+
+bool hasMadeName(const MeshModel& layer)
+{
+	return plainName(layer.label()).contains(appendedName());
 }
 
 namespace {
@@ -170,29 +191,71 @@ SurfaceLayer readSurface(const MeshModel& layer, const mcf::Progress& progress)
 		read.pointOfSlot, progress.cancelOnly());
 }
 
+namespace {
+
+/// The triangles of a surface in a state, its pieces turned as they were given.
+LayerTriangles trianglesAsGiven(const SurfaceLayer& surface, const mcf::Progress& progress)
+{
+	const mcf::SurfaceMesh& mesh = *surface.mesh;
+	if (surface.turned.empty())
+		return {mesh.position, mesh.triangles(progress), *surface.vertexOfSlot};
+	const std::vector<int> piece = mcf::connectedComponents(mesh, nullptr, progress);
+	const mcf::SurfaceMesh given = mcf::withPiecesTurned(mesh, piece, surface.turned, progress);
+	return {mesh.position, given.triangles(progress), *surface.vertexOfSlot};
+}
+
+/// A surface that needs no repair, without the pieces that are too small. If it was never to be
+/// repaired its cavities are reported.
+SolidLayer soundSolid(
+	const SurfaceLayer& known, const mcf::SolidChoices& choices, const mcf::Progress& progress)
+{
+	SolidLayer same {known, {}};
+	const bool isToReport = choices.withoutCavities && choices.repair == mcf::Repair::Off
+		&& known.soundWith == mcf::Repair::Off && !known.turned.empty();
+	if (!(choices.minComponent > 0) && !isToReport)
+		return same;
+	mcf::CheckedSurface pieces {*known.mesh, *known.vertexOfSlot, known.turned, known.notes};
+	same.report.leftOut = mcf::keepSolidPieces(pieces, choices.minComponent,
+		isToReport ? mcf::Cavities::Reported : mcf::Cavities::Kept, progress);
+	if (same.isRepaired()) {
+		same.surface.mesh = std::make_shared<const mcf::SurfaceMesh>(std::move(pieces.mesh));
+		same.surface.vertexOfSlot =
+			std::make_shared<const std::vector<int>>(std::move(pieces.vertexOfInput));
+		same.surface.turned.clear();
+	}
+	same.surface.notes = std::move(pieces.notes);
+	if (!same.surface.hollow)
+		same.surface.hollow = same.report.leftOut.hollow;
+	return same;
+}
+
+} // namespace
+
 SolidLayer readSolid(
 	const MeshModel& layer, const mcf::SolidChoices& choices, const mcf::Progress& progress)
 {
-	if (std::optional<SurfaceLayer> known = surfaceInState(layer)) {
-		SolidLayer same {*known, {}};
-		if (!(choices.minComponent > 0))
-			return same;
-		mcf::CheckedSurface pieces {*known->mesh, *known->vertexOfSlot, {}, known->notes};
-		same.report.leftOut =
-			mcf::keepSolidPieces(pieces, choices.minComponent, mcf::Cavities::Kept, progress);
-		if (same.isRepaired())
-			same.surface = {std::make_shared<const mcf::SurfaceMesh>(std::move(pieces.mesh)),
-				std::make_shared<const std::vector<int>>(std::move(pieces.vertexOfInput)),
-				std::move(pieces.notes), {}, known->hollow};
-		return same;
-	}
-	const LayerTriangles read = readTriangles(layer, progress.part(0, 0.2));
+	std::optional<SurfaceLayer> known = surfaceInState(layer);
+	// All states hold what checkedSurface() accepts; Auto does all that Mend does.
+	if (known && known->soundWith <= choices.repair)
+		return soundSolid(*known, choices, progress);
+	const LayerTriangles read = known ? trianglesAsGiven(*known, progress.cancelOnly())
+									  : readTriangles(layer, progress.part(0, 0.2));
 	mcf::SolidSurface solid =
-		mcf::solidSurface(read.points, read.triangles, choices, progress.part(0.2, 1));
+		mcf::solidSurface(read.points, read.triangles, choices, progress.part(0.2, 0.95));
+	const mcf::SolidReport& report = solid.report;
+	const bool isSound = report.outcome == mcf::SolidReport::Sound && report.leftOut.cavities == 0;
+	if (known && isSound) {
+		if (choices.withoutCavities)
+			known->soundWith = choices.repair;
+		return soundSolid(*known, choices, progress.part(0.95, 1));
+	}
 	SolidLayer made {
-		surfaceLayer(std::move(solid.surface), read.pointOfSlot, progress.cancelOnly()),
-		solid.report};
-	made.surface.hollow = solid.report.leftOut.hollow;
+		surfaceLayer(std::move(solid.surface), read.pointOfSlot, progress.cancelOnly()), report};
+	made.surface.hollow = report.leftOut.hollow;
+	if (known && !made.surface.hollow)
+		made.surface.hollow = known->hollow;
+	if (choices.withoutCavities)
+		made.surface.soundWith = choices.repair;
 	return made;
 }
 
@@ -291,6 +354,14 @@ CurveLayer readCurve(const MeshModel& layer)
 	edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
 	requireUsablePlaces(layer, curve.skeleton.position);
 	return curve;
+}
+
+SurfaceLink surfaceOfCurve(const MeshModel& layer)
+{
+	const StatePointer state = findState(layer.cm);
+	return state && state->curve && hasEdgesOf(layer, state->curve->skeleton)
+		? state->curve->surface
+		: SurfaceLink();
 }
 
 std::vector<int> readNodes(const MeshModel& layer)

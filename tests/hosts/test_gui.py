@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from conftest import FULL, MESHES, ROOT, gui_host, opened
+from conftest import FULL, MESHES, ROOT, arrays, document, gui_host, opened
+from filter_names import SAVE_PROJECT
 from host_programs import ply_vertices
 
 sys.path.insert(0, str(ROOT / "scripts" / "gui"))
@@ -195,6 +196,20 @@ def test_a_project_is_seen_as_it_was_saved(window: Window, host: Path, tmp_path:
         assert names(again.layers()) == names(window.layers())
         lines.append(skeleton_pixels(viewport(again)).sum())
     assert lines[1] > 0.8 * lines[0] > 200, "its colours are seen, and no surface hides it"
+
+
+def test_another_body_of_that_name_still_shows(host: Path, tmp_path: Path) -> None:
+    """MeshLab numbers layers of one name, as it does those that the filters make."""
+    two = document(arrays("capsule"), arrays("torus"))
+    for k, name in enumerate(["body", "body(1)"]):
+        two.mesh(k).set_label(name)
+    two.apply_filter(SAVE_PROJECT, file=str(tmp_path / "two.mlp"))
+    with Window(host / "bin" / "meshlab", tmp_path / "two.mlp", data=host / "data") as window:
+        window.click(next(w for w in window.view().all("table cell", r"body[ *]*$")))
+        window.open_filter(PREFIX + "Full Skeletonize")
+        assert apply(window, "Full Skeletonize")["cycles"] == 0
+        layers = window.layers()
+        assert visible(window, layers) == ["body(1)", "body_resampled", "body_skeleton"]
 
 
 @pytest.mark.parametrize("window", ["capsule"], indirect=True)

@@ -138,6 +138,36 @@ class TestNames:
             cycles.append(layers.apply_filter(FULL, **COARSE)["cycles"])
         assert cycles == [0, 1]
 
+    @pytest.mark.parametrize("fitted", [False, True], ids=["as it is", "in the same box"])
+    def test_a_skeleton_is_refined_on_its_own_body_of_two_of_one_name(self, fitted):
+        first, (vertices, faces) = arrays("y_tube"), arrays("torus")
+        if fitted:
+            low, size = first[0].min(axis=0), np.ptp(first[0], axis=0)
+            vertices = low + (vertices - vertices.min(axis=0)) / np.ptp(vertices, axis=0) * size
+        layers = document(first, (vertices, faces))
+        made = []
+        for k, name in enumerate(["part.obj", "part.ply"]):
+            layers.mesh(k).set_label(name)
+        for k in range(2):
+            layers.set_current_mesh(k)
+            count = layers.mesh_number()
+            layers.apply_filter(FULL, refine=False, **COARSE)
+            made.append([mesh.id() for mesh in layers][count:])
+
+        def nodes() -> dict[int, list[float]]:
+            return {mesh.id(): scalars(mesh, "mcfskel_node").tolist() for mesh in layers
+                    if "mcfskel_node" in attributes(mesh)}
+
+        before = nodes()
+        assert before.keys() == {0, 1, made[0][0], made[1][0]}, "the inputs and the resampled surfaces"
+        for k in range(2):
+            layers.set_current_mesh(made[k][-1])
+            layers.apply_filter(REFINE)
+            after = nodes()
+            assert {i for i in before if after[i] != before[i]} == {k, made[k][0]}
+            assert max(after[k]) < layers.current_mesh().vertex_number()
+            before = after
+
 
 class TestTwoMeshes:
     def test_in_turns(self):

@@ -56,6 +56,24 @@ class TestScripts:
         assert curve.edge_number() == curve.vertex_number() - 1
 
 
+    def test_a_missing_parameter_has_its_default(self, tmp_path):
+        """A script may be older than the parameter."""
+        whole = changed("full_skeletonize", tmp_path, target_length=0.05)
+        tree = ElementTree.parse(whole)
+        for element in tree.getroot():
+            for parameter in list(element):
+                if parameter.get("name") != "target_length":
+                    element.remove(parameter)
+        tree.write(tmp_path / "older.mlx")
+        nodes = []
+        for script in (whole, tmp_path / "older.mlx"):
+            layers = opened("capsule")
+            layers.load_filter_script(str(script))
+            layers.apply_filter_script()
+            nodes.append(layers.current_mesh().vertex_matrix())
+        assert np.array_equal(*nodes)
+
+
 @pytest.fixture(scope="module")
 def full_run(server, tmp_path_factory) -> tuple[Path, str]:
     """The folder and the log of the full example on a body with three limbs."""

@@ -390,6 +390,17 @@ class TestCompare:
         with pytest.raises(pymeshlab.PyMeshLabException, match="another layer"):
             y_tube.apply_filter(COMPARE)
 
+    def test_not_with_one_that_only_its_matrix_moves(self, y_tube):
+        whole = y_tube.current_mesh_id()
+        y_tube.apply_filter(RESAMPLE_SKELETON)
+        y_tube.compute_matrix_from_translation(axisx=1.0, freeze=False)
+        text = failing(y_tube, COMPARE, other=whole)
+        for words in ["'y_tube_smoothed'", "'y_tube_skeleton'", "different transformations", "Freeze"]:
+            assert words in text
+        y_tube.apply_matrix_freeze()
+        results = y_tube.apply_filter(COMPARE, other=whole)
+        assert 0.1 < results["distance_max"] * results["diagonal"] < 1.01
+
 
 class TestMeasure:
     def test_known_skeleton_is_inside_and_centred(self):
@@ -422,6 +433,19 @@ class TestMeasure:
         assert results["inside_fraction"] == 1
         assert results["medial_mean_pct"] < 1
         assert results["terminals"] == 3
+
+    def test_a_surface_that_only_its_matrix_moves(self, y_tube):
+        curve, surface = y_tube.current_mesh_id(), layer(y_tube, "y_tube_resampled").id()
+        before = y_tube.apply_filter(MEASURE)
+        for moved in (0, surface):
+            y_tube.set_current_mesh(moved)
+            y_tube.compute_matrix_from_translation(axisx=7.0, freeze=False)
+        y_tube.set_current_mesh(curve)
+        text = failing(y_tube, MEASURE, surface=0)
+        assert "'y_tube.off'" in text and "different transformations" in text
+        # The one that the skeleton was made from is in the place that it had then.
+        assert y_tube.apply_filter(MEASURE) == before
+        assert y_tube.apply_filter(MEASURE, surface=surface) == before
 
     def test_needs_a_surface(self):
         layers = pymeshlab.MeshSet()

@@ -6,8 +6,8 @@ import numpy as np
 import pymeshlab
 import pytest
 
-from conftest import FULL, RESAMPLE, STEP, arrays, diagonal, document, failing, fingerprint, labels, sheet
-from filter_names import PRUNE, REFINE, SMOOTH, SOLID
+from conftest import FULL, POLES, RESAMPLE, STEP, arrays, diagonal, document, failing, fingerprint, labels, sheet
+from filter_names import MEDIAL_AXIS, PRUNE, REFINE, SMOOTH, SOLID
 from hostile.primitives import genus, is_two_manifold, signed_volume
 
 Mesh = tuple[np.ndarray, np.ndarray]
@@ -32,6 +32,12 @@ def crossing() -> Mesh:
     vertices, faces = arrays("capsule")
     return (np.vstack([vertices, vertices[:, [1, 0, 2]]]),
             np.vstack([faces, faces[:, ::-1] + len(vertices)]))
+
+
+def hollow() -> Mesh:
+    """A capsule with a smaller one as a cavity."""
+    vertices, faces = arrays("capsule")
+    return np.vstack([vertices, vertices * 0.4]), np.vstack([faces, faces[:, ::-1] + len(vertices)])
 
 
 def solid(layers: pymeshlab.MeshSet) -> Mesh:
@@ -177,9 +183,7 @@ def test_small_pieces_get_no_skeleton():
 
 
 def test_no_curve_in_a_cavity():
-    vertices, faces = arrays("capsule")
-    hollow = np.vstack([vertices, vertices * 0.4]), np.vstack([faces, faces[:, ::-1] + len(vertices)])
-    layers = document(hollow)
+    layers = document(hollow())
     results = layers.apply_filter(FULL, resample=False)
     assert (results["components"], results["pieces_left_out"]) == (1, 1)
     assert "mesh_0_solid" in labels(layers)
@@ -188,15 +192,13 @@ def test_no_curve_in_a_cavity():
     assert 0.3 < measured["inside_fraction"] < 0.7
     # So they do on the surface that was contracted, and that has no cavity.
     for resample in (False, True):
-        layers = document(hollow)
+        layers = document(hollow())
         layers.apply_filter(FULL, resample=resample)
         assert 0.3 < layers.apply_filter("compute_skeleton_measures_mcf")["inside_fraction"] < 0.7
 
 
 def test_a_solid_keeps_its_cavity():
-    vertices, faces = arrays("capsule")
-    layers = document((np.vstack([vertices, vertices * 0.4]),
-                       np.vstack([faces, faces[:, ::-1] + len(vertices)])))
+    layers = document(hollow())
     layers.apply_filter(SOLID)
     assert np.array_equal(layers.current_mesh().face_matrix(), layers.mesh(0).face_matrix())
     results = layers.apply_filter(FULL, resample=False)
@@ -204,9 +206,7 @@ def test_a_solid_keeps_its_cavity():
 
 
 def test_without_repair_a_cavity_is_a_body():
-    vertices, faces = arrays("capsule")
-    hollow = np.vstack([vertices, vertices * 0.4]), np.vstack([faces, faces[:, ::-1] + len(vertices)])
-    layers = document(hollow)
+    layers = document(hollow())
     assert layers.apply_filter(FULL, repair="off", resample=False)["components"] == 2
 
 
@@ -233,6 +233,47 @@ def test_pieces_are_joined_by_marked_bridges():
     assert refined.vertex_custom_scalar_attribute_array("mcfskel_bridge").sum() == 1
     layers.apply_filter("generate_pruned_skeleton_mcf")
     assert layers.current_mesh().vertex_custom_scalar_attribute_array("mcfskel_bridge").sum() == 1
+
+
+#: Filters that leave their surface, unrepaired, in the state of a layer.
+LEAVE_SURFACE = [(POLES, {}), (MEDIAL_AXIS, {}), (STEP, {"repair": "off"}),
+                 (FULL, {"repair": "off", "resample": False})]
+
+
+@pytest.mark.parametrize("name, parameters", LEAVE_SURFACE)
+@pytest.mark.parametrize("repairing", [SOLID, STEP, FULL])
+def test_a_layer_with_state_is_wrapped_like_others(name, parameters, repairing):
+    layers = document(crossing())
+    layers.apply_filter(name, **parameters)
+    layers.set_current_mesh(0)
+    assert layers.apply_filter(repairing)["repaired"] == 2
+    if repairing == FULL:
+        node = layers.mesh(0).vertex_custom_scalar_attribute_array("mcfskel_node")
+        assert (node >= 0).all() and node.max() < layers.current_mesh().vertex_number()
+
+
+@pytest.mark.parametrize("name, parameters", LEAVE_SURFACE)
+def test_a_cavity_of_a_layer_with_state_gets_no_curve(name, parameters):
+    layers, plain = document(hollow()), document(hollow())
+    layers.apply_filter(name, **parameters)
+    layers.set_current_mesh(0)
+    for one in (layers, plain):
+        results = one.apply_filter(FULL, resample=False)
+        assert (results["components"], results["pieces_left_out"]) == (1, 1)
+    assert np.array_equal(layers.current_mesh().vertex_matrix(), plain.current_mesh().vertex_matrix())
+    # Only the one that was asked to be left unrepaired has it as a body.
+    layers.set_current_mesh(0)
+    assert layers.apply_filter(FULL, repair="off", resample=False)["components"] == 2
+
+
+@pytest.mark.parametrize("repair", ["auto", "mend", "off"])
+def test_a_sound_layer_keeps_its_poles(repair):
+    layers = document(arrays("torus"))
+    layers.apply_filter(POLES, pole_method="balls")
+    before = layers.mesh(0).vertex_custom_point_attribute_matrix("mcfskel_pole")
+    layers.apply_filter(STEP, repair=repair)
+    assert np.array_equal(layers.mesh(0).vertex_custom_point_attribute_matrix("mcfskel_pole"), before)
+    assert labels(layers) == ["mesh_0", "mesh_0_meso_1"]
 
 
 @pytest.mark.parametrize("name", [FULL, STEP, RESAMPLE])

@@ -4,6 +4,7 @@
 layers: what can be kept is kept, and the log says what was taken over and what is lost."""
 
 import ctypes
+import resource
 from collections.abc import Callable
 from pathlib import Path
 
@@ -332,6 +333,53 @@ class TestProjects:
         layers.apply_filter(SAVE_PROJECT, file=str(tmp_path / "p.mlp"))
         assert (tmp_path / "capsule.ply").read_bytes() == before
         assert [p.name for p in source.iterdir()] == ["capsule.ply"]
+
+    def test_other_files_in_its_folder_are_left_alone(self, tmp_path):
+        folder = tmp_path / "p_layers"
+        folder.mkdir()
+        layers = pymeshlab.MeshSet()
+        layers.load_new_mesh(str(MESHES / "capsule.off"))
+        layers.save_current_mesh(str(folder / "capsule.ply"))
+        before = (folder / "capsule.ply").read_bytes()
+        layers = pymeshlab.MeshSet()
+        layers.load_new_mesh(str(folder / "capsule.ply"))
+        for _ in range(2):  # the second time there is a file of its own, which is replaced
+            layers.apply_filter(SAVE_PROJECT, file=str(tmp_path / "p.mlp"))
+            assert (folder / "capsule.ply").read_bytes() == before
+            assert sorted(p.name for p in folder.iterdir()) == ["capsule(1).ply", "capsule.ply"]
+        again = pymeshlab.MeshSet()
+        again.load_project(str(tmp_path / "p.mlp"))
+        assert labels(again) == labels(layers)
+
+    def test_a_failed_one_leaves_the_old_one(self, tmp_path):
+        layers = document(arrays("capsule"), arrays("hand"))
+        file, folder = tmp_path / "p.mlp", tmp_path / "p_layers"
+
+        def contents() -> dict[Path, bytes]:
+            return {p: p.read_bytes() if p.is_file() else b"" for p in tmp_path.rglob("*")}
+
+        layers.apply_filter(SAVE_PROJECT, file=str(file))
+        before = contents()
+        layers.set_current_mesh(0)
+        layers.compute_coord_by_function(x="x + 1")
+        first, second = (len(before[folder / f"mesh_{k}.ply"]) for k in range(2))
+        assert first < second
+        limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+        resource.setrlimit(resource.RLIMIT_FSIZE, ((first + second) // 2, limits[1]))
+        try:
+            text = failing(layers, SAVE_PROJECT, file=str(file))
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+        assert "File too large" in text and str(folder / "mesh_1.ply") in text
+        assert contents() == before
+        layers.apply_filter(SAVE_PROJECT, file=str(file))
+        assert contents().keys() == before.keys() and contents() != before
+
+    def test_none_is_left_where_the_project_itself_cannot_be_written(self, tmp_path):
+        layers = document(arrays("capsule"))
+        (tmp_path / "p.mlp").mkdir()
+        assert "Is a directory" in failing(layers, SAVE_PROJECT, file=str(tmp_path / "p.mlp"))
+        assert [p.name for p in tmp_path.rglob("*")] == ["p.mlp"]
 
     def test_odd_layers_are_saved_as_meshes(self, tmp_path, log):
         """One layer that is no valid skeleton or stage does not keep the others from being saved."""
