@@ -4,12 +4,14 @@
 """Computes the curve skeleton of a mesh and draws it."""
 
 import argparse
+import os
 import sys
 import tempfile
 from pathlib import Path
 from typing import Any
 
-DEFAULT_MESH = Path(__file__).resolve().parent.parent / "meshes" / "animal.off"
+ROOT = Path(__file__).resolve().parent.parent
+DEFAULT_MESH = ROOT / "meshes" / "animal.off"
 FILTER = "generate_curve_skeleton_mcf"
 INT_MAX = 2**31 - 1  # the filter's numbers
 #: What the log says of a skeleton that is not all that was asked for.
@@ -150,55 +152,46 @@ def filter_parameters(options: argparse.Namespace) -> dict[str, Any]:
     return parameters
 
 
-def volumes() -> Any:
-    """The Python package's module of voxels and points; the package itself would load its own plugin."""
-    import importlib.util
-    path = Path(__file__).resolve().parent.parent / "python" / "mcfskel" / "_volumes.py"
-    spec = importlib.util.spec_from_file_location("mcfskel_volumes", path)
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    return module
+def use_package(plugin: Path) -> None:
+    """Makes this checkout's Python package importable: it reads meshes and runs filters the same way for both."""
+    os.environ["MCFSKEL_PLUGIN"] = str(plugin.absolute())
+    sys.path.insert(0, str(ROOT / "python"))
 
 
-def read_surface(options: argparse.Namespace, layers: Any) -> None:
-    """The mesh as one layer: voxels as the surface around them, points as a triangle each."""
-    import numpy as np
-    import pymeshlab
-    module = volumes()
+def read_surface(options: argparse.Namespace) -> Any:
+    """A document with the mesh as its current layer."""
+    from mcfskel._run import SkeletonError
+    from mcfskel._skeleton import document
+
     try:
-        if options.mesh.suffix.lower() in module.VOLUME_FILES:
-            spacing = options.spacing if options.spacing is None or len(options.spacing) == 3 \
-                else options.spacing[0]
-            made = module.voxel_surface(module.read_volume(options.mesh, spacing),
-                                        0.5 if options.level is None else options.level)
-        else:
-            if options.spacing is not None or options.level is not None:
-                raise ValueError("--spacing and --level are options of voxels: .npy, .npz or .nrrd")
-            layers.load_new_mesh(str(options.mesh.resolve()))
-            if layers.mesh_number() > 1:
-                layers.generate_by_merging_visible_meshes()
-            mesh = layers.current_mesh()
-            if mesh.face_number() or not mesh.vertex_number() or not mesh.vertex_normal_matrix().any():
-                return
-            made = module.point_triangles(mesh.vertex_matrix(), mesh.vertex_normal_matrix())
-            layers.clear()
-    except ValueError as error:
-        raise UserError(f"{options.mesh}: {error}") from None
-    layers.add_mesh(pymeshlab.Mesh(made[0], made[1].astype(np.int32)), options.mesh.stem)
+        return document(options.mesh, spacing=options.spacing, level=options.level)
+    except SkeletonError as error:
+        raise UserError(str(error)) from None
 
 
-def run_filter(options: argparse.Namespace) -> tuple[Any, dict[str, float]]:
-    """Loads the mesh and runs the filter with a progress bar; returns the layers and the numbers."""
-    import pymeshlab
+def apply_filter(layers: Any, name: str, parameters: dict[str, Any]) -> dict[str, float]:
+    """Runs a filter and returns its numbers; Ctrl-C ends it."""
+    from mcfskel._run import SkeletonError, apply
+
+    try:
+        return apply(layers, name, parameters)
+    except SkeletonError as error:
+        raise UserError(str(error)) from None
+
+
+def run_filter(options: argparse.Namespace) -> tuple[Any, Any, dict[str, float]]:
+    """Loads the mesh and runs the filter with a progress bar.
+
+    Returns:
+        The document, its layer that was contracted, and the numbers.
+    """
+    from mcfskel._skeleton import contracted_layer
     from tqdm import tqdm
 
     from host_progress import host_output, terminal
 
-    pymeshlab.load_plugin(str(options.plugin))
-    layers = pymeshlab.MeshSet(verbose=True)
     messages: list[str] = []
-    error: Exception | None = None
+    error: UserError | None = None
     results: dict[str, float] = {}
     parameters = filter_parameters(options)
     with terminal() as stream, tqdm(
@@ -210,30 +203,21 @@ def run_filter(options: argparse.Namespace) -> tuple[Any, dict[str, float]]:
             bar.update(max(0, percent - bar.n))
 
         with host_output(on_progress, messages.append):
+            layers = read_surface(options)
+            mesh = layers.current_mesh_id()
+            layers.set_verbosity(True)
+            bar.reset()
             try:
-                read_surface(options, layers)
-                bar.reset()
-                messages.clear()
-                results = layers.apply_filter(FILTER, **parameters)
-            except pymeshlab.PyMeshLabException as exception:
+                results = apply_filter(layers, FILTER, parameters)
+            except UserError as exception:
                 error = exception
     if not options.verbose and (error is not None or results["converged"]):
         messages = [text for text in messages if any(words in text for words in LESS_THAN_ASKED)]
     for text in messages:
         print(text, file=sys.stderr)
     if error is not None:
-        raise UserError(f"{options.mesh}: {reason(str(error))}")
-    return layers, results
-
-
-def reason(text: str) -> str:
-    """The plugin's own words in pymeshlab's error, on one line."""
-    lines = [line.strip() for line in text.splitlines() if line.strip()]
-    if len(lines) > 1 and lines[0].startswith("Failed to apply filter"):
-        lines = [line.removeprefix("Details: ") for line in lines[1:]]
-    if lines and lines[0].startswith("Unknown format"):
-        return "its name does not end like a mesh's: .off, .ply, .obj, .stl, .glb, .gltf, .dae, .3ds, .x3d, ..."
-    return " ".join(lines)
+        raise UserError(f"{options.mesh}: {error}")
+    return layers, contracted_layer(layers, mesh), results
 
 
 def layer_named(layers: Any, ending: str) -> Any:
@@ -287,10 +271,8 @@ def name_of_results(mesh: Path, folder: Path) -> str:
     return other
 
 
-def write_results(options: argparse.Namespace, layers: Any) -> dict[Path, str]:
+def write_results(options: argparse.Namespace, layers: Any, surface: Any) -> dict[Path, str]:
     """Writes every file; returns their names, and for each whether it was "wrote" or "replaced"."""
-    import pymeshlab
-
     from host_progress import host_output
     from picture import draw
     from ply_files import write_skeleton, write_surface
@@ -308,8 +290,6 @@ def write_results(options: argparse.Namespace, layers: Any) -> dict[Path, str]:
     skeleton = layer_named(layers, "_skeleton")
     nodes, edges = skeleton.vertex_matrix(), skeleton.edge_matrix()
     radius = vertex_attribute(skeleton, "mcfskel_radius")
-    surface = layer_named(layers, "_resampled") or next(
-        mesh for mesh in layers if vertex_attribute(mesh, "mcfskel_node") is not None)
     vertices, faces = surface.vertex_matrix(), surface.face_matrix()
 
     write_skeleton(place("_skeleton.ply"), nodes, edges, radius, options.mesh.name)
@@ -319,15 +299,9 @@ def write_results(options: argparse.Namespace, layers: Any) -> dict[Path, str]:
     for kind in sorted(set(options.formats) - {"ply", "obj"}):
         path = place(f"_skeleton.{kind}")
         messages: list[str] = []
-        failure: Exception | None = None
         with host_output(lambda percent, what: None, messages.append):
-            try:
-                layers.apply_filter("save_skeleton_mcf", file=str(path.resolve()),
-                                    surface=surface.id())
-            except pymeshlab.PyMeshLabException as error:
-                failure = error
-        if failure is not None:
-            raise UserError(reason(str(failure)))
+            # Not resolve(): what a link leads to may end otherwise, and the ending is the format.
+            apply_filter(layers, "save_skeleton_mcf", {"file": str(path.absolute()), "surface": surface.id()})
         for message in messages:
             if "Warning:" in message:  # a cycle was cut, say
                 print(message[message.index("Warning:"):], file=sys.stderr)
@@ -361,8 +335,9 @@ def main() -> int:
         check_files(options)
         if options.only_check:
             return 0
-        layers, results = run_filter(options)
-        written = write_results(options, layers)
+        use_package(options.plugin)
+        layers, surface, results = run_filter(options)
+        written = write_results(options, layers, surface)
     except UserError as error:
         print(f"error: {error}", file=sys.stderr)
         return 1
@@ -374,4 +349,8 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    try:
+        sys.exit(main())
+    except KeyboardInterrupt:
+        print("interrupted", file=sys.stderr)
+        sys.exit(130)

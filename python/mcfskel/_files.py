@@ -85,15 +85,18 @@ def save(skeleton: Skeleton, path: Path, options: dict[str, Any]) -> None:
                                                  if name not in ("file", "surface")})
     options["file"] = str(path)
     if len(skeleton.correspondence):
-        if suffix == ".glb":
-            surface = pymeshlab.Mesh(*skeleton.surface)
-        else:
-            surface = pymeshlab.Mesh(vertex_matrix=np.zeros((len(skeleton.correspondence), 3)))
-        surface.add_vertex_custom_scalar_attribute(
-            skeleton.correspondence.astype(float), "mcfskel_node")
-        layers.add_mesh(surface, "surface", set_as_current=False)
-        options["surface"] = 1
-    apply(layers, "save_skeleton_mcf", options)
+        vertices = np.zeros((len(skeleton.correspondence), 3))
+        surface = skeleton.surface if suffix == ".glb" else (vertices, np.empty((0, 3), np.int32))
+        options["surface"] = add_surface(layers, *surface, skeleton.correspondence)
+    try:
+        apply(layers, "save_skeleton_mcf", options)
+    except SkeletonError:
+        if suffix != ".glb" or skeleton._contracted is None:
+            raise
+        # A mesh that was repaired may bound no solid, as .glb needs it.
+        surface, correspondence = skeleton._contracted
+        options["surface"] = add_surface(layers, *surface, correspondence)
+        apply(layers, "save_skeleton_mcf", options)
     if len(skeleton.faces):
         _warn(f"{suffix} holds curves only: the {len(skeleton.faces)} triangles of the sheets are "
               f"not in '{path}'; .ply keeps them.")
@@ -102,6 +105,15 @@ def save(skeleton: Skeleton, path: Path, options: dict[str, Any]) -> None:
             cuts = [line[2:].strip() for line in lines if line.startswith("# cycle cut")]
         if cuts:
             _warn(f"SWC holds trees only; in '{path}': {'; '.join(cuts)}")
+
+
+def add_surface(layers: pymeshlab.MeshSet, vertices: np.ndarray, faces: np.ndarray,
+                correspondence: np.ndarray) -> int:
+    """Adds a layer that is not the current one, and returns its id."""
+    surface = pymeshlab.Mesh(vertex_matrix=vertices, face_matrix=faces)
+    surface.add_vertex_custom_scalar_attribute(correspondence.astype(float), "mcfskel_node")
+    layers.add_mesh(surface, "surface", set_as_current=False)
+    return layers.mesh_number() - 1
 
 
 def middles(skeleton: Skeleton) -> np.ndarray:

@@ -77,6 +77,8 @@ class Skeleton:
     surface: Surface | None = None
     significance: npt.NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
     bridges: npt.NDArray[np.bool_] = field(default_factory=lambda: np.empty(0, bool))
+    # Of a mesh that was repaired, the solid that was contracted and its correspondence, for .glb.
+    _contracted: tuple[Surface, npt.NDArray[np.int64]] | None = field(default=None, init=False)
 
     def __repr__(self) -> str:
         counts = [(len(self.nodes), "node"), (len(self.edges), "edge"),
@@ -212,7 +214,8 @@ class Skeleton:
         Args:
             path: Ends with .swc, .cg, .graphml, .json, .vtp, .glb or .ply. SWC holds trees only: each
                 cycle is cut at its thinnest edge, and a warning lists the cuts. Sheets are kept by
-                .ply. The correspondence is not in .swc and .cg. A .glb is the surface with an armature.
+                .ply. The correspondence is not in .swc and .cg. A .glb is the surface with an armature; where
+                that bounds no solid, the repaired surface.
             **options: Of the filter Save Skeleton: for .swc ``scale``, ``units`` (``"um"``) and
                 ``soma`` (``"auto"``); for .glb ``bone_tolerance``, a length such as ``"1%"``.
 
@@ -256,7 +259,7 @@ def skeletonize(vertices: Any, faces: npt.ArrayLike | None = None, *,
         SkeletonWarning: The contraction has not converged within ``max_iterations``, or components could
             not be refined.
     """
-    layers = _document(vertices, faces, normals, spacing, level)
+    layers = document(vertices, faces, normals, spacing, level)
     surface = Surface(layers.current_mesh().vertex_matrix(), layers.current_mesh().face_matrix())
     defaults = layers.filter_parameter_values(FILTER)
     options = filter_options("skeletonize()", options | {"target_length": target_length, "epsilon": epsilon},
@@ -273,7 +276,23 @@ def skeletonize(vertices: Any, faces: npt.ArrayLike | None = None, *,
         warnings.warn(f"{1 - results['refined']:.0%} of the components are not refined: their curves are those of "
                       "the flow, which may be off the middle, and partly outside where the surface crosses itself "
                       "or is very thin.", SkeletonWarning, stacklevel=2)
-    return _from_layer(layers.current_mesh(), layers.mesh(mesh), results, surface)
+    skeleton = _from_layer(layers.current_mesh(), layers.mesh(mesh), results, surface)
+    if results.get("repaired"):
+        contracted = contracted_layer(layers, mesh)
+        object.__setattr__(skeleton, "_contracted", (
+            Surface(contracted.vertex_matrix(), contracted.face_matrix()), _nodes_of(contracted)))
+    return skeleton
+
+
+def contracted_layer(layers: pymeshlab.MeshSet, mesh: int) -> pymeshlab.Mesh:
+    """The surface that Full Skeletonize has contracted: the resampled or the repaired one, else the mesh itself.
+
+    Args:
+        layers: The document after the filter, which had only the mesh before.
+        mesh: The id of the mesh's layer.
+    """
+    return next((layer for layer in layers if layer.id() != mesh
+                 and layer.label().endswith(("_resampled", "_solid"))), layers.mesh(mesh))
 
 
 def _is_to_be_refined(values: dict[str, Any]) -> bool:
@@ -316,9 +335,13 @@ def load(path: str | os.PathLike[str]) -> Skeleton:
     return Skeleton(nodes, edges, radius, correspondence, {}, faces, None, significance, bridges)
 
 
-def _document(vertices: Any, faces: Any, normals: Any = None, spacing: Any = None,
-              level: float | None = None) -> pymeshlab.MeshSet:
-    """A document with the mesh as its current layer."""
+def document(vertices: Any, faces: Any = None, normals: Any = None, spacing: Any = None,
+             level: float | None = None) -> pymeshlab.MeshSet:
+    """A document with the mesh as its only layer; the arguments are those of skeletonize().
+
+    Raises:
+        SkeletonError: They are no mesh, or the file cannot be read.
+    """
     is_path = isinstance(vertices, (str, os.PathLike))
     volume = None
     level_given, level = level is not None, _level(level)
@@ -402,7 +425,7 @@ def _points(points: np.ndarray, normals: np.ndarray) -> pymeshlab.MeshSet:
 def _from_layer(layer: pymeshlab.Mesh, mesh: pymeshlab.Mesh, results: dict[str, Any],
                 surface: Surface) -> Skeleton:
     radius = layer.vertex_custom_scalar_attribute_array("mcfskel_radius")
-    correspondence = mesh.vertex_custom_scalar_attribute_array("mcfskel_node").astype(np.int64)
+    correspondence = _nodes_of(mesh)
     edges = np.sort(layer.edge_matrix().astype(np.int64).reshape(-1, 2), axis=1)
     edges = edges[np.lexsort((edges[:, 1], edges[:, 0]))]
     faces = layer.face_matrix().astype(np.int64).reshape(-1, 3)
@@ -416,6 +439,11 @@ def _from_layer(layer: pymeshlab.Mesh, mesh: pymeshlab.Mesh, results: dict[str, 
         bridges = bridge[edges].any(axis=1)
     return Skeleton(layer.vertex_matrix(), edges, radius, correspondence, results, faces, surface,
                     significance, bridges)
+
+
+def _nodes_of(surface: pymeshlab.Mesh) -> np.ndarray:
+    """The node of each vertex of a surface."""
+    return surface.vertex_custom_scalar_attribute_array("mcfskel_node").astype(np.int64)
 
 
 def _array(values: Any, name: str, kind: type) -> np.ndarray:

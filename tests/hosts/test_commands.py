@@ -5,16 +5,19 @@
 import os
 import pty
 import re
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
 import pymeshlab
 import pytest
+import trimesh
 from plyfile import PlyData
 
-from conftest import MESHES, ROOT, arrays, components, document
+from conftest import MESHES, ROOT, arrays, components, document, euler
 from hostile.primitives import box
 
 sys.path.insert(0, str(ROOT / "scripts"))
@@ -152,6 +155,52 @@ class TestFilesThatAreThere:
         layers.load_new_mesh(str(skeleton))
         assert layers.current_mesh().vertex_number() == len(read_skeleton(skeleton)[0])
 
+    @pytest.mark.parametrize("kind", ["mesh", "skeleton"])
+    def test_links_to_other_names(self, kind, tmp_path):
+        """The format is that of the link, as in a store of files that are named by their content."""
+        link = tmp_path / {"mesh": "y.off", "skeleton": "y_skeleton.json"}[kind]
+        (tmp_path / "3fa9").write_bytes((MESHES / "capsule.off").read_bytes() if kind == "mesh" else b"")
+        (tmp_path / "y.off").write_bytes((MESHES / "capsule.off").read_bytes())
+        link.unlink(missing_ok=True)
+        link.symlink_to("3fa9")
+        run = skeletonize(tmp_path / "y.off", tmp_path, *self.QUICK, "--formats", "json")
+        assert run.returncode == 0, run.stderr
+        assert link.is_symlink() and (tmp_path / "y_skeleton.json").read_text().startswith("{")
+
+
+class TestSurface:
+    @pytest.mark.parametrize("name, closed", [("open", False), ("open_resampled", False), ("sound", True)])
+    def test_without_resampling(self, name, closed, tmp_path):
+        """The solid that a mesh was made into, whatever its name; else the mesh as it is."""
+        vertices, faces = arrays("capsule")
+        document((vertices, faces if closed else faces[1:])).save_current_mesh(str(tmp_path / f"{name}.off"))
+        run = skeletonize(tmp_path / f"{name}.off", tmp_path, "--no-resample", "--no-picture", "--formats", "glb")
+        assert run.returncode == 0, run.stderr
+        layers = document(read_surface(tmp_path / f"{name}_surface.ply"))
+        solid = layers.current_mesh()
+        assert euler(solid) == 2 and solid.face_number() == len(faces)
+        node = PlyData.read(str(tmp_path / f"{name}_surface.ply"))["vertex"]["mcfskel_node"]
+        assert (np.asarray(node) >= 0).all()
+        skin = trimesh.load(tmp_path / f"{name}_skeleton.glb", process=False, force="mesh")
+        assert len(skin.vertices) == solid.vertex_number()
+
+    @pytest.mark.parametrize("x", [10, -10])
+    def test_is_where_a_node_of_a_scene_puts_it(self, x, tmp_path):
+        """Mirrored, too: it still faces outward."""
+        place = np.diag([x, 10, 10, 1.0])
+        place[:3, 3] = [100, 0, 0]
+        mesh = trimesh.load(MESHES / "capsule.off", process=False)
+        scene = trimesh.Scene()
+        scene.add_geometry(mesh, transform=place)
+        scene.export(str(tmp_path / "placed.glb"))
+        run = skeletonize(tmp_path / "placed.glb", tmp_path, "--no-resample", "--no-picture", "--repair", "off")
+        assert run.returncode == 0, run.stderr
+        vertices, _ = read_surface(tmp_path / "placed_surface.ply")
+        there = np.sort(trimesh.transform_points(mesh.bounds, place), axis=0)
+        assert np.allclose([vertices.min(axis=0), vertices.max(axis=0)], there, atol=1e-3)
+        nodes = read_skeleton(tmp_path / "placed_skeleton.ply")[0]
+        assert ((nodes > there[0]) & (nodes < there[1])).all()
+
 
 class TestOptions:
     def test_without_resampling_the_surface_is_the_input(self, tmp_path):
@@ -204,6 +253,26 @@ def test_progress_goes_to_the_terminal_and_results_to_the_output(tmp_path):
     assert run.returncode == 0, shown
     assert b" % " in shown
     assert "skeleton:" in output and "%" not in output
+
+
+def test_ctrl_c_ends_a_run(tmp_path):
+    ours, terminal = pty.openpty()
+    run = subprocess.Popen([str(SCRIPT), str(MESHES / "animal.off"), str(tmp_path / "out"), "--target-length",
+                            "0.25%"], stdout=terminal, stderr=terminal)
+    os.close(terminal)
+    shown, sent = b"", 0.0
+    while True:
+        try:
+            shown += os.read(ours, 4096)
+        except OSError:  # the other end was closed
+            break
+        if not sent and re.search(rb"\b[1-9]\d? % ", shown):
+            run.send_signal(signal.SIGINT)
+            sent = time.monotonic()
+    assert run.wait(timeout=60) == 130 and time.monotonic() - sent < 5
+    os.close(ours)
+    assert shown.strip().endswith(b"interrupted") and b"Traceback" not in shown
+    assert not (tmp_path / "out").exists()
 
 
 class TestFailures:
@@ -277,7 +346,7 @@ class TestFailures:
 
 def test_a_curve_that_is_not_refined_is_told(tmp_path):
     """A needle too thin for that; the command says it without --verbose."""
-    vertices, faces = box((1, 1e-5, 1e-5))
+    vertices, faces = box((1, 1e-6, 1e-6))
     layers = document((vertices, faces))
     layers.save_current_mesh(str(tmp_path / "needle.off"))
     run = skeletonize(tmp_path / "needle.off", tmp_path, "--no-resample", "--no-picture")

@@ -526,6 +526,25 @@ def test_save_and_load(run, tmp_path):
     assert all(answer["all"]) and len(answer["all"]) == 20
 
 
+def test_glb_of_a_repaired_mesh(run):
+    """The mesh itself if it bounds a solid, though it crosses itself; else the solid that it was made into."""
+    answer = run("""
+        import mcfskel, pickle, trimesh
+        mesh = trimesh.load(MESHES + "/capsule.off", process=False)
+        away = mesh.copy().apply_translation(0.3 * mesh.extents)
+        soup = trimesh.util.concatenate([mesh, away])
+        answer = []
+        for made_of, faces, resample in [(mesh, mesh.faces[1:], False), (mesh, mesh.faces[1:], True),
+                                         (soup, soup.faces[1:], False), (soup, soup.faces, True)]:
+            s = mcfskel.skeletonize(made_of.vertices, faces, resample=resample)
+            pickle.loads(pickle.dumps(s)).save("s.glb")
+            skin = trimesh.load("s.glb", process=False, force="mesh")
+            answer.append([s.results["repaired"], skin.is_watertight, len(skin.faces) == len(made_of.faces),
+                           bool(np.allclose(skin.bounds, made_of.bounds, atol=0.01))])
+    """)
+    assert answer == [[1, True, True, True], [1, True, False, True], [2, True, False, True], [2, True, True, True]]
+
+
 def test_bridges_are_kept_in_files(run):
     answer = run("""
         import mcfskel
