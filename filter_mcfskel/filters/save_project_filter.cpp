@@ -157,10 +157,12 @@ void writeLayer(MeshDocument& document, const SavedLayer& saved, const QString& 
 class LayerFiles
 {
 public:
-	/// @throws FileError
-	explicit LayerFiles(const ProjectPlace& place) :
-			place(place), isNew(!QFileInfo::exists(place.folder.filePath(place.layers)))
+	/// @param layers  are kept by reference. @throws FileError
+	LayerFiles(const ProjectPlace& place, const std::vector<SavedLayer>& layersToWrite) :
+			place(place), saved(layersToWrite),
+			isNew(!QFileInfo::exists(place.folder.filePath(place.layers)))
 	{
+		moved.reserve(2 * saved.size()); // there may be no memory to put things back
 		const QString layers = place.folder.filePath(place.layers);
 		if (!place.folder.exists() || !place.folder.mkpath(place.layers))
 			throw FileError("Cannot make the folder '" + layers.toStdString() + "'.");
@@ -191,20 +193,19 @@ public:
 	LayerFiles& operator=(const LayerFiles&) = delete;
 
 	/// Where a layer is to be written.
-	QString draftOf(const SavedLayer& saved) const { return drafts->filePath(saved.name); }
+	QString draftOf(const SavedLayer& layer) const { return drafts->filePath(layer.name); }
 
 	/// Puts all drafts in their places. @throws FileError
-	void takePlaces(const std::vector<SavedLayer>& layers)
+	void takePlaces()
 	{
-		moved.reserve(2 * layers.size());
-		for (const SavedLayer& saved : layers) {
-			const QString file = place.fileOf(saved);
+		for (const SavedLayer& layer : saved) {
+			const QString file = place.fileOf(layer);
 			if (QFileInfo::exists(file)) {
 				if (!QFileInfo(file).isWritable())
 					throw FileError("Cannot write '" + file.toStdString() + "': Permission denied");
-				move(file, drafts->filePath(replaced + QString("/") + saved.name));
+				move(file, replacedBy(layer));
 			}
-			move(draftOf(saved), file);
+			move(draftOf(layer), file);
 		}
 	}
 
@@ -214,6 +215,11 @@ public:
 private:
 	/// A folder in that of the drafts, for what they replace: no layer's file has such a name.
 	static constexpr char replaced[] = "replaced";
+
+	QString replacedBy(const SavedLayer& layer) const
+	{
+		return drafts->filePath(replaced + QString("/") + layer.name);
+	}
 
 	void move(const QString& from, const QString& to)
 	{
@@ -231,14 +237,22 @@ private:
 			QFile::rename(moved.back().second, moved.back().first);
 	}
 
+	/// File by file: to list a folder takes memory, which may be what there is too little of.
 	void removeFolders()
 	{
-		drafts->remove();
+		for (const SavedLayer& layer : saved) {
+			QFile::remove(draftOf(layer));
+			if (isKept) // else what could not be put back would be lost
+				QFile::remove(replacedBy(layer));
+		}
+		QDir().rmdir(drafts->filePath(replaced));
+		QDir().rmdir(drafts->path());
 		if (isNew && !isKept)
 			place.folder.rmdir(place.layers);
 	}
 
 	ProjectPlace place;
+	const std::vector<SavedLayer>& saved;
 	bool isNew;
 	bool isKept = false;
 	std::unique_ptr<QTemporaryDir> drafts;
@@ -304,7 +318,7 @@ Results saveProject(FilterRun& run)
 	if (host::rasterCount(run.document) > 0)
 		run.log("The raster layers are not saved.");
 	const QByteArray text = projectText(run.document, layers, place);
-	LayerFiles files(place);
+	LayerFiles files(place, layers);
 	for (size_t i = 0; i < layers.size(); ++i) {
 		const mcf::Progress part = run.progress.part(
 			double(i) / double(layers.size()), double(i + 1) / double(layers.size()));
@@ -319,7 +333,7 @@ Results saveProject(FilterRun& run)
 								.toStdString());
 		}
 	}
-	files.takePlaces(layers);
+	files.takePlaces();
 	writeFile(project, [&](std::ostream& out) { out.write(text.constData(), text.size()); });
 	files.keep();
 	for (const SavedLayer& saved : layers) {
