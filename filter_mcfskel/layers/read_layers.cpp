@@ -136,18 +136,12 @@ LayerTriangles readTriangles(const MeshModel& layer, const mcf::Progress& progre
 	LayerTriangles read;
 	read.pointOfSlot.reserve(mesh.vert.size());
 	read.points.reserve(size_t(mesh.vn));
-	vcg::Box3d box;
 	mcf::detail::reportedLoop(int(mesh.vert.size()), progress.part(0, 0.5), what, [&](int slot) {
 		const CVertexO& v = mesh.vert[size_t(slot)];
 		read.pointOfSlot.push_back(v.IsD() ? -1 : int(read.points.size()));
-		if (v.IsD())
-			return;
-		read.points.push_back(toDouble(v.cP()));
-		box.Add(read.points.back());
+		if (!v.IsD())
+			read.points.push_back(toDouble(v.cP()));
 	});
-	const mcf::SurfaceRounding rounded(box);
-	mcf::detail::reportedLoop(int(read.points.size()), progress.cancelOnly(), what,
-		[&](int i) { read.points[size_t(i)] = rounded(read.points[size_t(i)]); });
 	read.triangles.reserve(size_t(mesh.fn));
 	mcf::detail::reportedLoop(int(mesh.face.size()), progress.part(0.5, 1), what, [&](int i) {
 		const CFaceO& f = mesh.face[size_t(i)];
@@ -163,6 +157,9 @@ LayerTriangles readTriangles(const MeshModel& layer, const mcf::Progress& progre
 		}
 		read.triangles.push_back(triangle);
 	});
+	const mcf::SurfaceRounding rounded(read.points, read.triangles, progress);
+	mcf::detail::reportedLoop(int(read.points.size()), progress.cancelOnly(), what,
+		[&](int i) { read.points[size_t(i)] = rounded(read.points[size_t(i)]); });
 	return read;
 }
 

@@ -49,7 +49,9 @@ struct Prepared
 
 	mcf::SurfaceMesh checked() const
 	{
-		return mcf::checkedSurface(mcf::roundedCoordinates(soup.points), soup.triangles).mesh;
+		return mcf::checkedSurface(
+			mcf::roundedCoordinates(soup.points, soup.triangles), soup.triangles)
+			.mesh;
 	}
 };
 

@@ -350,8 +350,9 @@ void run(const Options& options)
 			.add("pieces_left_out", solid.leftOut.small + solid.leftOut.cavities);
 	};
 	if (options.resampleOnly || options.solidOnly) {
-		mcf::SolidSurface solid = mcf::solidSurface(mcf::roundedCoordinates(soup.points),
-			soup.triangles, {parameters.repair, parameters.minComponent, true}, progress);
+		mcf::SolidSurface solid =
+			mcf::solidSurface(mcf::roundedCoordinates(soup.points, soup.triangles), soup.triangles,
+				{parameters.repair, parameters.minComponent, true}, progress);
 		addSolid(solid.report);
 		if (options.verbose)
 			for (const std::string& note : solid.surface.notes)

@@ -102,8 +102,8 @@ struct Outcome
 
 mcf::SurfaceInput inputOf(const shapes::Soup& soup)
 {
-	mcf::CheckedSurface checked =
-		mcf::checkedSurface(mcf::roundedCoordinates(soup.points, {}), soup.triangles, {});
+	mcf::CheckedSurface checked = mcf::checkedSurface(
+		mcf::roundedCoordinates(soup.points, soup.triangles), soup.triangles, {});
 	return {std::make_shared<const mcf::SurfaceMesh>(std::move(checked.mesh))};
 }
 

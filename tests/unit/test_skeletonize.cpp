@@ -57,7 +57,8 @@ TEST(Skeletonize, IsFig4LineByLine)
 {
 	const shapes::Soup soup = shapes::fromFile("animal450");
 	const Parameters parameters = coarse();
-	const SurfaceMesh input = checkedSurface(roundedCoordinates(soup.points), soup.triangles).mesh;
+	const SurfaceMesh input =
+		checkedSurface(roundedCoordinates(soup.points, soup.triangles), soup.triangles).mesh;
 	const SurfaceMesh surface = resampledSurface(input, parameters).mesh;
 	const PoleSet poles = medialPoles(surface, parameters.poleMethod);
 	Stage stage = startOfFlow(surface, poles, {}, parameters);
@@ -467,16 +468,19 @@ TEST(Notes, WriteNumbersAlikeInEveryLocale)
 
 TEST(SurfaceRounding, LeavesSurfacesFarAwayAlone)
 {
+	const std::vector<Triangle> faces = {{0, 1, 1}};
 	const std::vector<Point3d> near = {{0.1, 0, 0}, {1, 1, 1}};
-	EXPECT_EQ(roundedCoordinates(near)[0][0], double(0.1f));
-	const std::vector<Point3d> far = {{1e6 + 0.1, 0, 0}, {1e6 + 1, 1, 1}};
-	EXPECT_EQ(roundedCoordinates(far), far);
+	EXPECT_EQ(roundedCoordinates(near, faces)[0][0], double(0.1f));
+	std::vector<Point3d> far = {{1e6 + 0.1, 0, 0}, {1e6 + 1, 1, 1}};
+	EXPECT_EQ(roundedCoordinates(far, faces), far);
+	far.push_back({0, 0, 0});
+	EXPECT_EQ(roundedCoordinates(far, faces), far) << "a vertex of no face does not count";
 	// Beyond the largest number of single precision, and near its smallest one.
 	for (double scale : {1e39, 1e-42, 1e-60}) {
 		std::vector<Point3d> own = near;
 		for (Point3d& p : own)
 			p = p * scale;
-		EXPECT_EQ(roundedCoordinates(own), own) << scale;
+		EXPECT_EQ(roundedCoordinates(own, faces), own) << scale;
 	}
 }
 
@@ -740,7 +744,8 @@ TEST(Skeletonize, ThePapersPresetIsFig4AndNothingElse)
 		EXPECT_THROW(run(soup, parameters), InvalidParameter);
 		return;
 	}
-	const SurfaceMesh input = checkedSurface(roundedCoordinates(soup.points), soup.triangles).mesh;
+	const SurfaceMesh input =
+		checkedSurface(roundedCoordinates(soup.points, soup.triangles), soup.triangles).mesh;
 	const SurfaceMesh surface = resampledSurface(input, parameters).mesh;
 	Stage stage = initialStage(surface, medialPoles(surface, PoleMethod::Voronoi)); // every vertex
 	while (!stage.converged)
@@ -775,7 +780,8 @@ TEST(Skeletonize, ACrowdSharesTheWorkAndSaysSo)
 	EXPECT_EQ(shared.refined, 1);
 
 	const SurfaceMesh surface = resampledSurface(
-		checkedSurface(roundedCoordinates(crowd.points), crowd.triangles).mesh, Parameters())
+		checkedSurface(roundedCoordinates(crowd.points, crowd.triangles), crowd.triangles).mesh,
+		Parameters())
 									.mesh;
 	Stage stage =
 		startOfFlow(surface, medialPoles(surface, Parameters().poleMethod), {}, Parameters());

@@ -344,8 +344,8 @@ private:
 		{
 			const mcf::TriangleSoup soup = mcf::readTriangles(surface, progress.part(0, 0.1));
 			mcf::SolidSurface solid = mcf::solidSurface(
-				mcf::roundedCoordinates(soup.points, progress.part(0.1, 0.2)), soup.triangles,
-				{params.repair, params.min_component, true}, progress.part(0.2, 1));
+				mcf::roundedCoordinates(soup.points, soup.triangles, progress.part(0.1, 0.2)),
+				soup.triangles, {params.repair, params.min_component, true}, progress.part(0.2, 1));
 			hollow = solid.report.leftOut.hollow;
 			mcf::CheckedSurface& checked = solid.surface;
 			mesh = std::make_shared<const mcf::SurfaceMesh>(std::move(checked.mesh));

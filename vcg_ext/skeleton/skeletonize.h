@@ -657,8 +657,9 @@ inline Skeletonization skeletonize(const std::vector<Point3d>& points,
 {
 	parameters.check();
 	detail::PhaseClock clock(observer);
-	SolidSurface solid = solidSurface(roundedCoordinates(points, progress.part(0, 0.002)),
-		triangles, {parameters.repair, parameters.minComponent, true}, progress.part(0.002, 0.02));
+	SolidSurface solid =
+		solidSurface(roundedCoordinates(points, triangles, progress.part(0, 0.002)), triangles,
+			{parameters.repair, parameters.minComponent, true}, progress.part(0.002, 0.02));
 	CheckedSurface& checked = solid.surface;
 	if (observer.onNote)
 		for (const std::string& text : checked.notes)

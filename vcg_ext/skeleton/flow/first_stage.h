@@ -112,6 +112,7 @@ inline std::vector<double> epsilonLimits(const MeasuredSurface& surface, const P
 	constexpr double cutsOfVertex = 30;
 	const double maximum = cutsOfVertex * surface.mesh().vertexCount();
 	const auto cuts = [&](const SizingField& raised) {
+		progress.check();
 		return cutsByField(surface.mesh(), raised);
 	};
 	if (!field.empty() && cuts(field) > maximum)

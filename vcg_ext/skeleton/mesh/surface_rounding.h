@@ -7,7 +7,10 @@
 #ifndef VCG_MCF_SURFACE_ROUNDING_H
 #define VCG_MCF_SURFACE_ROUNDING_H
 
+#include "surface_mesh.h"
+
 #include <skeleton/core/progress.h>
+#include <skeleton/core/shape_limits.h>
 #include <skeleton/core/ticker.h>
 
 #include <vcg/space/box3.h>
@@ -21,6 +24,20 @@
 namespace vcg::tri::mcf {
 
 namespace detail {
+
+/// The bounding box of the finite corners of faces; null if there are none. Vertices of no face may
+/// be anywhere. @throws Cancelled
+inline Box3d boundsOfFaces(const std::vector<Point3d>& points,
+	const std::vector<Triangle>& triangles, const Cancellation& cancel)
+{
+	Box3d box;
+	cancellableLoop(int(triangles.size()), cancel, [&](int f) {
+		for (int v : triangles[size_t(f)])
+			if (v >= 0 && size_t(v) < points.size() && isFinitePlace(points[size_t(v)]))
+				box.Add(points[size_t(v)]);
+	});
+	return box;
+}
 
 inline double toSingle(double x)
 {
@@ -42,8 +59,15 @@ inline double toSingle(double x)
 class SurfaceRounding
 {
 public:
-	/// @param box bounding box of all vertices of the surface.
+	/// @param box bounding box of the surface.
 	explicit SurfaceRounding(const Box3d& box) : single(fitsSinglePrecision(box)) {}
+
+	/// @throws Cancelled. Complexity: O(F).
+	SurfaceRounding(const std::vector<Point3d>& points, const std::vector<Triangle>& triangles,
+		const Cancellation& cancel = Cancellation()) :
+			SurfaceRounding(detail::boundsOfFaces(points, triangles, cancel))
+	{
+	}
 
 	Point3d operator()(const Point3d& p) const
 	{
@@ -66,18 +90,14 @@ private:
 	}
 };
 
-/// The vertices of a surface, rounded by SurfaceRounding. @throws Cancelled. Complexity: O(V).
-inline std::vector<Point3d> roundedCoordinates(
-	const std::vector<Point3d>& points, const Progress& progress = Progress())
+/// The vertices of a surface, rounded by SurfaceRounding. @throws Cancelled. Complexity: O(V + F).
+inline std::vector<Point3d> roundedCoordinates(const std::vector<Point3d>& points,
+	const std::vector<Triangle>& triangles, const Progress& progress = Progress())
 {
-	const char* const what = "Reading the surface";
-	Box3d box;
-	detail::reportedLoop(
-		int(points.size()), progress.part(0, 0.3), what, [&](int v) { box.Add(points[v]); });
-	const SurfaceRounding toGrid(box);
+	const SurfaceRounding toGrid(points, triangles, progress);
 	std::vector<Point3d> result;
 	result.reserve(points.size());
-	detail::reportedLoop(int(points.size()), progress.part(0.3, 1), what,
+	detail::reportedLoop(int(points.size()), progress, "Reading the surface",
 		[&](int v) { result.push_back(toGrid(points[v])); });
 	return result;
 }

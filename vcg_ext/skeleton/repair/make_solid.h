@@ -502,7 +502,7 @@ private:
 		ThickenedSheets sheets =
 			thickenedSheets(points, triangles, thickness * box.Diag(), progress.part(0, 0.3));
 		MendedSurface thick;
-		thick.points = roundedCoordinates(sheets.points, progress.cancelOnly());
+		thick.points = roundedCoordinates(sheets.points, sheets.triangles, progress.cancelOnly());
 		thick.triangles = std::move(sheets.triangles);
 		thick.vertexOfInput = std::move(sheets.vertexOfInput);
 		thick.closed = true;
@@ -758,8 +758,8 @@ private:
 			leftOut = std::move(cavities);
 		solid.report.handles =
 			cutHandles(made.points, made.triangles, HandleLimits(), progress.part(0.85, 0.87));
-		CheckedSurface checked = checkedSurface(
-			roundedCoordinates(made.points), made.triangles, progress.part(0.87, 0.9));
+		CheckedSurface checked = checkedSurface(roundedCoordinates(made.points, made.triangles),
+			made.triangles, progress.part(0.87, 0.9));
 		finish(std::move(checked.mesh), std::vector<int>(points.size(), -1), progress.part(0.9, 1));
 	}
 

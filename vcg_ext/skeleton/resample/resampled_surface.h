@@ -192,10 +192,13 @@ inline std::optional<SizingField> fieldOfResampling(const MeasuredSurface& surfa
 				expected / 1e6, " million vertices, more than the ", maximum / 1e6,
 				budget.vertices < maxVertices ? " million that a mesh so coarse gets"
 											  : " million that a mesh gets");
-		const double minimum = coarsenToCost(field,
-			std::max(1.0, longest / parameters.relativeLength),
-			*std::max_element(length.begin(), length.end()), maximum,
-			[&](const SizingField& raised) { return expectedVertices(surface, length, raised); });
+		const double minimum =
+			coarsenToCost(field, std::max(1.0, longest / parameters.relativeLength),
+				*std::max_element(length.begin(), length.end()), maximum,
+				[&](const SizingField& raised) {
+					progress.check();
+					return expectedVertices(surface, length, raised);
+				});
 		if (!isResolved()) {
 			tell(tooMany + everywhere);
 			return std::nullopt;

@@ -396,12 +396,16 @@ public:
 	{
 		constexpr double mean = 1.5e-3, farthest = 5e-3; // diagonals
 		constexpr int rounds = 4;
+		constexpr double settled = 1e-4;
 		std::vector<Eigen::Isometry3d> maps;
 		const auto tryOut = [&](Eigen::Isometry3d map) {
 			if (!mayBe(map))
 				return false;
-			for (int i = 0; i < rounds; ++i)
-				map = fit.fitted(map);
+			for (int i = 0; i < rounds; ++i) {
+				const Eigen::Isometry3d before = std::exchange(map, fit.fitted(map));
+				if ((map.matrix() - before.matrix()).norm() < settled)
+					break;
+			}
 			if (!fit.holds(map, mean, farthest)
 				|| detail::areAlike(map, Eigen::Isometry3d::Identity()))
 				return false;
