@@ -6,6 +6,7 @@
 
 #include "curves.h"
 #include "shapes.h"
+#include "first_stage_of.h"
 
 #include <skeleton/input/check_input.h>
 #include <skeleton/core/errors.h>
@@ -106,8 +107,10 @@ TEST(ProgressGaps, PolesAndStepsReportAsTheSurfaceGrows)
 	Parameters parameters;
 	parameters.epsilon = 1e-5; // nothing is coarsened
 	Stage stage;
-	EXPECT_GE(
-		reportsOf([&](const Progress& p) { stage = firstStage(mesh, parameters, nullptr, p); }),
+	EXPECT_GE(reportsOf([&](const Progress& p) {
+		const PoleSet poles = medialPoles(mesh, parameters.poleMethod, p.part(0, 0.5));
+		stage = firstStage(mesh, parameters, poles, p.part(0.5, 1));
+	}),
 		4 * wanted); // four stages
 	EXPECT_EQ(stage.mesh.vertexCount(), mesh.vertexCount());
 	EXPECT_GE(
@@ -161,7 +164,7 @@ TEST(ProgressGaps, WhatADenseSurfaceIsToldAtTheEndReportsAsItGrows)
 	EXPECT_GE(reportsOf([&](const Progress& p) { mesh.copied(p); }), wanted / 4);
 	EXPECT_GE(reportsOf([&](const Progress& p) { mesh.volume(p); }), wanted / 4);
 	EXPECT_GE(reportsOf([&](const Progress& p) { SurfaceMesh(mesh).compact(p); }), wanted / 4);
-	const Stage stage = firstStage(mesh, Parameters());
+	const Stage stage = firstStageOf(mesh, Parameters());
 	EXPECT_GE(reportsOf([&](const Progress& p) {
 		Stage first = stage;
 		first.frames.reset(); // as where a stage was read, or its poles were given

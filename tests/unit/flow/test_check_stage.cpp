@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 #include "shapes.h"
+#include "first_stage_of.h"
 
 #include <skeleton/flow/check_stage.h>
 #include <skeleton/flow/first_stage.h>
@@ -23,9 +24,9 @@ namespace {
 const Stage& twoBodies()
 {
 	static const Stage stage = [] {
-		Stage s = firstStage(shapes::joined({shapes::torus(1, 0.3, 24, 10),
-												shapes::moved(shapes::sphere(2), {9, 0, 0})})
-								 .mesh(),
+		Stage s = firstStageOf(shapes::joined({shapes::torus(1, 0.3, 24, 10),
+												  shapes::moved(shapes::sphere(2), {9, 0, 0})})
+								   .mesh(),
 			Parameters());
 		for (int i = 0; i < 2; ++i)
 			s = step(std::move(s), Parameters());
@@ -64,10 +65,10 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 TEST(CheckStage, PassesWhateverTheFlowMakesAtAnyScale)
 {
 	for (double scale : {1e-30, 1.0, 1e30}) {
-		Stage stage = firstStage(shapes::scaled(shapes::joined({shapes::torus(1, 0.3, 24, 10),
-													shapes::moved(shapes::sphere(2), {9, 0, 0})}),
-									 scale)
-									 .mesh(),
+		Stage stage = firstStageOf(shapes::scaled(shapes::joined({shapes::torus(1, 0.3, 24, 10),
+													  shapes::moved(shapes::sphere(2), {9, 0, 0})}),
+									   scale)
+									   .mesh(),
 			Parameters());
 		EXPECT_NO_THROW(checkStage(stage)) << scale;
 		while (!stage.converged && stage.iteration < 100) {
@@ -275,7 +276,7 @@ TEST(CheckStage, CanBeCancelled)
 
 TEST(CheckStage, TheBarRunsForwardOnce)
 {
-	const Stage stage = firstStage(shapes::sphere(7).mesh(), Parameters());
+	const Stage stage = firstStageOf(shapes::sphere(7).mesh(), Parameters());
 	int last = 0;
 	checkStage(stage, Progress([&](int percent, const char*) {
 		EXPECT_GE(percent, last);

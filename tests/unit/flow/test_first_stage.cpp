@@ -3,6 +3,7 @@
 
 #include "mesh_checks.h"
 #include "shapes.h"
+#include "first_stage_of.h"
 
 #include <skeleton/flow/first_stage.h>
 
@@ -37,7 +38,7 @@ Parameters coarseFlow()
 TEST(FirstStage, KeepsTheTopologyAndASubsetOfTheVertices)
 {
 	const SurfaceMesh surface = denseScene().mesh();
-	const Stage stage = firstStage(surface, coarseFlow());
+	const Stage stage = firstStageOf(surface, coarseFlow());
 	EXPECT_EQ(checks::stageError(stage), "");
 	EXPECT_EQ(stage.mesh.eulerCharacteristic(), surface.eulerCharacteristic());
 	EXPECT_LT(stage.mesh.vertexCount(), surface.vertexCount() / 4);
@@ -49,7 +50,7 @@ TEST(FirstStage, KeepsTheTopologyAndASubsetOfTheVertices)
 TEST(FirstStage, EachVertexOfTheSurfaceKeepsANodeNearby)
 {
 	const SurfaceMesh surface = denseScene().mesh();
-	const Stage stage = firstStage(surface, coarseFlow());
+	const Stage stage = firstStageOf(surface, coarseFlow());
 	const std::vector<int> component = connectedComponents(surface);
 	std::vector<int> merged(stage.mesh.vertexSlots(), 0);
 	ASSERT_EQ(stage.node.size(), size_t(surface.vertexSlots()));
@@ -70,7 +71,7 @@ TEST(FirstStage, PolesAreMeasuredAgainstTheWholeSurface)
 	const SurfaceMesh surface = denseScene().mesh();
 	Parameters parameters;
 	parameters.epsilon = 0.0045;
-	const Stage stage = firstStage(surface, parameters);
+	const Stage stage = firstStageOf(surface, parameters);
 	ASSERT_LT(stage.mesh.vertexCount(), surface.vertexCount());
 	ASSERT_GT(stage.mesh.vertexCount(), surface.vertexCount() / 2);
 	const PoleSet all = medialPoles(surface, PoleMethod::Balls);
@@ -85,27 +86,6 @@ TEST(FirstStage, PolesAreMeasuredAgainstTheWholeSurface)
 	}
 }
 
-TEST(FirstStage, PolesOfADenseSurfaceAreThoseOfWhatIsLeft)
-{
-	const SurfaceMesh surface = denseScene().mesh();
-	Parameters parameters;
-	parameters.epsilon = 0.006;
-	const Stage stage = firstStage(surface, parameters);
-	ASSERT_LT(stage.mesh.vertexCount(), surface.vertexCount() / 2);
-	const PoleSet left = medialPoles(stage.mesh, PoleMethod::Balls);
-	EXPECT_EQ(stage.pole, left.centre);
-	EXPECT_EQ(stage.poleRadius, left.radius);
-	double sum = 0;
-	for (int v = 0; v < stage.mesh.vertexSlots(); ++v) {
-		const double radius = stage.component[v] == 0 ? 1 : 3;
-		sum += stage.poleRadius[v] / radius;
-		ASSERT_LT(stage.poleRadius[v], 1.02 * radius);
-		ASSERT_NEAR(
-			Distance(stage.mesh.position[v], stage.pole[v]), stage.poleRadius[v], 1e-6 * radius);
-	}
-	EXPECT_GT(sum / stage.mesh.vertexCount(), 0.98);
-}
-
 TEST(FirstStage, TakesThePolesThatAreKnown)
 {
 	const SurfaceMesh surface = denseScene().mesh();
@@ -114,7 +94,7 @@ TEST(FirstStage, TakesThePolesThatAreKnown)
 		poles.centre.push_back(surface.position[v] / 2.0);
 		poles.radius.push_back(v % 3 == 0 ? -1 : surface.position[v].Norm() / 2);
 	}
-	const Stage stage = firstStage(surface, coarseFlow(), &poles);
+	const Stage stage = firstStage(surface, coarseFlow(), poles);
 	int without = 0;
 	for (int v = 0; v < stage.mesh.vertexSlots(); ++v) {
 		ASSERT_EQ(stage.pole[v], stage.mesh.position[v] / 2.0);
@@ -127,7 +107,7 @@ TEST(FirstStage, TakesThePolesThatAreKnown)
 TEST(FirstStage, FractionsAreOfTheSurfaceItself)
 {
 	const SurfaceMesh surface = denseScene().mesh();
-	const Stage stage = firstStage(surface, coarseFlow());
+	const Stage stage = firstStageOf(surface, coarseFlow());
 	EXPECT_DOUBLE_EQ(stage.initialVolume, surface.volume());
 	EXPECT_NEAR(stage.initialArea[0] + stage.initialArea[1], surface.area(), 1e-9 * surface.area());
 	EXPECT_NEAR(stage.diagonal[0], std::sqrt(12.0), 1e-6);
@@ -139,7 +119,7 @@ TEST(FirstStage, FractionsAreOfTheSurfaceItself)
 TEST(FirstStage, LeavesASurfaceOfEdgesAboveEpsilonAsItIs)
 {
 	const SurfaceMesh surface = shapes::torus().mesh();
-	const Stage stage = firstStage(surface, Parameters());
+	const Stage stage = firstStageOf(surface, Parameters());
 	EXPECT_EQ(stage.mesh.vertexCount(), surface.vertexCount());
 	for (int v = 0; v < surface.vertexSlots(); ++v)
 		EXPECT_EQ(stage.mesh.position[stage.node[v]], surface.position[v]);
@@ -148,8 +128,9 @@ TEST(FirstStage, LeavesASurfaceOfEdgesAboveEpsilonAsItIs)
 TEST(FirstStage, CanBeCancelledAtAnyReport)
 {
 	const SurfaceMesh surface = denseScene().mesh();
+	const PoleSet poles = medialPoles(surface, PoleMethod::Balls);
 	int reports = 0, last = 0;
-	firstStage(surface, coarseFlow(), nullptr, Progress([&](int percent, const char*) {
+	firstStage(surface, coarseFlow(), poles, Progress([&](int percent, const char*) {
 		EXPECT_GE(percent, last);
 		last = percent;
 		return ++reports > 0;
@@ -158,7 +139,7 @@ TEST(FirstStage, CanBeCancelledAtAnyReport)
 	for (int stopAt = 1; stopAt <= reports; stopAt += 1 + reports / 20) {
 		int count = 0;
 		const Progress progress([&](int, const char*) { return ++count < stopAt; });
-		EXPECT_THROW(firstStage(surface, coarseFlow(), nullptr, progress), Cancelled);
+		EXPECT_THROW(firstStage(surface, coarseFlow(), poles, progress), Cancelled);
 		EXPECT_EQ(count, stopAt);
 	}
 }

@@ -4,6 +4,7 @@
 #include "mesh_checks.h"
 #include "read_off.h"
 #include "shapes.h"
+#include "first_stage_of.h"
 
 #include <skeleton/collapse/collapse_to_curve.h>
 #include <skeleton/flow/first_stage.h>
@@ -29,7 +30,7 @@ Stage stageOf(const shapes::Soup& soup, PoleMethod method = PoleMethod::Balls)
 {
 	Parameters parameters;
 	parameters.poleMethod = method;
-	return firstStage(soup.mesh(), parameters);
+	return firstStageOf(soup.mesh(), parameters);
 }
 
 struct NamedShape
@@ -233,7 +234,7 @@ TEST(Flow, TheCorrespondenceOfADenseSurfaceIsThatOfItsSteps)
 	Parameters parameters;
 	parameters.epsilon = 0.02;
 	parameters.maxIterations = 5;
-	const Stage start = firstStage(soup.mesh(), parameters);
+	const Stage start = firstStageOf(soup.mesh(), parameters);
 	ASSERT_GT(start.node.size(), 4 * size_t(start.mesh.vertexCount()));
 	const Stage unwatched = contractToSkeleton(start, parameters);
 	const Stage watched = contractToSkeleton(start, parameters, Progress(),
@@ -244,7 +245,7 @@ TEST(Flow, TheCorrespondenceOfADenseSurfaceIsThatOfItsSteps)
 TEST(Flow, ThoseWhoWatchSeeEachStageAsItIs)
 {
 	for (const Stage& start : {stageOf(shapes::fromFile("hand")),
-			 firstStage(shapes::torus(1, 0.3, 240, 80).mesh(), Parameters())}) {
+			 firstStageOf(shapes::torus(1, 0.3, 240, 80).mesh(), Parameters())}) {
 		std::vector<Stage> every, third;
 		std::vector<StageFigures> figures;
 		contractToSkeleton(start, Parameters(), Progress(),

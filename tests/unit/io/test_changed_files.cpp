@@ -7,6 +7,7 @@
 #include "changed_fields.h"
 #include "graphs.h"
 #include "shapes.h"
+#include "first_stage_of.h"
 
 #include <skeleton/io/cg.h>
 #include <skeleton/io/skeleton_ply.h>
@@ -104,9 +105,9 @@ TEST(ChangedFiles, StagesAreRefusedOrFitForUse)
 {
 	Parameters parameters;
 	parameters.epsilon = 0.02;
-	Stage stage = firstStage(shapes::joined({shapes::torus(1, 0.3, 9, 5),
-												shapes::moved(shapes::octahedron(), {4, 0, 0})})
-								 .mesh(),
+	Stage stage = firstStageOf(shapes::joined({shapes::torus(1, 0.3, 9, 5),
+												  shapes::moved(shapes::octahedron(), {4, 0, 0})})
+								   .mesh(),
 		parameters);
 	stage.epsilon = parameters.epsilon;
 	Outcomes all;

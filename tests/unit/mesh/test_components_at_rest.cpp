@@ -4,6 +4,7 @@
 #include "hostile_bodies.h"
 #include "mesh_checks.h"
 #include "shapes.h"
+#include "first_stage_of.h"
 
 #include <skeleton/input/check_input.h>
 #include <skeleton/mesh/components_at_rest.h>
@@ -59,7 +60,7 @@ CurveSkeleton skeletonOf(const SurfaceMesh& surface, Stage& end)
 		EXPECT_LE(figures.volumeFraction, 1);
 	};
 	const Parameters parameters;
-	end = contractToSkeleton(firstStage(surface, parameters), parameters, Progress(), observer);
+	end = contractToSkeleton(firstStageOf(surface, parameters), parameters, Progress(), observer);
 	return collapseInside(end, parameters.epsilon);
 }
 

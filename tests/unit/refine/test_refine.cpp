@@ -7,6 +7,7 @@
 #include "mesh_checks.h"
 #include "read_off.h"
 #include "shapes.h"
+#include "first_stage_of.h"
 
 #include <skeleton/collapse/collapse_to_curve.h>
 #include <skeleton/flow/first_stage.h>
@@ -339,7 +340,7 @@ TEST(Refine, OfLessDetailIsAPartOfMore)
 	const SurfaceMesh mesh =
 		resample(measured, defaultTargetLength(measured, coarse), coarse.resampleIterations);
 	const CurveSkeleton curve =
-		collapseToCurve(contractToSkeleton(firstStage(mesh, coarse), coarse));
+		collapseToCurve(contractToSkeleton(firstStageOf(mesh, coarse), coarse));
 	RefineParameters parameters;
 	parameters.detail = 1;
 	const CurveSkeleton all = refine(curve, mesh, parameters);
@@ -721,7 +722,7 @@ TEST(Refine, GivesAHandItsFingersAndItsWristOnly)
 		const MeasuredSurface measured(hand);
 		const SurfaceMesh surface = resample(
 			measured, defaultTargetLength(measured, parameters), parameters.resampleIterations);
-		const Stage end = contractToSkeleton(firstStage(surface, parameters), parameters);
+		const Stage end = contractToSkeleton(firstStageOf(surface, parameters), parameters);
 		const CurveSkeleton s = refine(collapseToCurve(end), surface);
 		EXPECT_EQ(tips(s).size(), 6u) << "edges of " << length;
 		EXPECT_TRUE(isInside(s, hand));

@@ -37,15 +37,6 @@ namespace vcg::tri::mcf {
 constexpr double coarseningOfEpsilon = 2;
 
 /**
- * A surface is dense if less than this part of its vertices is left on the mesh that the flow
- * starts on. Its poles are then found on that mesh alone, which is as fine as other input of the
- * flow is. Against the dense surface they cost several times as much, and balls bounded by its
- * finest bumps, near their vertices, exert no inward pull: the flow takes up to 1.7 times as many
- * iterations.
- */
-constexpr double leftOfDenseSurface = 0.5;
-
-/**
  * The surface on which the flow starts: without edges far below epsilon, which would take time and
  * change nothing, and without edges that are too long for the flow.
  *
@@ -130,14 +121,12 @@ inline std::vector<double> epsilonLimits(const MeasuredSurface& surface, const P
  * are too long, see coarseComponents().
  * @param given    the surface; compact, closed.
  * @param epsilon  as in Parameters, of the diagonal of each component.
- * @param polesOfSurface PoleSet(progress): the poles of all vertices of the surface; called once if
- *                 a component may be coarse, else not at all.
+ * @param poles    of all vertices of the surface.
  * @param epsilonLimit upper bound of epsilon at each vertex, see epsilonLimits(); may be empty.
  * @throws Cancelled. Complexity: O(V + F), and O(s log s) for s halved edges.
  */
-template <class PolesOfSurface>
-FlowSurface surfaceForFlow(const MeasuredSurface& given, double epsilon,
-	PolesOfSurface&& polesOfSurface, const Progress& progress = Progress(),
+inline FlowSurface surfaceForFlow(const MeasuredSurface& given, double epsilon,
+	const PoleSet& poles, const Progress& progress = Progress(),
 	const std::vector<double>& epsilonLimit = {})
 {
 	FlowSurface result;
@@ -177,7 +166,7 @@ FlowSurface surfaceForFlow(const MeasuredSurface& given, double epsilon,
 		const Progress part = progress.cancelOnly();
 		const MeasuredSurface measured(surface, part);
 		const std::vector<char> coarse =
-			moving(coarseComponents(measured, epsilon, polesOfSurface(part).radius, part));
+			moving(coarseComponents(measured, epsilon, poles.radius, part));
 		if (isAny(coarse)) {
 			const SurfaceMesh halved =
 				withHalvedEdges(measured, longestEdgesForFlow(measured, coarse, epsilon), part);
@@ -239,39 +228,24 @@ FlowSurface surfaceForFlow(const MeasuredSurface& given, double epsilon,
  * Components that rest, see componentsAtRest(), are fixed from the start.
  *
  * Diagonals and the initial areas and volume are those of the surface itself, and all its vertices
- * have a correspondence. Poles are found for the vertices that remain, against all vertices of
- * their component on the surface; if it is dense, see leftOfDenseSurface, against the remaining
- * ones. The middles of halved edges have theirs against the vertices of the finer surface.
+ * have a correspondence. The middles of halved edges have their poles against the vertices of the
+ * finer surface.
  *
  * @param surface    compact, closed; see checkedSurface().
  * @param given      epsilon, poleMethod, adaptive and relativeLength are used; see sharedAmong().
- * @param poles      of all vertices of the surface if they are known already; null: they are
- *                   computed. Those of the middles of halved edges are always computed.
- * @throws SolverError, Cancelled, InvalidParameter. Complexity: O(V log V), dominated by the poles.
+ * @param poles      of all vertices of the surface, see medialPoles().
+ * @throws SolverError, Cancelled, InvalidParameter. Complexity: O(V), and O(s log s) for s halved
+ *         edges.
  */
-inline Stage firstStage(const SurfaceMesh& surface, const Parameters& given,
-	const PoleSet* poles = nullptr, const Progress& progress = Progress())
+inline Stage firstStage(const SurfaceMesh& surface, const Parameters& given, const PoleSet& poles,
+	const Progress& progress = Progress())
 {
 	given.check();
 	const Progress begin = progress.cancelOnly();
 	const MeasuredSurface measured(surface, begin);
 	const Parameters parameters = sharedAmong(given, measured.diagonals());
-	const double polesFrom = poles ? 1 : 0.3;
-	PoleSet found;
-	const auto polesOfSurface = [&](const Progress& part) -> const PoleSet& {
-		if (!poles) {
-			found = medialPoles(surface, parameters.poleMethod, part);
-			poles = &found;
-		}
-		return *poles;
-	};
-	std::vector<double> limits;
-	if (parameters.adaptive)
-		limits = poles ? epsilonLimits(measured, *poles, parameters, begin)
-					   : epsilonLimits(measured, medialPoles(surface, parameters.poleMethod, begin),
-						   parameters, begin);
-	FlowSurface start = surfaceForFlow(
-		measured, parameters.epsilon, polesOfSurface, progress.part(0, polesFrom), limits);
+	FlowSurface start = surfaceForFlow(measured, parameters.epsilon, poles, progress,
+		epsilonLimits(measured, poles, parameters, begin));
 	Stage stage;
 	stage.component = std::move(start.component);
 	stage.epsilonLimit = std::move(start.epsilonLimit);
@@ -291,25 +265,11 @@ inline Stage firstStage(const SurfaceMesh& surface, const Parameters& given,
 		stage.pole[v] = from.centre[i];
 		stage.poleRadius[v] = from.radius[i];
 	};
-	if (poles)
-		for (size_t i = 0; i < own.size(); ++i)
-			take(own[i], *poles, size_t(ownOf[i]));
-	else {
-		const Progress part = progress.part(polesFrom, 1);
-		if (double(count) < leftOfDenseSurface * surface.vertexSlots())
-			found = polesAt(start.mesh, own, parameters.poleMethod, part);
-		else {
-			const std::vector<int> component =
-				componentOfSurfaceVertices(stage, part.part(0, 0.01));
-			stage.findFrames(surface.position, component, part.part(0.01, 0.02));
-			found = polesAt(surface, component, *stage.frames, ownOf, parameters.poleMethod,
-				part.part(0.02, 1));
-		}
-		for (size_t i = 0; i < own.size(); ++i)
-			take(own[i], found, i);
-	}
+	for (size_t i = 0; i < own.size(); ++i)
+		take(own[i], poles, size_t(ownOf[i]));
 	if (!added.empty()) {
-		found = polesAt(*start.finer, addedOf, parameters.poleMethod, progress.part(polesFrom, 1));
+		const PoleSet found =
+			polesAt(*start.finer, addedOf, parameters.poleMethod, progress.cancelOnly());
 		for (size_t i = 0; i < added.size(); ++i)
 			take(added[i], found, i);
 	}

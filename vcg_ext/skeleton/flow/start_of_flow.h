@@ -47,7 +47,7 @@ inline Stage startOfFlow(const SurfaceMesh& surface, const PoleSet& poles,
 	const NoteCallback& onNote = {})
 {
 	if (held.empty() && !given.keepSheets && given.coarsen)
-		return firstStage(surface, given, &poles, progress);
+		return firstStage(surface, given, poles, progress);
 	const Progress begin = progress.cancelOnly();
 	const MeasuredSurface measured(surface, begin);
 	const Parameters parameters = sharedAmong(given, measured.diagonals());
@@ -70,7 +70,7 @@ inline Stage startOfFlow(const SurfaceMesh& surface, const PoleSet& poles,
 		}
 	}
 	if (held.empty() && !stage.hasSheets() && parameters.coarsen)
-		return firstStage(surface, parameters, &poles, progress.part(0.5, 1));
+		return firstStage(surface, parameters, poles, progress.part(0.5, 1));
 	if (!held.empty()) {
 		holdVertices(stage, held);
 		if (onNote)
