@@ -11,13 +11,14 @@
 #include "part_surface.h"
 
 #include <skeleton/core/disjoint_sets.h>
+#include <skeleton/core/grouped_sort.h>
 #include <skeleton/core/progress.h>
 #include <skeleton/core/shape_limits.h>
 #include <skeleton/input/coincident_points.h>
 #include <skeleton/input/soup_repair.h>
 
 #include <algorithm>
-#include <set>
+#include <utility>
 #include <vector>
 
 namespace vcg::tri::mcf {
@@ -44,7 +45,7 @@ struct ThickenedSheets
  *                  not finite, or there twice, do not count; coincident vertices and seams are
  *                  repaired, see closeSeams().
  * @param thickness mesh units, > 0.
- * @throws Cancelled. Complexity: about O(V + F), and that of closeSeams().
+ * @throws Cancelled. Complexity: O(V + F log F), and that of closeSeams().
  */
 inline ThickenedSheets thickenedSheets(const std::vector<Point3d>& points,
 	const std::vector<Triangle>& triangles, double thickness, const Progress& progress = Progress())
@@ -63,12 +64,20 @@ inline ThickenedSheets thickenedSheets(const std::vector<Point3d>& points,
 			v = standsFor[size_t(v)];
 	removeDegenerateFaces(points.size(), faces, progress.part(0.1, 0.2));
 	// A face that is there once for each side counts once.
-	std::set<Triangle> known;
-	const auto isKnown = [&](Triangle t) {
-		std::sort(t.begin(), t.end());
-		return !known.insert(t).second;
-	};
-	faces.erase(std::remove_if(faces.begin(), faces.end(), isKnown), faces.end());
+	std::vector<std::pair<Triangle, size_t>> known; // corners in order, and the face
+	for (size_t f = 0; f < faces.size(); ++f) {
+		known.emplace_back(faces[f], f);
+		std::sort(known.back().first.begin(), known.back().first.end());
+	}
+	sortCancellable(known, 0, known.size(), progress.cancelOnly());
+	std::vector<char> isKnown(faces.size(), 0);
+	for (size_t i = 1; i < known.size(); ++i)
+		isKnown[known[i].second] = known[i].first == known[i - 1].first;
+	size_t kept = 0;
+	for (size_t f = 0; f < faces.size(); ++f)
+		if (!isKnown[f])
+			faces[kept++] = faces[f];
+	faces.resize(kept);
 	SoupEdges edges = sortedSoupEdges(points.size(), faces, progress.part(0.2, 0.25));
 	const ClosedSeams seams = closeSeams(thick.points, faces, edges, progress.part(0.25, 0.4));
 	const std::vector<int> partner =
