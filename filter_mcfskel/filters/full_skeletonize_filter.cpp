@@ -192,10 +192,10 @@ FilterSpec fullSkeletonizeFilter()
 #endif
 	return {"generate_curve_skeleton_mcf", menuName("Full Skeletonize"),
 		helpPage(
-			"Computes the curve skeleton (centreline, centerline): a graph in the middle of the "
-			"shape, with a component for each of its components and a cycle for each "
-			"handle. New layers: the resampled surface, the last (or every k-th) stage of the "
-			"contraction, and the skeleton, whose quality is the local thickness; the attribute "
+			"Computes the curve skeleton (centreline, centerline; elsewhere also medial axis or "
+			"thinning): a graph in the middle of the shape, with a component for each of its components "
+			"and a cycle for each handle. New layers: the resampled surface, the last (or every k-th) "
+			"stage of the contraction, and the skeleton, whose quality is the local thickness; the attribute "
 			"<i>mcfskel_node</i> of the surfaces is the skeleton vertex of each of their vertices."),
 		FilterCategory::Remeshing, MeshModel::MM_FACENUMBER, parameters, fullSkeletonize};
 }

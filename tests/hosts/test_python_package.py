@@ -481,7 +481,7 @@ def test_a_contraction_that_is_cut_short_warns(run):
         answer = [short, len(caught), str(caught[0].message), caught[0].category.__name__]
     """)
     assert answer[:2] == [1, 1]
-    assert "not converged within max_iterations=2" in answer[2] and answer[3] == "SkeletonWarning"
+    assert "not converged after 2 iterations" in answer[2] and answer[3] == "SkeletonWarning"
 
 
 def test_components_that_are_not_refined_are_told(run):
