@@ -322,31 +322,20 @@ class TestProjects:
         again.load_project(str(file))
         assert labels(again) == labels(layers)
 
-    def test_files_that_layers_came_from_are_left_alone(self, tmp_path):
-        source = tmp_path / "p_layers"
-        layers = pymeshlab.MeshSet()
-        layers.load_new_mesh(str(MESHES / "capsule.off"))
-        layers.save_current_mesh(str(tmp_path / "capsule.ply"))
-        before = (tmp_path / "capsule.ply").read_bytes()
-        layers = pymeshlab.MeshSet()
-        layers.load_new_mesh(str(tmp_path / "capsule.ply"))
-        layers.apply_filter(SAVE_PROJECT, file=str(tmp_path / "p.mlp"))
-        assert (tmp_path / "capsule.ply").read_bytes() == before
-        assert [p.name for p in source.iterdir()] == ["capsule.ply"]
-
-    def test_other_files_in_its_folder_are_left_alone(self, tmp_path):
-        folder = tmp_path / "p_layers"
-        folder.mkdir()
-        layers = pymeshlab.MeshSet()
-        layers.load_new_mesh(str(MESHES / "capsule.off"))
-        layers.save_current_mesh(str(folder / "capsule.ply"))
-        before = (folder / "capsule.ply").read_bytes()
-        layers = pymeshlab.MeshSet()
-        layers.load_new_mesh(str(folder / "capsule.ply"))
+    @pytest.mark.parametrize("place, own", [(".", "capsule.ply"), ("p_layers", "capsule(1).ply")])
+    def test_files_that_layers_came_from_are_left_alone(self, tmp_path, place, own):
+        """Beside the project, and in the folder of its layers."""
+        (tmp_path / "p_layers").mkdir()
+        source = tmp_path / place / "capsule.ply"
+        layers = document(arrays("capsule"))
+        layers.save_current_mesh(str(source))
+        before = source.read_bytes()
+        layers.clear()
+        layers.load_new_mesh(str(source))
         for _ in range(2):  # the second time there is a file of its own, which is replaced
             layers.apply_filter(SAVE_PROJECT, file=str(tmp_path / "p.mlp"))
-            assert (folder / "capsule.ply").read_bytes() == before
-            assert sorted(p.name for p in folder.iterdir()) == ["capsule(1).ply", "capsule.ply"]
+            assert source.read_bytes() == before
+            assert {p.name for p in (tmp_path / "p_layers").iterdir()} == {own, "capsule.ply"}
         again = pymeshlab.MeshSet()
         again.load_project(str(tmp_path / "p.mlp"))
         assert labels(again) == labels(layers)

@@ -43,6 +43,39 @@ std::vector<Point3d> zigzag(double from, double to, double aside, double amount,
 	return points;
 }
 
+/// Two arms of a square tube of width 1 that meet at a right angle, the one of a given length along
+/// the x axis, the other of 10 along the y axis.
+struct Elbow
+{
+	SurfaceMesh mesh;
+	std::vector<int> all;
+	ClosestSurface surface;
+
+	explicit Elbow(int length = 10) :
+			mesh(shapes::subdivided(
+				shapes::cells(length, 10, 1, [](int i, int j, int) { return i == 0 || j == 0; }))
+					 .mesh()),
+			all(numbered(mesh.vertexSlots())), surface(mesh, all, 0.1)
+	{
+	}
+
+	/// A curve in it with its radii, sampled.
+	CurveSkeleton sampled(CurveSkeleton& curve, double spacing) const
+	{
+		for (size_t v = 0; v < curve.position.size(); ++v)
+			curve.radius[v] = surface.clearance(curve.position[v]);
+		return refining::evenlySampled(curve, surface, spacing);
+	}
+
+private:
+	static std::vector<int> numbered(int count)
+	{
+		std::vector<int> numbers(size_t(count), 0);
+		std::iota(numbers.begin(), numbers.end(), 0);
+		return numbers;
+	}
+};
+
 /// Whether all nodes and three points of each edge are inside.
 bool isInside(const CurveSkeleton& s, const SurfaceMesh& mesh)
 {
@@ -197,21 +230,14 @@ TEST(Refine, SamplesEvenlyAtTheSpacing)
 
 TEST(Refine, ACurveAroundACornerIsSampledAboutAsSparselyAsOthers)
 {
-	const SurfaceMesh mesh = shapes::subdivided(shapes::cells(10, 10, 1, [](int i, int j, int) {
-		return i == 0 || j == 0;
-	})).mesh();
-	std::vector<int> all(size_t(mesh.vertexSlots()));
-	std::iota(all.begin(), all.end(), 0);
-	const ClosestSurface surface(mesh, all, 0.1);
+	const Elbow elbow;
 	const Point3d corner(0.5, 0.5, 0.5);
 	CurveSkeleton fine = CurveMaker()
 							 .line(Point3d(9.5, 0.5, 0.5), corner, 200)
 							 .line(corner, Point3d(0.5, 9.5, 0.5), 200)
-							 .in(mesh);
-	for (size_t v = 0; v < fine.position.size(); ++v)
-		fine.radius[v] = surface.clearance(fine.position[v]);
-	const CurveSkeleton even = refining::evenlySampled(fine, surface, 2.5);
-	EXPECT_TRUE(isInside(even, mesh));
+							 .in(elbow.mesh);
+	const CurveSkeleton even = elbow.sampled(fine, 2.5);
+	EXPECT_TRUE(isInside(even, elbow.mesh));
 	for (const auto& [a, b] : even.edges)
 		EXPECT_LE(Distance(even.position[a], even.position[b]), 1.5 * 2.5);
 	EXPECT_LE(even.edges.size(), 10u) << "not the 400 that the curve had: 7, were there no corner";
@@ -219,23 +245,16 @@ TEST(Refine, ACurveAroundACornerIsSampledAboutAsSparselyAsOthers)
 
 TEST(Refine, ACurveThatGoesToAndFroInATubeIsStraightened)
 {
-	const SurfaceMesh mesh = shapes::subdivided(shapes::cells(10, 10, 1, [](int i, int j, int) {
-		return i == 0 || j == 0;
-	})).mesh();
-	std::vector<int> all(size_t(mesh.vertexSlots()));
-	std::iota(all.begin(), all.end(), 0);
-	const ClosestSurface surface(mesh, all, 0.1);
+	const Elbow elbow;
 	// Three times through the same arm, by ways a little beside each other, then around the corner.
 	CurveSkeleton curve = CurveMaker()
 							  .line(Point3d(9.5, 0.5, 0.5), Point3d(3, 0.45, 0.5), 50)
 							  .line(Point3d(3, 0.45, 0.5), Point3d(9, 0.5, 0.55), 50)
 							  .line(Point3d(9, 0.5, 0.55), Point3d(0.5, 0.5, 0.5), 50)
 							  .line(Point3d(0.5, 0.5, 0.5), Point3d(0.5, 9.5, 0.5), 50)
-							  .in(mesh);
-	for (size_t v = 0; v < curve.position.size(); ++v)
-		curve.radius[v] = surface.clearance(curve.position[v]);
-	const CurveSkeleton even = refining::evenlySampled(curve, surface, 2.5);
-	EXPECT_TRUE(isInside(even, mesh));
+							  .in(elbow.mesh);
+	const CurveSkeleton even = elbow.sampled(curve, 2.5);
+	EXPECT_TRUE(isInside(even, elbow.mesh));
 	EXPECT_EQ(statistics(even).terminals, 2);
 	EXPECT_LE(statistics(even).length, 18.5) << "9 + 9, and a little beside the axis; 30 before";
 	// What had merged into a node of a loop goes to where the loop was cut, all else to its neighbour.
@@ -251,20 +270,13 @@ TEST(Refine, ACurveThatGoesToAndFroInATubeIsStraightened)
 
 TEST(Refine, ACurveThatComesBackFromAnEndKeepsItsReach)
 {
-	const SurfaceMesh mesh = shapes::subdivided(shapes::cells(40, 10, 1, [](int i, int j, int) {
-		return i == 0 || j == 0;
-	})).mesh();
-	std::vector<int> all(size_t(mesh.vertexSlots()));
-	std::iota(all.begin(), all.end(), 0);
-	const ClosestSurface surface(mesh, all, 0.1);
+	const Elbow elbow(40);
 	CurveSkeleton curve = CurveMaker()
 							  .line(Point3d(0.5, 9.5, 0.5), Point3d(0.5, 0.5, 0.5), 50)
 							  .line(Point3d(0.5, 0.5, 0.5), Point3d(39.5, 0.5, 0.5), 200)
 							  .line(Point3d(39.5, 0.5, 0.5), Point3d(3, 0.45, 0.5), 200)
-							  .in(mesh);
-	for (size_t v = 0; v < curve.position.size(); ++v)
-		curve.radius[v] = surface.clearance(curve.position[v]);
-	const CurveSkeleton even = refining::evenlySampled(curve, surface, 2.5);
+							  .in(elbow.mesh);
+	const CurveSkeleton even = elbow.sampled(curve, 2.5);
 	double farthest = 0;
 	for (const Point3d& p : even.position)
 		farthest = std::max(farthest, p[0]);
