@@ -169,11 +169,11 @@ std::optional<SkeletonSurface> findSurface(
 {
 	progress.report(0, reading);
 	const int id = run.parameters.integer("surface");
-	const MeshModel* layer =
-		id == run.current->id() ? rememberedLayer(run, curve) : run.document.getMesh(id);
+	const MeshModel* const remembered = rememberedLayer(run, curve);
+	const MeshModel* const layer = id == run.current->id() ? remembered : run.document.getMesh(id);
 	if (!layer)
 		return std::nullopt;
-	if (layer->cm.Tr != run.layer().cm.Tr && layer != rememberedLayer(run, curve))
+	if (layer != remembered)
 		requireOneFrame(run.layer(), *layer);
 	return SkeletonSurface {LayerAsRead(*layer), readSurface(*layer, progress)};
 }

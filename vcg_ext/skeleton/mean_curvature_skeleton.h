@@ -472,17 +472,15 @@ private:
 		const std::vector<double>& radius = sheets ? sheets->skeleton.radius : curve.radius;
 		mcf::writeScalarAttribute(
 			skeleton, radiusAttribute, [&](size_t slot) { return radius[slot]; });
-		if (!sheets && !curve.significance.empty())
-			mcf::writeScalarAttribute(skeleton, significanceAttribute,
-				[&](size_t slot) { return curve.significance[slot]; });
-		else if (tri::HasPerVertexAttribute(
-					 skeleton, significanceAttribute)) // of an earlier skeleton
-			tri::Allocator<SkeletonMesh>::DeletePerVertexAttribute(skeleton, significanceAttribute);
-		if (!sheets && !curve.bridge.empty())
-			mcf::writeScalarAttribute(
-				skeleton, bridgeAttribute, [&](size_t slot) { return double(curve.bridge[slot]); });
-		else if (tri::HasPerVertexAttribute(skeleton, bridgeAttribute))
-			tri::Allocator<SkeletonMesh>::DeletePerVertexAttribute(skeleton, bridgeAttribute);
+		const auto writeIfKnown = [&](const char* name, const auto& values) {
+			if (!sheets && !values.empty())
+				mcf::writeScalarAttribute(
+					skeleton, name, [&](size_t slot) { return double(values[slot]); });
+			else if (tri::HasPerVertexAttribute(skeleton, name)) // of an earlier skeleton
+				tri::Allocator<SkeletonMesh>::DeletePerVertexAttribute(skeleton, name);
+		};
+		writeIfKnown(significanceAttribute, curve.significance);
+		writeIfKnown(bridgeAttribute, curve.bridge);
 		if (tri::HasPerVertexQuality(skeleton))
 			for (size_t v = 0; v < radius.size(); ++v)
 				skeleton.vert[v].Q() = typename SkeletonMesh::VertexType::QualityType(radius[v]);

@@ -122,7 +122,7 @@ void forEachBlock(int count, const Progress& progress, const char* what, const B
 	for (int first = 0; first < blocks; first += blocksPerReport) {
 		const int last = std::min(first + blocksPerReport, blocks);
 		std::atomic<int> next = first;
-		// Waking the others for a single block would cost more than it.
+		// To wake other threads for a single block costs more than the block.
 		detail::onThreads(last - first > 1 ? threads : 1, [&](bool) {
 			try {
 				for (int block; !failed && (block = next++) < last;)

@@ -144,6 +144,18 @@ inline std::vector<Triangle> finiteFaces(
 	return finite;
 }
 
+/// Removes the faces that are marked; the others keep their order. @return how many were removed.
+inline size_t removeMarked(std::vector<Triangle>& triangles, const std::vector<char>& marked)
+{
+	size_t kept = 0;
+	for (size_t f = 0; f < triangles.size(); ++f)
+		if (!marked[f])
+			triangles[kept++] = triangles[f];
+	const size_t removed = triangles.size() - kept;
+	triangles.resize(kept);
+	return removed;
+}
+
 /// Removes faces that use a vertex twice and copies of a face (same corners, same orientation).
 /// @return how many were removed.
 inline size_t removeDegenerateFaces(

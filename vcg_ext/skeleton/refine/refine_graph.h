@@ -783,7 +783,7 @@ inline CurveSkeleton evenlySampled(const CurveSkeleton& skeleton, const ClosestS
 {
 	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
 	const std::vector<Branch> branches = skeletonBranches(skeleton);
-	const bool hasCycles = statistics(skeleton).cycles > 0;
+	std::optional<bool> hasCycles; // known once it matters
 	CurveSkeleton even;
 	std::vector<int> place(skeleton.position.size(), -1);
 	const auto keep = [&](int v) {
@@ -816,8 +816,10 @@ inline CurveSkeleton evenlySampled(const CurveSkeleton& skeleton, const ClosestS
 			measureUnknown(line, surface, progress);
 			std::vector<int> keptOf(line.points.size());
 			std::iota(keptOf.begin(), keptOf.end(), 0);
+			if (!hasCycles)
+				hasCycles = statistics(skeleton).cycles > 0;
 			const BallChain straight =
-				hasCycles ? line : withoutLoops(line, spacings, keptOf, surface, progress);
+				*hasCycles ? line : withoutLoops(line, spacings, keptOf, surface, progress);
 			const BallChain thinned = withoutCrowdedNodes(straight, spacings, surface, progress);
 			BallChain kept = withShortEdges(thinned, spacings);
 			if (int(kept.points.size()) > minimum) {

@@ -102,7 +102,7 @@ private:
 	std::vector<double> diagonal;
 	std::vector<int> placeOf, faceAt; ///< number in the current patch, -1: not in it
 
-	static int next(int h) { return Fans::next(h); }
+	static int next(int h) { return SurfaceMesh::next(h); }
 	int origin(int h) const { return triangles[size_t(h) / 3][size_t(h) % 3]; }
 	int pieceOf(int v) const { return pieceOfPoint[size_t(v)]; }
 	double reach(int v) const { return limits.distance * diagonal[size_t(pieceOf(v))]; }

@@ -214,10 +214,10 @@ inline BorderFan borderFan(const std::vector<Point3d>& points,
 	const auto origin = [&](int h) { return triangles[size_t(h) / 3][size_t(h) % 3]; };
 	const int vertex = origin(out);
 	std::vector<int> corners(1, out);
-	int leave = Fans::previous(out); // the other half-edge of the face at the vertex
+	int leave = SurfaceMesh::previous(out); // the other half-edge of the face at the vertex
 	for (int g = partner[size_t(leave)]; g >= 0; g = partner[size_t(leave)]) {
-		const int corner = origin(g) == vertex ? g : Fans::next(g);
-		leave = corner == g ? Fans::previous(corner) : corner;
+		const int corner = origin(g) == vertex ? g : SurfaceMesh::next(g);
+		leave = corner == g ? SurfaceMesh::previous(corner) : corner;
 		corners.push_back(corner);
 	}
 	BorderFan fan = {out, leave, Point3d(0, 0, 0)};
@@ -272,7 +272,7 @@ inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& point
 		for (const BorderFan& fan : around) {
 			ticker.tick();
 			from.push_back(angle(origin(fan.into)));
-			to.push_back(angle(origin(Fans::next(fan.out))));
+			to.push_back(angle(origin(SurfaceMesh::next(fan.out))));
 		}
 		const std::vector<size_t> next = nextAngles(from, to, ticker);
 		const bool isRound =
@@ -293,7 +293,8 @@ inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& point
 			loop.push_back(at);
 			if (splitting.count(origin(at)))
 				placeOf[origin(at)] = loop.size() - 1;
-			if (const auto first = placeOf.find(origin(Fans::next(at))); first != placeOf.end()) {
+			if (const auto first = placeOf.find(origin(SurfaceMesh::next(at)));
+				first != placeOf.end()) {
 				const auto begin = loop.begin() + std::ptrdiff_t(first->second);
 				for (auto inner = begin; inner != loop.end(); ++inner)
 					placeOf.erase(origin(*inner));
@@ -376,7 +377,7 @@ inline BorderPolygon borderPolygon(const std::vector<Point3d>& points,
 	BorderPolygon border;
 	for (auto h = loop.rbegin(); h != loop.rend(); ++h) {
 		const Triangle& face = triangles[size_t(*h) / 3];
-		const int v = face[size_t(Fans::next(*h)) % 3];
+		const int v = face[size_t(SurfaceMesh::next(*h)) % 3];
 		border.corners.push_back(v);
 		border.points.push_back(points[size_t(v)]);
 		const Point3d normal = areaVector(points, face);

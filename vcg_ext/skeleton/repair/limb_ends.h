@@ -91,7 +91,7 @@ inline LimbEnd limbEnd(const std::vector<Point3d>& points, const std::vector<Tri
 	constexpr double likeATube = 0.7; // part of the perimeter of a disc with the hole's area
 	LimbEnd end;
 	for (auto h = loop.rbegin(); h != loop.rend(); ++h) {
-		end.corner.push_back(triangles[size_t(*h) / 3][size_t(Fans::next(*h)) % 3]);
+		end.corner.push_back(triangles[size_t(*h) / 3][size_t(SurfaceMesh::next(*h)) % 3]);
 		end.centre += points[size_t(end.corner.back())];
 	}
 	end.centre /= double(end.corner.size());
@@ -103,8 +103,9 @@ inline LimbEnd limbEnd(const std::vector<Point3d>& points, const std::vector<Tri
 	for (int h : loop) {
 		const Triangle& t = triangles[size_t(h) / 3];
 		const Point3d &p = points[size_t(t[size_t(h) % 3])],
-					  &q = points[size_t(t[size_t(Fans::next(h)) % 3])],
-					  &apex = points[size_t(t[size_t(Fans::next(Fans::next(h))) % 3])];
+					  &q = points[size_t(t[size_t(SurfaceMesh::next(h)) % 3])],
+					  &apex =
+						  points[size_t(t[size_t(SurfaceMesh::next(SurfaceMesh::next(h))) % 3])];
 		const Point3d edge = q - p, normal = edge ^ (apex - p), outOfFace = edge ^ normal;
 		if (const double norm = outOfFace.Norm(); norm > 0)
 			onwards += outOfFace * (edge.Norm() / norm);

@@ -495,10 +495,8 @@ private:
 	/// The surface around an open sheet, see thickenedSheets(); wrapped where that crosses itself.
 	SolidSurface thickened(double thickness, Repair repair, const Progress& progress)
 	{
-		Box3d box;
-		for (const Triangle& t : finiteFaces(points, triangles))
-			for (int v : t)
-				box.Add(points[size_t(v)]);
+		const Box3d box =
+			boundsOfFaces(points, finiteFaces(points, triangles), progress.cancelOnly());
 		ThickenedSheets sheets =
 			thickenedSheets(points, triangles, thickness * box.Diag(), progress.part(0, 0.3));
 		MendedSurface thick;

@@ -91,13 +91,7 @@ inline int removeBackToBack(
 			if (faces[i].first == faces[i - 1].first)
 				drop[faces[i].second] = drop[faces[i - 1].second] = 1;
 	});
-	size_t kept = 0;
-	for (size_t f = 0; f < triangles.size(); ++f)
-		if (!drop[f])
-			triangles[kept++] = triangles[f];
-	const int dropped = int(triangles.size() - kept);
-	triangles.resize(kept);
-	return dropped;
+	return int(removeMarked(triangles, drop));
 }
 
 /// The number of holes of a coherently oriented surface, see holeLoops().
@@ -133,13 +127,7 @@ inline int cutAroundHoles(
 	}
 	if (!(gone < part * whole))
 		return 0;
-	size_t kept = 0;
-	for (size_t f = 0; f < triangles.size(); ++f)
-		if (!cut[f])
-			triangles[kept++] = triangles[f];
-	const int count = int(triangles.size() - kept);
-	triangles.resize(kept);
-	return count;
+	return int(removeMarked(triangles, cut));
 }
 
 /// Drops open pieces that lie mostly inside the closed ones: walls across the solid, of which no

@@ -46,17 +46,14 @@ public:
 			const int g = partner[size_t(h)];
 			if (g < h)
 				continue;
-			for (int v : {vertex(h), vertex(next(h))})
-				fans.merge(fans.find(vertex(h) == v ? h : next(h)),
-					fans.find(vertex(g) == v ? g : next(g)));
+			for (int v : {vertex(h), vertex(SurfaceMesh::next(h))})
+				fans.merge(fans.find(vertex(h) == v ? h : SurfaceMesh::next(h)),
+					fans.find(vertex(g) == v ? g : SurfaceMesh::next(g)));
 		}
 	}
 
 	/// The corner that stands for the fan of a corner; not always the lowest.
 	int find(int corner) const { return fans.find(corner); }
-
-	static int next(int h) { return h % 3 == 2 ? h - 2 : h + 1; }
-	static int previous(int h) { return h % 3 == 0 ? h + 2 : h - 1; }
 
 private:
 	const std::vector<Triangle>& triangles;
@@ -214,7 +211,7 @@ inline PartedSurface partSurface(std::vector<Point3d>& points, std::vector<Trian
 		std::vector<char> isOpen(parted.partner.size(), 0); // of fans, see Fans::find()
 		for (int h = 0; h < int(parted.partner.size()); ++h)
 			if (parted.partner[size_t(h)] < 0)
-				isOpen[size_t(fans.find(h))] = isOpen[size_t(fans.find(detail::Fans::next(h)))] = 1;
+				isOpen[size_t(fans.find(h))] = isOpen[size_t(fans.find(SurfaceMesh::next(h)))] = 1;
 		// A vertex keeps its first fan; with keepOpenFans, if that is open, all open ones.
 		const size_t before = points.size();
 		std::vector<int> owner(before, -1);
@@ -276,7 +273,7 @@ inline PartedSurface partSurface(std::vector<Point3d>& points, std::vector<Trian
 				cut[f] = 1;
 				Triangle half = triangles[f];
 				half[size_t(h) % 3] = middle;
-				triangles[f][size_t(detail::Fans::next(h)) % 3] = middle;
+				triangles[f][size_t(SurfaceMesh::next(h)) % 3] = middle;
 				triangles.push_back(half);
 			}
 		}

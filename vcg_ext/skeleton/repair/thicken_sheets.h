@@ -16,6 +16,7 @@
 #include <skeleton/core/shape_limits.h>
 #include <skeleton/input/coincident_points.h>
 #include <skeleton/input/soup_repair.h>
+#include <skeleton/mesh/surface_mesh.h>
 
 #include <algorithm>
 #include <utility>
@@ -73,11 +74,7 @@ inline ThickenedSheets thickenedSheets(const std::vector<Point3d>& points,
 	std::vector<char> isKnown(faces.size(), 0);
 	for (size_t i = 1; i < known.size(); ++i)
 		isKnown[known[i].second] = known[i].first == known[i - 1].first;
-	size_t kept = 0;
-	for (size_t f = 0; f < faces.size(); ++f)
-		if (!isKnown[f])
-			faces[kept++] = faces[f];
-	faces.resize(kept);
+	removeMarked(faces, isKnown);
 	SoupEdges edges = sortedSoupEdges(points.size(), faces, progress.part(0.2, 0.25));
 	const ClosedSeams seams = closeSeams(thick.points, faces, edges, progress.part(0.25, 0.4));
 	const std::vector<int> partner =
@@ -93,8 +90,8 @@ inline ThickenedSheets thickenedSheets(const std::vector<Point3d>& points,
 		if (g < h)
 			continue;
 		const bool isSameSide = vertex(h) != vertex(g);
-		for (int at : {h, Fans::next(h)}) {
-			const int there = vertex(g) == vertex(at) ? g : Fans::next(g);
+		for (int at : {h, SurfaceMesh::next(h)}) {
+			const int there = vertex(g) == vertex(at) ? g : SurfaceMesh::next(g);
 			fans.join(at, isSameSide ? there : other(there));
 			fans.join(other(at), isSameSide ? other(there) : there);
 		}
@@ -131,8 +128,8 @@ inline ThickenedSheets thickenedSheets(const std::vector<Point3d>& points,
 	}
 	for (int h = 0; h < corners; ++h)
 		if (partner[size_t(h)] < 0) {
-			const int a = place(h), b = place(Fans::next(h));
-			const int c = place(other(h)), d = place(other(Fans::next(h)));
+			const int a = place(h), b = place(SurfaceMesh::next(h));
+			const int c = place(other(h)), d = place(other(SurfaceMesh::next(h)));
 			thick.triangles.push_back({b, a, c});
 			thick.triangles.push_back({b, c, d});
 		}
