@@ -41,7 +41,7 @@ struct SavedLayer
 	QString name; ///< of the file
 };
 
-/// Where a project goes.
+/// The file of a project and the folder of its layers.
 struct ProjectPlace
 {
 	QString file;
@@ -209,7 +209,7 @@ public:
 		}
 	}
 
-	/// From here on they stay.
+	/// Keeps the new files.
 	void keep() { isKept = true; }
 
 private:

@@ -93,7 +93,7 @@ def save(skeleton: Skeleton, path: Path, options: dict[str, Any]) -> None:
     except SkeletonError:
         if suffix != ".glb" or skeleton._contracted is None:
             raise
-        # A mesh that was repaired may bound no solid, as .glb needs it.
+        # A mesh that was repaired may not be closed, which .glb needs.
         surface, correspondence = skeleton._contracted
         options["surface"] = add_surface(layers, *surface, correspondence)
         apply(layers, "save_skeleton_mcf", options)
@@ -109,7 +109,7 @@ def save(skeleton: Skeleton, path: Path, options: dict[str, Any]) -> None:
 
 def add_surface(layers: pymeshlab.MeshSet, vertices: np.ndarray, faces: np.ndarray,
                 correspondence: np.ndarray) -> int:
-    """Adds a layer that is not the current one, and returns its id."""
+    """Adds a surface with its correspondence as a layer, which does not become the current one; returns its id."""
     surface = pymeshlab.Mesh(vertex_matrix=vertices, face_matrix=faces)
     surface.add_vertex_custom_scalar_attribute(correspondence.astype(float), "mcfskel_node")
     layers.add_mesh(surface, "surface", set_as_current=False)

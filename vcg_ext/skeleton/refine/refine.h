@@ -93,7 +93,7 @@ struct RefineParameters
 	/// @throws InvalidParameter naming the first parameter that is out of its range.
 	void check() const
 	{
-		// With a lower one, a curve has more nodes than it may have at the end, see CurveBounds.
+		// Below that, a curve would exceed CurveBounds::holdAtEnd().
 		require(
 			spacing >= 5e-4 && spacing <= 0.1, "spacing", "between 0.05 and 10 % of the diagonal");
 		require(spurProminence >= 0 && spurProminence <= 1, "spur_prominence", "between 0 and 1");

@@ -514,7 +514,7 @@ inline BallChain withShortEdges(const BallChain& line, const std::vector<double>
 	return finer;
 }
 
-/// Measures the distances from the surface of which nothing but 0 is known. @throws Cancelled
+/// Measures the distances from the surface whose lower bound is 0. @throws Cancelled
 inline void measureUnknown(BallChain& line, const ClosestSurface& surface, const Progress& progress)
 {
 	for (size_t i = 0; i < line.points.size(); ++i) {
@@ -544,19 +544,19 @@ struct PointsInBall
 };
 
 /**
- * A polyline without its loops: where it comes back to a point within the ball of an earlier one,
- * or nearer to that than the next one is, by a segment inside and half as long as the way at most,
- * what is between goes if it lies beside the rest. The contraction of a needle may leave a curve
- * that goes to and fro in it.
- * @pre the shape has no handles: every way inside between two points is then as good as another.
- * @param spacings at its points; on return at those that are left.
- * @param keptOf   gets, for each of its points, the last one up to it that is left.
+ * A polyline without its loops, such as the contraction leaves in a needle. A loop ends at a point
+ * that lies within the ball of its first point, or closer to that than the next point does. It is
+ * removed if the segment that replaces it is inside the surface and at most half as long, and if all
+ * its points are within 1.25 spacings of the rest, so that no end of the shape is lost.
+ * @pre the shape has no handles: then all paths inside it between two points are homotopic.
+ * @param spacings at its points; on return at the remaining ones.
+ * @param keptOf   gets, for each of its points, the last remaining one up to it.
  * Complexity: O(n log n) for n points of which few are in each ball. @throws Cancelled
  */
 inline BallChain withoutLoops(const BallChain& line, std::vector<double>& spacings,
 	std::vector<int>& keptOf, const ClosestSurface& surface, const Progress& progress)
 {
-	constexpr double longer = 2, beside = 1.25; // beside: spacings
+	constexpr double longer = 2, nearRest = 1.25; // the latter in spacings
 	constexpr size_t mostTried = 8;
 	const std::vector<double> along = lengthsAlong(line.points);
 	const PointTree tree(line.points);
@@ -565,7 +565,7 @@ inline BallChain withoutLoops(const BallChain& line, std::vector<double>& spacin
 			tree.order(), line.points[i], reach, found};
 		tree.search(ball);
 	};
-	// Points further on to which the polyline comes back, the last one first.
+	// Later points at which a loop from point i may end, the last one first.
 	const auto returns = [&](size_t i) {
 		const double reach = std::max(line.radii[i], along[i + 1] - along[i]);
 		std::vector<int> found;
@@ -577,11 +577,11 @@ inline BallChain withoutLoops(const BallChain& line, std::vector<double>& spacin
 		found.resize(std::min(found.size(), mostTried));
 		return found;
 	};
-	// Whether the points between i and j lie beside those up to i or from j on.
-	const auto isBesideRest = [&](size_t i, size_t j) {
+	// Whether all points between i and j are near those up to i or from j on.
+	const auto isNearRest = [&](size_t i, size_t j) {
 		for (size_t k = i + 1; k < j; ++k) {
 			bool isNear = false;
-			forEachNear(k, beside * spacings[k],
+			forEachNear(k, nearRest * spacings[k],
 				[&](int other) { isNear |= size_t(other) <= i || size_t(other) >= j; });
 			if (!isNear)
 				return false;
@@ -601,7 +601,7 @@ inline BallChain withoutLoops(const BallChain& line, std::vector<double>& spacin
 			for (int j : returns(i))
 				if (isSegmentInside(surface, line.points[i], line.radii[i], line.points[size_t(j)],
 						line.radii[size_t(j)])
-					&& isBesideRest(i, size_t(j))) {
+					&& isNearRest(i, size_t(j))) {
 					next = size_t(j);
 					break;
 				}
@@ -783,7 +783,7 @@ inline CurveSkeleton evenlySampled(const CurveSkeleton& skeleton, const ClosestS
 {
 	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
 	const std::vector<Branch> branches = skeletonBranches(skeleton);
-	std::optional<bool> hasCycles; // known once it matters
+	std::optional<bool> hasCycles; // counted when first needed
 	CurveSkeleton even;
 	std::vector<int> place(skeleton.position.size(), -1);
 	const auto keep = [&](int v) {

@@ -287,7 +287,7 @@ inline std::optional<CurveSkeleton> withImages(CurveSkeleton skeleton,
 			some.begin(), some.end(), [](const TipOrbit& orbit) { return !orbit.isComplete(); });
 	};
 	const SymmetryFinder finder(component.mesh, component.vertices, surface, progress);
-	// Fitting takes long. Where no image is missing under any map that may be a symmetry, none will be.
+	// Fitting is expensive: it is skipped where no image is missing under any candidate.
 	if (incomplete(tipOrbits(skeleton, surface, clearances, finder.possible())) == 0)
 		return std::nullopt;
 	std::vector<Eigen::Isometry3d> symmetries = finder.found();

@@ -215,7 +215,7 @@ public:
 	{
 	}
 
-	/// Whether about `some` of the points have their images near the surface, in the mean.
+	/// Whether the images of a sample of about `some` points are near the surface, on average.
 	bool isNear(const Eigen::Isometry3d& map, size_t some, double near) const
 	{
 		double sum = 0;
@@ -429,7 +429,7 @@ private:
 		const SurfaceMesh& mesh, const std::vector<int>& vertices, const Cancellation& cancel)
 	{
 		std::vector<Point3d> points = detail::someOf(mesh, vertices, samples, cancel);
-		// Corners and ends of limbs are few, but tell more than others.
+		// Corners and ends of limbs are few, but constrain a symmetry most.
 		for (int v : detail::outermost(mesh, vertices, cancel))
 			points.push_back(mesh.position[size_t(v)]);
 		return points;

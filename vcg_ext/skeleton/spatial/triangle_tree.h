@@ -264,7 +264,7 @@ private:
 			}
 			return;
 		}
-		// A split of many may take long, and the ticker counts leaves.
+		// The ticker counts leaves only, and splitting many triangles takes long.
 		constexpr int many = 1 << 13;
 		if (end - begin >= many)
 			ticker.check();
