@@ -36,6 +36,15 @@ namespace detail {
 /// other in memory and in the elimination order. surfaceForFlow() numbers stage 0 in the same way.
 constexpr int renumberEvery = 4;
 
+/// Part of a component's area: a smaller change in a step counts as none. Where epsilon is larger than
+/// the default, so are the few triangles of such edges that turn to and fro for ever.
+inline double settledArea(double epsilon)
+{
+	constexpr double usual = 1e-4, largest = 1e-3;
+	const double edges = epsilon / Parameters().epsilon;
+	return std::clamp(usual * edges * edges, usual, largest);
+}
+
 /// The work of step(), on a stage that has entered its frames.
 inline void stepInFrames(
 	Stage& stage, const StageFrames& frames, const Parameters& parameters, const Progress& progress)
@@ -76,7 +85,7 @@ inline void stepInFrames(
 	stage.renumber(newVertex, mesh.vertexSlots());
 
 	const Extent extent = frames.extent(stage);
-	constexpr double settled = 1e-4;
+	const double settled = settledArea(parameters.epsilon);
 	stage.converged = true;
 	for (size_t c = 0; c < extent.area.size(); ++c)
 		stage.converged &=
@@ -94,8 +103,8 @@ inline void stepInFrames(
 /**
  * One iteration of the loop of Fig. 4: weights and contraction, then connectivity, then degeneracy.
  *
- * Convergence: in every component the area changed by less than 1e-4 of that of its surface, and
- * one of these holds:
+ * Convergence: in every component the area changed by less than 1e-4 of that of its surface (up to
+ * 1e-3 where epsilon is above the default), and one of these holds:
  *  - Less than 5 % of the volume (in the end it is some 1e-5) and half of the area are left: where
  *    the walls of a box have passed each other, the volume is gone, and the area may stand still
  *    for a step.

@@ -228,13 +228,20 @@ public:
 
 	/// The map that takes the points nearest to the points of the surface that are closest to their
 	/// images (Kabsch 1976, Acta Crystallographica A 32; with the given map's orientation).
-	Eigen::Isometry3d fitted(const Eigen::Isometry3d& map) const
+	/// @param faces of these images; start from those of a map that is near, empty if none is known.
+	Eigen::Isometry3d fitted(const Eigen::Isometry3d& map, std::vector<int>& faces) const
 	{
 		std::vector<Eigen::Vector3d> images;
 		Eigen::Vector3d from = Eigen::Vector3d::Zero(), to = Eigen::Vector3d::Zero();
-		for (const Point3d& p : points) {
-			images.push_back(toEigen(closest.closest(mapped(map, p)).point));
-			from += toEigen(p) / double(points.size());
+		const bool isFirst = faces.empty();
+		faces.resize(points.size());
+		for (size_t i = 0; i < points.size(); ++i) {
+			const Point3d image = mapped(map, points[i]);
+			const ClosestSurface::Hit hit =
+				isFirst ? closest.closest(image) : closest.closest(image, faces[i]);
+			faces[i] = hit.face;
+			images.push_back(toEigen(hit.point));
+			from += toEigen(points[i]) / double(points.size());
 			to += images.back() / double(points.size());
 		}
 		Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
@@ -253,12 +260,13 @@ public:
 	}
 
 	/// Whether the images are on the surface: in the mean nearer than `mean`, and all nearer than
-	/// `farthest`.
-	bool holds(const Eigen::Isometry3d& map, double mean, double farthest) const
+	/// `farthest`. @param faces see fitted().
+	bool holds(const Eigen::Isometry3d& map, const std::vector<int>& faces, double mean,
+		double farthest) const
 	{
 		double sum = 0;
-		for (const Point3d& p : points) {
-			const double distance = closest.closest(mapped(map, p)).distance;
+		for (size_t i = 0; i < points.size(); ++i) {
+			const double distance = closest.closest(mapped(map, points[i]), faces[i]).distance;
 			if (distance > farthest)
 				return false;
 			sum += distance;
@@ -401,12 +409,13 @@ public:
 		const auto tryOut = [&](Eigen::Isometry3d map) {
 			if (!mayBe(map))
 				return false;
+			std::vector<int> faces;
 			for (int i = 0; i < rounds; ++i) {
-				const Eigen::Isometry3d before = std::exchange(map, fit.fitted(map));
+				const Eigen::Isometry3d before = std::exchange(map, fit.fitted(map, faces));
 				if ((map.matrix() - before.matrix()).norm() < settled)
 					break;
 			}
-			if (!fit.holds(map, mean, farthest)
+			if (!fit.holds(map, faces, mean, farthest)
 				|| detail::areAlike(map, Eigen::Isometry3d::Identity()))
 				return false;
 			if (std::none_of(maps.begin(), maps.end(),
