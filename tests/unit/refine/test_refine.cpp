@@ -406,6 +406,21 @@ TEST(Refine, ExtendsTipsIntoATaperedEnd)
 	EXPECT_LE(meanDistance(s, distanceFromXAxis), 0.0015 * mesh.bounds().Diag());
 }
 
+TEST(Refine, ATipDoesNotRunAlongTheWallOfAPlate)
+{
+	constexpr double thickness = 0.04, width = 1;
+	const SurfaceMesh plate = shapes::box(width, width, thickness).mesh();
+	const ClosestSurface surface(
+		plate, detail::numberedArray(plate.position.size(), Progress()), 0.01);
+	for (const double aside : {0.1, 0.25, 0.5}) {
+		const Point3d start(0.5 + aside, 0.6, thickness / 2), end(0.5, 0.96, thickness / 2);
+		CurveSkeleton curve = curves::line(start, end, thickness / 2, 40);
+		refining::extendTips(curve, surface, {0.005, 0.2, 0.003});
+		for (const Point3d& p : curve.position)
+			EXPECT_GE(p[0], end[0] - 2 * thickness) << "aside " << aside;
+	}
+}
+
 TEST(Refine, EndsInTheCentreOfARoundEnd)
 {
 	const SurfaceMesh mesh = shapes::capsule(3, 0.35, 48).mesh();

@@ -23,6 +23,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -385,27 +386,48 @@ inline void moveInside(
 	}
 }
 
+/// The point 1.5 radii beside a point x of a branch, if the surface is still more than half a radius
+/// away there. @param way  to that side, of any length above 0.
+inline std::optional<Point3d> widePlace(
+	const ClosestSurface& surface, const Point3d& x, double radius, const Point3d& way)
+{
+	constexpr double aside = 1.5, away = 0.5;
+	const Point3d place = x + way * (aside * radius / way.Norm());
+	if (surface.clearance(place) > away * radius)
+		return place;
+	return std::nullopt;
+}
+
 /**
- * The places beside a point x of a branch, none to two, where the shape is wide: 1.5 radii of the
- * ball to either side, where the surface is still more than half a radius away. There are none in a
- * limb, two in a plate, one along its rim.
+ * The places beside a point x of a branch, none to two, where the shape is wide, see widePlace().
+ * There are none in a limb, two in a plate, one along its rim.
  * @param contact    the second contact of the ball, see medialBall().
  * @param direction  of the branch.
  */
 inline std::vector<Point3d> widePlaces(const ClosestSurface& surface, const Point3d& x,
 	const ClosestSurface::Hit& hit, const Point3d& contact, const Point3d& direction)
 {
-	constexpr double aside = 1.5, away = 0.5;
 	const Point3d side = (hit.point - contact) ^ direction;
-	const double norm = side.Norm();
-	if (!(norm > 0))
+	if (!(side.Norm() > 0))
 		return {};
-	const Point3d offset = side * (aside * hit.distance / norm);
 	std::vector<Point3d> places;
-	for (const Point3d& place : {x + offset, x - offset})
-		if (surface.clearance(place) > away * hit.distance)
-			places.push_back(place);
+	for (const Point3d& way : {side, -side})
+		if (const std::optional<Point3d> place = widePlace(surface, x, hit.distance, way))
+			places.push_back(*place);
 	return places;
+}
+
+/// Whether a branch runs along the wall of a plate: the ball touches the wall and a side of the
+/// plate, so that widePlaces() finds none, but away from one contact the shape is wide.
+inline bool isAlongWall(const ClosestSurface& surface, const Point3d& x,
+	const ClosestSurface::Hit& hit, const Point3d& contact, const Point3d& direction)
+{
+	for (const Point3d& touched : {hit.point, contact}) {
+		const Point3d from = x - touched, beside = from - direction * (from * direction);
+		if (beside.Norm() > 0 && widePlace(surface, x, hit.distance, beside))
+			return true;
+	}
+	return false;
 }
 
 } // namespace vcg::tri::mcf::refining

@@ -61,15 +61,15 @@ inline Point3d tipDirection(
  * as the tip advances, and the tip stays; in a tapered or pointed one it goes on to the smallest
  * radius. It never enters balls that are already there. In a limb it may go any distance, since the
  * flow stops early between long triangles, but turns by at most 30 degrees in three radii. Where
- * the shape is wide it goes no farther than three radii: a sheet would lead it around its rim. A
- * tip outside stays.
+ * the shape is wide it goes no farther than three radii, and it ends where it turns to run along the
+ * wall of a plate: a sheet would lead it around its rim. A tip outside stays.
  * @pre the radius of tips is their distance from the surface, that of others a lower bound of it.
  * @post the same. @throws Cancelled
  */
 inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, const TipRule& rule,
 	const Progress& progress = Progress())
 {
-	constexpr double farthest = 3, farthestTurn = 30 * M_PI / 180;
+	constexpr double farthest = 3, farthestTurn = 30 * M_PI / 180, turnAtWall = 20 * M_PI / 180;
 	constexpr double gainOfLimb = 0.5;    // a cone of 30 degrees; a corner of a box has 0.42
 	constexpr double thinnestLimb = 1e-4; // diagonals; a cusp goes on to nothing
 	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
@@ -97,11 +97,16 @@ inline void extendTips(CurveSkeleton& skeleton, const ClosestSurface& surface, c
 			if (hit.distance <= 0 || !surface.isInside(y, hit))
 				break;
 			const ClosestSurface::Ball ball = medialBall(surface, y, hit);
-			const bool isWide =
+			const bool isInPlate =
 				!isMedial(ball) || !widePlaces(surface, y, hit, ball.contact, direction).empty();
+			const bool isAtWall =
+				!isInPlate && isAlongWall(surface, y, hit, ball.contact, direction);
+			const bool isWide = isInPlate || isAtWall;
 			if (isMedial(ball))
 				y = movedAside(y, ball, direction, step / 2);
 			const double s = Distance(x, y);
+			if (isAtWall && (y - x) * before < s * std::cos(turnAtWall))
+				break;
 			const double reached = std::max(surface.clearance(y), 0.0);
 			const Point3d front = y + (y - x) * (reached / s);
 			scale = rule.scale.atFace(hit.face);
