@@ -49,6 +49,13 @@ inline FlowSystem flowLaplacian(const SurfaceMesh& mesh)
 	return flowSystem(initialStage(mesh, checks::noPoles(mesh)), Parameters());
 }
 
+/// Ends and pads the row that the last entries belong to.
+inline void endRow(SymmetricRows& rows)
+{
+	rows.entries.resize(size_t(filledUp(int(rows.entries.size()), SymmetricRows::Group)));
+	rows.start.push_back(int(rows.entries.size()));
+}
+
 /**
  * The same in the order of the vertices: the positive semi-definite (L x)_i = sum_j w_ij (x_i - x_j), with
  * constants as its null space. @pre mesh is compact. Complexity: that of the system, O(V).
@@ -70,7 +77,7 @@ inline SymmetricRows cotangentLaplacian(const SurfaceMesh& mesh)
 		}
 		L.excess.push_back(system.M.excess[i]);
 		L.diagonal.push_back(system.M.diagonal[i]);
-		L.endRow();
+		endRow(L);
 	}
 	return L;
 }

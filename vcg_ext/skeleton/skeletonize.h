@@ -352,20 +352,14 @@ struct SingleComponent
 	std::shared_ptr<const SurfaceMesh> mesh;
 };
 
+/// @throws Cancelled
 inline SingleComponent singleComponent(
-	const SurfaceMesh& surface, const ComponentVertices& vertices, int c)
+	const SurfaceMesh& surface, const ComponentVertices& vertices, int c, const Progress& progress)
 {
 	SingleComponent own = {vertices.ids[size_t(c)], nullptr};
-	std::vector<Point3d> position;
-	std::vector<Triangle> triangles;
-	for (int v : own.ids) {
-		position.push_back(surface.position[v]);
-		surface.forEachOwnFace(v, [&](int f) {
-			const Triangle t = surface.triangle(f);
-			triangles.push_back({vertices.place[t[0]], vertices.place[t[1]], vertices.place[t[2]]});
-		});
-	}
-	own.mesh = std::make_shared<const SurfaceMesh>(std::move(position), triangles);
+	ComponentSurface alone(surface, own.ids, vertices.place, progress);
+	own.mesh =
+		std::make_shared<const SurfaceMesh>(std::move(alone.position), alone.triangles, progress);
 	return own;
 }
 
@@ -421,7 +415,8 @@ inline bool replaceThinCurves(Skeletonization& result, const SurfaceInput& input
 		const int c = doubtful[i];
 		if (partner[size_t(c)] < 0)
 			continue;
-		SingleComponent own = singleComponent(*input.mesh, verticesOfInput, partner[size_t(c)]);
+		SingleComponent own =
+			singleComponent(*input.mesh, verticesOfInput, partner[size_t(c)], begin);
 		if (own.mesh->vertexCount() > maxVerticesAsItIs)
 			continue;
 		try {

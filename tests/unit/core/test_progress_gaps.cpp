@@ -20,6 +20,7 @@
 #include <skeleton/flow/flow.h>
 #include <skeleton/input/soup_repair.h>
 #include <skeleton/poles/voronoi_poles.h>
+#include <skeleton/repair/mend.h>
 
 #include <gtest/gtest.h>
 
@@ -87,6 +88,18 @@ TEST(ProgressGaps, RepairingADenseSurfaceReportsAsItGrows)
 		4 * wanted); // faces and edges, as given and merged
 }
 
+/// Its faces and their corners are gone through some thirty times.
+TEST(ProgressGaps, MendingADenseSurfaceReportsAsItGrows)
+{
+	shapes::Soup open = shapes::sphere(7);
+	open.triangles.pop_back();
+	const int wanted = int(open.triangles.size()) / maxVerticesBetweenReports;
+	EXPECT_GE(reportsOf([&](const Progress& p) {
+		EXPECT_TRUE(mend(open.points, open.triangles, HoleLimits(), p).closed);
+	}),
+		30 * wanted);
+}
+
 TEST(ProgressGaps, RepairIsCancelledAtAnyReport)
 {
 	const shapes::Soup soup = shapes::unmerged(shapes::sphere(5));
@@ -114,7 +127,7 @@ TEST(ProgressGaps, PolesAndStepsReportAsTheSurfaceGrows)
 		4 * wanted); // four stages
 	EXPECT_EQ(stage.mesh.vertexCount(), mesh.vertexCount());
 	EXPECT_GE(
-		reportsOf([&](const Progress& p) { stage = step(stage, parameters, p); }), 2 * wanted);
+		reportsOf([&](const Progress& p) { stage = step(stage, parameters, p); }), 16 * wanted);
 }
 
 TEST(ProgressGaps, ResamplingReportsAsItsInputGrows)

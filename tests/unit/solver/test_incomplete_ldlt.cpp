@@ -185,7 +185,7 @@ TEST(IncompleteFactor, RefusesWhatIsNotPositive)
 	M.start = {0};
 	for (int other : {1, 0}) {
 		M.entries.push_back({other, 2});
-		M.endRow();
+		systems::endRow(M);
 	}
 	EXPECT_THROW(IncompleteFactor(M, {0, 0}, 0), SolverError);
 	M.diagonal = {std::nanf(""), 1};

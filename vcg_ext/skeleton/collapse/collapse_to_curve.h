@@ -192,7 +192,7 @@ inline CurveSkeleton collapseToCurve(Stage stage, double shortestEdge = 1e-4,
 	const Progress& progress = Progress(), bool tidy = true)
 {
 	StageFrames frames(stage, progress.cancelOnly());
-	frames.enter(stage);
+	frames.enter(stage, progress.cancelOnly());
 	GluedComplex complex(stage.mesh, stage.held);
 	detail::contractAllFaces(complex, progress.part(0, 0.9));
 

@@ -311,7 +311,7 @@ private:
 	{
 		constexpr double spacing = 1.0 / 32; // of the diagonal
 		if (!overSurface)
-			overSurface.emplace(solid.vertices(), solid.triangles(), spacing);
+			overSurface.emplace(solid.vertices(), solid.triangles(), spacing, progress);
 		return *overSurface;
 	}
 

@@ -256,17 +256,17 @@ inline Stage firstStage(const SurfaceMesh& surface, const Parameters& given, con
 	stage.poleRadius.resize(count);
 	// The vertices that are the surface's and those added, with their indices there and in `finer`.
 	std::vector<int> own, added, ownOf, addedOf;
-	for (size_t v = 0; v < count; ++v) {
+	detail::cancellableLoop(int(count), begin, [&](int v) {
 		const bool isOwn = start.survivor[v] >= 0;
-		(isOwn ? own : added).push_back(int(v));
+		(isOwn ? own : added).push_back(v);
 		(isOwn ? ownOf : addedOf).push_back(isOwn ? start.survivor[v] : start.inFiner[v]);
-	}
+	});
 	const auto take = [&](int v, const PoleSet& from, size_t i) {
 		stage.pole[v] = from.centre[i];
 		stage.poleRadius[v] = from.radius[i];
 	};
-	for (size_t i = 0; i < own.size(); ++i)
-		take(own[i], poles, size_t(ownOf[i]));
+	detail::cancellableLoop(
+		int(own.size()), begin, [&](int i) { take(own[i], poles, size_t(ownOf[i])); });
 	if (!added.empty()) {
 		const PoleSet found =
 			polesAt(*start.finer, addedOf, parameters.poleMethod, progress.cancelOnly());
@@ -284,8 +284,8 @@ inline Stage firstStage(const SurfaceMesh& surface, const Parameters& given, con
 		std::make_shared<const std::vector<Point3d>>(detail::copiedArray(surface.position, end));
 	stage.surfaceTriangles = std::make_shared<const std::vector<Triangle>>(surface.triangles(end));
 	stage.mesh = std::move(start.mesh);
-	const Extent extent =
-		measuredExtent(stage.mesh, stage.component, std::vector<double>(stage.diagonal.size(), 1));
+	const Extent extent = measuredExtent(
+		stage.mesh, stage.component, std::vector<double>(stage.diagonal.size(), 1), end);
 	stage.area = extent.area;
 	stage.volume = extent.volume;
 	return stage;

@@ -14,6 +14,7 @@
 #include "stage.h"
 #include "stage_frames.h"
 
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/core/parameters.h>
 #include <skeleton/core/progress.h>
 #include <skeleton/core/ticker.h>
@@ -51,10 +52,12 @@ inline void stepInFrames(
 {
 	SurfaceMesh& mesh = stage.mesh;
 	const int before = mesh.vertexSlots();
+	const Progress cancel = progress.cancelOnly();
 	contract(stage, parameters, progress.part(0, 0.8));
-	for (int v = 0; v < mesh.vertexSlots(); ++v)
+	cancellableLoop(before, cancel, [&](int v) {
 		if (!stage.fixed[v])
 			mesh.position[v] = PrincipalFrame::rounded(mesh.position[v]);
+	});
 	MergeForest forest(mesh.vertexSlots());
 	const std::vector<int> candidates =
 		collapseShortEdges(stage, parameters.epsilon, forest, progress.part(0.8, 0.9));
@@ -67,24 +70,25 @@ inline void stepInFrames(
 		if (!stage.held[v])
 			mesh.position[v] = PrincipalFrame::rounded(mesh.position[v]);
 	};
-	std::vector<int> mergedInto(before);
-	for (int v = 0; v < before; ++v) {
-		mergedInto[v] = forest.find(v);
+	std::vector<int> mergedInto;
+	mergedInto.reserve(size_t(before));
+	cancellableLoop(before, cancel, [&](int v) {
+		mergedInto.push_back(forest.find(v));
 		if (mergedInto[v] != v)
 			toGrid(mergedInto[v]);
-	}
+	});
 	for (int v = before; v < mesh.vertexSlots(); ++v) {
 		toGrid(v);
 		stage.pole[v] = PrincipalFrame::rounded(stage.pole[v]);
 	}
 	const std::vector<int> newVertex = (stage.iteration + 1) % renumberEvery == 0
-		? renumberBreadthFirst(mesh, progress.cancelOnly())
-		: mesh.compact();
-	for (int& node : stage.node)
-		node = newVertex[mergedInto[node]];
-	stage.renumber(newVertex, mesh.vertexSlots());
+		? renumberBreadthFirst(mesh, cancel)
+		: mesh.compact(cancel);
+	cancellableLoop(int(stage.node.size()), cancel,
+		[&](int s) { stage.node[s] = newVertex[mergedInto[stage.node[s]]]; });
+	stage.renumber(newVertex, mesh.vertexSlots(), cancel);
 
-	const Extent extent = frames.extent(stage);
+	const Extent extent = frames.extent(stage, cancel);
 	const double settled = settledArea(parameters.epsilon);
 	stage.converged = true;
 	for (size_t c = 0; c < extent.area.size(); ++c)
@@ -124,10 +128,11 @@ inline Stage step(Stage stage, const Parameters& given, const Progress& progress
 	const Parameters parameters = sharedAmong(given, stage.diagonal);
 	if (stage.converged)
 		return stage;
-	StageFrames frames(stage, progress.cancelOnly());
-	frames.enter(stage);
+	const Progress cancel = progress.cancelOnly();
+	StageFrames frames(stage, cancel);
+	frames.enter(stage, cancel);
 	detail::stepInFrames(stage, frames, parameters, progress);
-	frames.leave(stage);
+	frames.leave(stage, cancel);
 	stage.mesh.trim();
 	return stage;
 }
@@ -160,22 +165,22 @@ inline Stage contractToSkeleton(Stage stage, const Parameters& given,
 	given.check();
 	const Parameters parameters = sharedAmong(given, stage.diagonal);
 	progress.report(0, "Contracting");
-	StageFrames frames(stage, progress.cancelOnly()); // needs stage.node, which is moved next
+	const Progress cancel = progress.cancelOnly();
+	StageFrames frames(stage, cancel); // needs stage.node, which is moved next
 	// The map from surface to stage is composed lazily: stage.node tracks the vertices of a
 	// checkpoint stage, a new checkpoint is taken when half of them have merged, and ofSurface,
 	// ofFirst and stage.node are composed on request.
 	const std::vector<int> ofSurface = std::move(stage.node);
-	std::vector<int> ofFirst(stage.mesh.vertexSlots());
-	std::iota(ofFirst.begin(), ofFirst.end(), 0);
-	stage.node = ofFirst;
+	std::vector<int> ofFirst = detail::numberedArray(size_t(stage.mesh.vertexSlots()), cancel);
+	stage.node = detail::copiedArray(ofFirst, cancel);
 	const auto goesOn = [&] { return !isOver(stage, parameters); };
 	// The places of held vertices outside do not follow from those inside: each step enters anew.
 	const bool staysInside = stage.heldCount() == 0 && goesOn();
 	if (staysInside)
-		frames.enter(stage);
+		frames.enter(stage, cancel);
 	const auto outside = [&](Stage inside, const Progress& part) {
 		if (staysInside)
-			frames.leave(inside);
+			frames.leave(inside, part.cancelOnly());
 		std::vector<int> node;
 		node.reserve(ofSurface.size());
 		detail::reportedLoop(int(ofSurface.size()), part, "Contracting",

@@ -14,6 +14,7 @@
 #include <skeleton/core/parallel.h>
 #include <skeleton/core/parameters.h>
 #include <skeleton/core/progress.h>
+#include <skeleton/core/ticker.h>
 #include <skeleton/solver/symmetric_csr.h>
 
 #include <algorithm>
@@ -85,8 +86,8 @@ inline FlowSystem flowSystem(
 	std::vector<Point3d>& b = system.b;
 	const int n = int(vertexOfUnknown.size());
 	std::vector<int> unknown(mesh.vertexSlots(), -1);
-	for (int i = 0; i < n; ++i)
-		unknown[vertexOfUnknown[i]] = i;
+	const Progress cancel = progress.cancelOnly();
+	detail::cancellableLoop(n, cancel, [&](int i) { unknown[vertexOfUnknown[i]] = i; });
 	progress.report(0, "Contracting");
 	// Of the triangles with free vertices: the cotangents, the area-weighted normals of the
 	// vertices, and the numbers of entries in the rows of M.
@@ -102,22 +103,22 @@ inline FlowSystem flowSystem(
 	const std::vector<int> ranges = rangesForThreads(n, minForTeam);
 	const auto onAllCores = [&](const Progress& part, const auto& make) {
 		if (ranges.size() == 2)
-			make([](int row) { return row >= 0; });
+			make([](int row) { return row >= 0; }, part.cancelOnly());
 		else
-			forEachPart(ranges, part, "Contracting", [&](int begin, int end, const Progress&) {
-				make([begin, end](int row) { return row >= begin && row < end; });
+			forEachPart(ranges, part, "Contracting", [&](int begin, int end, const Progress& own) {
+				make([begin, end](int row) { return row >= begin && row < end; }, own.cancelOnly());
 			});
 	};
-	const auto forEachTriangle = [&](const auto& isMine, auto&& visit) {
-		for (int f = 0; f < mesh.faceSlots(); ++f) {
+	const auto forEachTriangle = [&](const auto& isMine, const Progress& own, auto&& visit) {
+		detail::cancellableLoop(mesh.faceSlots(), own, [&](int f) {
 			const Triangle t = mesh.triangle(f);
 			const std::array<int, 3> row = {unknown[t[0]], unknown[t[1]], unknown[t[2]]};
 			if (isMine(row[0]) || isMine(row[1]) || isMine(row[2]))
 				visit(f, t, row);
-		}
+		});
 	};
-	onAllCores(progress.part(0, 0.5), [&](const auto& isMine) {
-		forEachTriangle(isMine, [&](int f, const Triangle& t, const std::array<int, 3>& row) {
+	onAllCores(progress.part(0, 0.5), [&](const auto& isMine, const Progress& own) {
+		forEachTriangle(isMine, own, [&](int f, const Triangle& t, const std::array<int, 3>& row) {
 			const TriangleMeasures measures = measureTriangle(mesh, f);
 			if (isMine(std::max({row[0], row[1], row[2]}))) // one of the threads that measure it
 				for (int k = 0; k < 3; ++k)
@@ -137,8 +138,8 @@ inline FlowSystem flowSystem(
 	std::vector<int> end(M.start.begin(), M.start.end() - 1);
 	std::vector<double> toFree(n, 0), toFixed(n, 0); // sums of the weights of a row
 	std::vector<Point3d> curvature(mesh.vertexSlots(), Point3d(0, 0, 0)); // w_L L v
-	onAllCores(progress.part(0.5, 1), [&](const auto& isMine) {
-		forEachTriangle(isMine, [&](int f, const Triangle& t, const std::array<int, 3>& row) {
+	onAllCores(progress.part(0.5, 1), [&](const auto& isMine, const Progress& own) {
+		forEachTriangle(isMine, own, [&](int f, const Triangle& t, const std::array<int, 3>& row) {
 			for (int k = 0; k < 3; ++k) {
 				const int i = row[k], j = row[(k + 1) % 3], h = 3 * f + k;
 				if (!isMine(i))
@@ -155,7 +156,7 @@ inline FlowSystem flowSystem(
 	D.resize(n);
 	b.resize(n);
 	FloatQuads Lv(n);
-	for (int i = 0; i < n; ++i) {
+	detail::cancellableLoop(n, cancel, [&](int i) {
 		const int v = vertexOfUnknown[i];
 		M.excess[i] = float(toFixed[i]);
 		M.diagonal[i] = float(toFixed[i] + toFree[i]);
@@ -171,7 +172,7 @@ inline FlowSystem flowSystem(
 			D[i] = float(wH2 + weight2);
 			b[i] = toPole * weight2;
 		}
-	}
+	});
 	M.forEachProduct(
 		Lv, [&](int i, const FloatQuad& sum) { b[i] -= Point3d(sum[0], sum[1], sum[2]); });
 	progress.report(1, "Contracting");

@@ -10,8 +10,10 @@
 #include "stage.h"
 
 #include <skeleton/core/disjoint_sets.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/core/parameters.h>
 #include <skeleton/core/progress.h>
+#include <skeleton/core/ticker.h>
 
 #include <algorithm>
 #include <array>
@@ -73,22 +75,25 @@ inline std::array<bool, 3> maybeWideAngles(const SurfaceMesh& mesh, int face, do
 class EdgesToSplit
 {
 public:
-	EdgesToSplit(const SurfaceMesh& mesh, double widest) : mesh(mesh), state(mesh.halfEdgeSlots())
+	/// @throws Cancelled
+	EdgesToSplit(const SurfaceMesh& mesh, double widest, const Cancellation& cancel) :
+			mesh(mesh), state(mesh.halfEdgeSlots())
 	{
-		for (int h = 0; h < mesh.halfEdgeSlots(); ++h)
-			state[h] = h < mesh.twin(h) ? edge : 0;
-		std::vector<int> wide(state.size() + 1); // one spare, for the branchless writes
+		cancellableLoop(
+			mesh.halfEdgeSlots(), cancel, [&](int h) { state[h] = h < mesh.twin(h) ? edge : 0; });
+		// One spare, for the branchless writes.
+		std::vector<int> wide = filledArray(state.size() + 1, 0, cancel);
 		size_t count = 0;
-		for (int f = 0; f < mesh.faceSlots(); ++f) {
+		cancellableLoop(mesh.faceSlots(), cancel, [&](int f) {
 			if (!mesh.isFace(f))
-				continue;
+				return;
 			const std::array<bool, 3> atFace = widest > 0 ? std::array<bool, 3> {true, true, true}
 														  : maybeWideAngles(mesh, f, widest);
 			for (int k = 0; k < 3; ++k) { // branchless: the condition is unpredictable
 				wide[count] = 3 * f + k;
 				count += atFace[k];
 			}
-		}
+		});
 		std::vector<char> isWide(state.size(), 0);
 		for (size_t i = 0; i < count; ++i)
 			isWide[wide[i]] = due;
@@ -204,21 +209,22 @@ inline std::vector<int> collapseShortEdges(
 		sorted.clear();
 	};
 	// Face by face each edge is measured twice, but memory is read in order, and few are short.
-	for (int f = 0; f < mesh.faceSlots(); ++f) {
+	const Progress cancel = progress.cancelOnly();
+	detail::cancellableLoop(mesh.faceSlots(), cancel, [&](int f) {
 		if (!mesh.isFace(f))
-			continue;
+			return;
 		const auto [a, b, c] = mesh.triangle(f);
 		const Point3d &p = mesh.position[a], &q = mesh.position[b], &r = mesh.position[c];
 		const double limit = squaredLimit[stage.component[a]];
 		const double squaredLengths[3] = {
 			SquaredDistance(p, q), SquaredDistance(q, r), SquaredDistance(r, p)};
 		if (std::min({squaredLengths[0], squaredLengths[1], squaredLengths[2]}) >= limit)
-			continue;
+			return;
 		for (int k = 0; k < 3; ++k)
 			if (squaredLengths[k] < limit && mesh.isEdge(3 * f + k)) // mayCollapse() looks closer
 				if (const Entry e(squaredLengths[k], 3 * f + k); mayCollapse(e))
 					sorted.push_back(e);
-	}
+	});
 	collapseQueued();
 	// A collapse elsewhere may have freed a blocked edge.
 	for (;;) {
@@ -239,9 +245,10 @@ inline std::vector<int> collapseShortEdges(
 		if (mesh.isHalfEdge(h))
 			isCandidate[mesh.origin(h)] = isCandidate[mesh.target(h)] = 1;
 	std::vector<int> candidates;
-	for (int v = 0; v < mesh.vertexSlots(); ++v)
+	detail::cancellableLoop(mesh.vertexSlots(), cancel, [&](int v) {
 		if (isCandidate[v] && mesh.isVertex(v))
 			candidates.push_back(v);
+	});
 	return candidates;
 }
 
@@ -273,12 +280,14 @@ inline void splitWideAngles(Stage& stage, const Parameters& parameters, MergeFor
 		return lengths > 0 && dot / lengths < widest ? dot / lengths : 2.0;
 	};
 	// The initial edges are tested in the order of their ids, then those of new triangles.
-	detail::EdgesToSplit initial(mesh, widest);
+	const Progress cancel = progress.cancelOnly();
+	detail::EdgesToSplit initial(mesh, widest, cancel);
 	std::vector<int> queue;
 	std::vector<char> moves(stage.diagonal.size(), 0); // by component
-	for (int v = 0; v < mesh.vertexSlots(); ++v)
+	detail::cancellableLoop(mesh.vertexSlots(), cancel, [&](int v) {
 		if (!stage.fixed[v] && mesh.isVertex(v))
 			moves[stage.component[v]] = 1;
+	});
 	// Each split shortens the longest edge of its triangles; the cap is for the worst case only.
 	const size_t maxVertices = 4 * size_t(mesh.vertexCount()) + 1000;
 	size_t looked = 0;

@@ -143,20 +143,20 @@ struct Extent
 	double volume = 0;
 };
 
-/// @param unit of the coordinates of each component, in units of the result.
-inline Extent measuredExtent(
-	const SurfaceMesh& mesh, const std::vector<int>& component, const std::vector<double>& unit)
+/// @param unit of the coordinates of each component, in units of the result. @throws Cancelled
+inline Extent measuredExtent(const SurfaceMesh& mesh, const std::vector<int>& component,
+	const std::vector<double>& unit, const Cancellation& cancel = Cancellation())
 {
 	std::vector<double> doubleArea(unit.size(), 0), sixVolumes(unit.size(), 0);
 	const Point3d middle = mesh.bounds().Center();
-	for (int f = 0; f < mesh.faceSlots(); ++f) {
+	detail::cancellableLoop(mesh.faceSlots(), cancel, [&](int f) {
 		if (!mesh.isFace(f))
-			continue;
+			return;
 		const int v = mesh.triangle(f)[0];
 		const Point3d doubleAreaVector = mesh.doubleAreaVector(f);
 		doubleArea[component[v]] += doubleAreaVector.Norm();
 		sixVolumes[component[v]] += (mesh.position[v] - middle) * doubleAreaVector;
-	}
+	});
 	Extent extent;
 	for (size_t c = 0; c < unit.size(); ++c) {
 		const double squared = unit[c] * unit[c];
@@ -220,8 +220,8 @@ inline std::vector<double> meanSurfaceDistance(const std::vector<Point3d>& posit
 		sum[node[s]] += Distance(surface[s], position[node[s]]);
 		++count[node[s]];
 	});
-	for (size_t v = 0; v < sum.size(); ++v)
-		sum[v] = count[v] ? sum[v] / count[v] : -1;
+	detail::cancellableLoop(
+		int(sum.size()), cancel, [&](int v) { sum[v] = count[v] ? sum[v] / count[v] : -1; });
 	return sum;
 }
 

@@ -9,6 +9,7 @@
 
 #include "stage.h"
 
+#include <skeleton/core/ticker.h>
 #include <skeleton/mesh/principal_frame.h>
 
 #include <map>
@@ -42,11 +43,11 @@ public:
 
 	/// Takes the positions, poles and diagonals of a stage into the frames, and turns over faces
 	/// where a frame is mirrored, so that they look outwards there, too. Held vertices are not
-	/// rounded.
-	void enter(Stage& stage)
+	/// rounded. @throws Cancelled
+	void enter(Stage& stage, const Cancellation& cancel = Cancellation())
 	{
 		diagonal = stage.diagonal;
-		for (size_t v = 0; v < stage.pole.size(); ++v) {
+		detail::cancellableLoop(int(stage.pole.size()), cancel, [&](int v) {
 			const int c = stage.component[v];
 			const PrincipalFrame& own = (*frames)[c];
 			Point3d& p = stage.mesh.position[v];
@@ -58,19 +59,19 @@ public:
 			else
 				p = own.onGrid(p);
 			stage.pole[v] = own.onGrid(stage.pole[v]);
-		}
+		});
 		for (size_t c = 0; c < frames->size(); ++c)
 			stage.diagonal[c] /= (*frames)[c].unitLength();
-		turnOverMirrored(stage.mesh, stage.component, *frames);
+		turnOverMirrored(stage.mesh, stage.component, *frames, cancel);
 	}
 
-	/// The area and volume, in mesh units, of a stage that has entered.
-	Extent extent(const Stage& stage) const
+	/// The area and volume, in mesh units, of a stage that has entered. @throws Cancelled
+	Extent extent(const Stage& stage, const Cancellation& cancel) const
 	{
 		std::vector<double> unit;
 		for (const PrincipalFrame& frame : *frames)
 			unit.push_back(frame.unitLength());
-		return measuredExtent(stage.mesh, stage.component, unit);
+		return measuredExtent(stage.mesh, stage.component, unit, cancel);
 	}
 
 	/// A point of a component in mesh coordinates; where a vertex is held, exactly its place.
@@ -83,15 +84,16 @@ public:
 	}
 
 	/// Takes a stage that has entered back to mesh coordinates. @pre it is compact.
-	void leave(Stage& stage) const
+	/// @throws Cancelled; then the stage must be discarded.
+	void leave(Stage& stage, const Cancellation& cancel = Cancellation()) const
 	{
-		for (size_t v = 0; v < stage.pole.size(); ++v) {
+		detail::cancellableLoop(int(stage.pole.size()), cancel, [&](int v) {
 			const int c = stage.component[v];
 			stage.mesh.position[v] = out(c, stage.mesh.position[v]);
 			stage.pole[v] = (*frames)[c].out(stage.pole[v]);
-		}
+		});
 		stage.diagonal = diagonal;
-		turnOverMirrored(stage.mesh, stage.component, *frames);
+		turnOverMirrored(stage.mesh, stage.component, *frames, cancel);
 	}
 
 private:

@@ -7,6 +7,9 @@
 #ifndef VCG_MCF_VERTEX_STATES_H
 #define VCG_MCF_VERTEX_STATES_H
 
+#include <skeleton/core/progress.h>
+#include <skeleton/core/ticker.h>
+
 #include <vcg/space/point3.h>
 
 #include <algorithm>
@@ -61,13 +64,17 @@ struct VertexStates
 	}
 
 	/// Reorders the vertices. @param newVertex the new index of each, below `count`; < 0: removed.
-	void renumber(const std::vector<int>& newVertex, int count)
+	/// @throws Cancelled; then the states must be discarded.
+	void renumber(
+		const std::vector<int>& newVertex, int count, const Cancellation& cancel = Cancellation())
 	{
 		forEachProperty([&](auto& values) {
+			cancel.check();
 			std::decay_t<decltype(values)> moved(static_cast<size_t>(count));
-			for (size_t v = 0; v < values.size(); ++v)
+			detail::cancellableLoop(int(values.size()), cancel, [&](int v) {
 				if (newVertex[v] >= 0)
 					moved[size_t(newVertex[v])] = values[v];
+			});
 			values = std::move(moved);
 		});
 	}

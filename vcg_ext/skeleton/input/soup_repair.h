@@ -131,16 +131,18 @@ inline EdgeDefects edgeDefects(
 	return defects;
 }
 
-/// The faces whose corners are all finite.
-inline std::vector<Triangle> finiteFaces(
-	const std::vector<Point3d>& points, const std::vector<Triangle>& triangles)
+/// The faces whose corners are all finite. @throws Cancelled
+inline std::vector<Triangle> finiteFaces(const std::vector<Point3d>& points,
+	const std::vector<Triangle>& triangles, const Cancellation& cancel)
 {
 	std::vector<Triangle> finite;
 	finite.reserve(triangles.size());
-	for (const Triangle& t : triangles)
+	cancellableLoop(int(triangles.size()), cancel, [&](int f) {
+		const Triangle& t = triangles[size_t(f)];
 		if (std::all_of(
 				t.begin(), t.end(), [&](int v) { return isFinitePlace(points[size_t(v)]); }))
 			finite.push_back(t);
+	});
 	return finite;
 }
 

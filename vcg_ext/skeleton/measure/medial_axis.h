@@ -9,10 +9,12 @@
 
 #include <skeleton/poles/by_component.h>
 #include <skeleton/core/errors.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/core/parallel.h>
 #include <skeleton/spatial/point_tree.h>
 #include <skeleton/poles/pole_set.h>
 #include <skeleton/core/progress.h>
+#include <skeleton/core/ticker.h>
 #include <skeleton/mesh/surface_mesh.h>
 #include <skeleton/mesh/unit_frame.h>
 
@@ -175,11 +177,12 @@ inline MedialLayer medialLayer(const SurfaceMesh& surface, const PoleSet& poles,
 		return poles.has(v) && angle[v] >= parameters.minAngle
 			&& poles.radius[v] >= parameters.minRadius;
 	};
+	const Progress cancel = progress.cancelOnly();
 	std::vector<Triangle> kept;
-	for (int f = 0; joined && f < surface.faceSlots(); ++f) {
+	detail::cancellableLoop(joined ? surface.faceSlots() : 0, cancel, [&](int f) {
 		const Triangle t = surface.triangle(f);
 		if (!counts(t[0]) || !counts(t[1]) || !counts(t[2]))
-			continue;
+			return;
 		double longest = 0, stretched = 0;
 		for (int k = 0; k < 3; ++k) {
 			const int a = t[k], b = t[(k + 1) % 3];
@@ -188,24 +191,28 @@ inline MedialLayer medialLayer(const SurfaceMesh& surface, const PoleSet& poles,
 		}
 		if (stretched <= parameters.maxStretch * longest)
 			kept.push_back(t);
-	}
+	});
 	std::vector<char> used(poles.radius.size(), !joined);
-	for (const Triangle& t : kept)
-		for (int v : t)
+	detail::cancellableLoop(int(kept.size()), cancel, [&](int f) {
+		for (int v : kept[size_t(f)])
 			used[v] = 1;
+	});
 
 	MedialLayer layer;
-	std::vector<int> number(used.size(), -1);
-	for (int v = 0; v < int(used.size()); ++v)
-		if (used[v] && counts(v)) {
-			number[v] = int(layer.position.size());
-			layer.position.push_back(poles.centre[v]);
-			layer.radius.push_back(poles.radius[v]);
-			layer.angle.push_back(angle[v]);
-			layer.source.push_back(v);
-		}
-	for (const Triangle& t : kept)
+	std::vector<int> number = detail::filledArray(used.size(), -1, cancel);
+	detail::cancellableLoop(int(used.size()), cancel, [&](int v) {
+		if (!used[v] || !counts(v))
+			return;
+		number[v] = int(layer.position.size());
+		layer.position.push_back(poles.centre[v]);
+		layer.radius.push_back(poles.radius[v]);
+		layer.angle.push_back(angle[v]);
+		layer.source.push_back(v);
+	});
+	detail::cancellableLoop(int(kept.size()), cancel, [&](int f) {
+		const Triangle& t = kept[size_t(f)];
 		layer.triangles.push_back({number[t[0]], number[t[1]], number[t[2]]});
+	});
 	return layer;
 }
 

@@ -126,7 +126,8 @@ inline BallUnion unionOfBalls(const std::vector<Point3d>& centre, const std::vec
 			low[axis] = std::max(0, int(std::floor(c[axis] - r - 2)));
 			high[axis] = std::min(size[axis] - 1, int(std::ceil(c[axis] + r + 2)));
 		}
-		for (int z = low[2]; z <= high[2]; ++z)
+		for (int z = low[2]; z <= high[2]; ++z) {
+			progress.check(); // a large ball has millions of voxels
 			for (int y = low[1]; y <= high[1]; ++y)
 				for (int x = low[0]; x <= high[0]; ++x) {
 					double& value = volume.Val(x, y, z);
@@ -135,6 +136,7 @@ inline BallUnion unionOfBalls(const std::vector<Point3d>& centre, const std::vec
 					if (limit > 0 && squared < limit * limit)
 						value = std::sqrt(squared) - r;
 				}
+		}
 	}
 	// No corner exactly on the surface: it would make triangles of no area.
 	constexpr double minimum = 1e-4;

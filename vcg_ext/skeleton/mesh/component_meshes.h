@@ -40,6 +40,28 @@ struct ComponentVertices
 	}
 };
 
+/// The surface of some components as arrays of their own.
+struct ComponentSurface
+{
+	std::vector<Point3d> position;
+	std::vector<Triangle> triangles; ///< corners as indices into `position`
+
+	/// @param ids   of the vertices, whole components. @param place  of each of them in `ids`.
+	/// @throws Cancelled
+	ComponentSurface(const SurfaceMesh& mesh, const std::vector<int>& ids,
+		const std::vector<int>& place, const Cancellation& cancel)
+	{
+		position.reserve(ids.size());
+		detail::cancellableLoop(int(ids.size()), cancel, [&](int i) {
+			position.push_back(mesh.position[ids[i]]);
+			mesh.forEachOwnFace(ids[i], [&](int f) {
+				const Triangle t = mesh.triangle(f);
+				triangles.push_back({place[t[0]], place[t[1]], place[t[2]]});
+			});
+		});
+	}
+};
+
 /**
  * Calls visit(c, own, ids, progress) for each connected component c of a mesh: `own` is a mesh of
  * that component alone, its vertices and triangles in the order of `mesh`; `ids` are the ids of its

@@ -107,10 +107,13 @@ public:
 		return mesh;
 	}
 
-	/// Whether ifClosedManifold() has a mesh for `triangles` on so many vertices.
-	static bool isClosedManifold(size_t vertices, const std::vector<Triangle>& triangles)
+	/// Whether ifClosedManifold() has a mesh for `triangles` on so many vertices. @throws Cancelled
+	static bool isClosedManifold(size_t vertices, const std::vector<Triangle>& triangles,
+		const Progress& progress = Progress())
 	{
-		return ifClosedManifold(std::vector<Point3d>(vertices), triangles).has_value();
+		return ifClosedManifold(
+			detail::filledArray(vertices, Point3d(0, 0, 0), progress), triangles, progress)
+			.has_value();
 	}
 
 	// Sizes. The ids run over [0, vertexSlots()) and [0, faceSlots()), holes included.

@@ -486,16 +486,8 @@ inline NestedBranches nestedIn(
 inline std::optional<CurveSkeleton> broughtBack(
 	const CurveSkeleton& curve, const SurfaceComponent& component, const Progress& progress)
 {
-	std::vector<Point3d> points;
-	std::vector<Triangle> faces;
-	for (int v : component.vertices) {
-		points.push_back(component.mesh.position[v]);
-		component.mesh.forEachOwnFace(v, [&](int f) {
-			const Triangle t = component.mesh.triangle(f);
-			faces.push_back({component.place[t[0]], component.place[t[1]], component.place[t[2]]});
-		});
-	}
-	const SolidTest solid(points, faces, progress);
+	const ComponentSurface own(component.mesh, component.vertices, component.place, progress);
+	const SolidTest solid(own.position, own.triangles, progress);
 	std::vector<Point3d> place;
 	for (const Point3d& p : curve.position)
 		place.push_back(solid.in(p));

@@ -12,6 +12,7 @@
 #include "limb_tubes.h"
 
 #include <skeleton/core/disjoint_sets.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/core/progress.h>
 #include <skeleton/core/ticker.h>
 #include <skeleton/input/soup_repair.h>
@@ -154,15 +155,16 @@ public:
 		const std::vector<int>& partner, const std::vector<char>& isSpeck, const GapLimits& limits,
 		const Progress& progress) :
 			points(points),
-			triangles(triangles), limits(limits), piece(pieceOfFaces(partner)),
+			triangles(triangles), limits(limits), piece(pieceOfFaces(partner, progress)),
 			pieces(int(piece.size()))
 	{
-		std::vector<Box3d> box(piece.size());
-		for (size_t f = 0; f < piece.size(); ++f)
-			for (int v : triangles[f])
-				box[size_t(piece[f])].Add(points[size_t(v)]);
-		for (const std::vector<int>& loop :
-			holeLoops(points, triangles, partner, progress.cancelOnly())) {
+		const Progress cancel = progress.cancelOnly();
+		std::vector<Box3d> box = filledArray(piece.size(), Box3d(), cancel);
+		cancellableLoop(int(piece.size()), cancel, [&](int f) {
+			for (int v : triangles[size_t(f)])
+				box[size_t(piece[size_t(f)])].Add(points[size_t(v)]);
+		});
+		for (const std::vector<int>& loop : holeLoops(points, triangles, partner, cancel)) {
 			if (loop.size() < 3 || int(loop.size()) > limits.edges)
 				continue;
 			LimbEnd end = limbEnd(points, triangles, partner, loop);
@@ -189,7 +191,7 @@ public:
 		for (const LimbEnd& end : ends)
 			for (int v : end.corner)
 				isCorner[size_t(v)] = 1;
-		edges = edgesBetween(triangles, isCorner);
+		edges = edgesBetween(triangles, isCorner, progress);
 		for (const auto& [apart, i, k] : facing) {
 			progress.report(0.6, what);
 			const LimbEnd &a = ends[size_t(i)], &b = ends[size_t(k)];

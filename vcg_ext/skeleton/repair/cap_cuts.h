@@ -9,7 +9,10 @@
 
 #include "fill_holes.h"
 
+#include <skeleton/core/grouped_sort.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/core/progress.h>
+#include <skeleton/core/ticker.h>
 #include <skeleton/spatial/triangle_tree.h>
 
 #include <vcg/math/base.h>
@@ -20,7 +23,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <utility>
@@ -50,10 +52,10 @@ namespace detail {
 /// Triangulates a counter-clockwise polygon in the plane by ear clipping, the ear with the shortest
 /// new edge first. @param allowed  allowed(i, k): whether corners i and k may be joined by an edge.
 /// @return nothing if no ear is left, as in a polygon that crosses itself.
-/// Complexity: O(n^2) for n corners.
+/// @throws Cancelled. Complexity: O(n^2) for n corners.
 template <class Allowed>
-std::optional<std::vector<Triangle>> clippedEars(
-	const std::vector<Point2d>& p, const Allowed& allowed)
+std::optional<std::vector<Triangle>> clippedEars(const std::vector<Point2d>& p,
+	const Allowed& allowed, const Cancellation& cancel = Cancellation())
 {
 	constexpr double never = std::numeric_limits<double>::infinity();
 	const int n = int(p.size());
@@ -83,10 +85,13 @@ std::optional<std::vector<Triangle>> clippedEars(
 		return (p[size_t(c)] - p[size_t(a)]).SquaredNorm();
 	};
 	std::vector<double> costs;
-	for (int i = 0; i < n; ++i)
+	for (int i = 0; i < n; ++i) {
+		cancel.check();
 		costs.push_back(cost(i));
+	}
 	std::vector<Triangle> triangles;
 	while (left >= 3) {
+		cancel.check();
 		const int ear = int(std::min_element(costs.begin(), costs.end()) - costs.begin());
 		if (costs[size_t(ear)] == never)
 			return std::nullopt;
@@ -186,8 +191,9 @@ inline int capCuts(const std::vector<Point3d>& points, std::vector<Triangle>& tr
 		holeLoops(points, triangles, partner, progress.cancelOnly());
 	if (loops.empty())
 		return 0;
-	const std::vector<int> piece = pieceOfFaces(partner);
-	const std::vector<double> area = areaOfPieces(points, triangles, piece);
+	const Progress cancel = progress.cancelOnly();
+	const std::vector<int> piece = pieceOfFaces(partner, cancel);
+	const std::vector<double> area = areaOfPieces(points, triangles, piece, cancel);
 	std::vector<double> capped(piece.size(), 0);
 	std::vector<PlaneCut> cuts;
 	for (const std::vector<int>& loop : loops) {
@@ -202,34 +208,37 @@ inline int capCuts(const std::vector<Point3d>& points, std::vector<Triangle>& tr
 	}
 	if (cuts.empty())
 		return 0;
-	const std::vector<char> onBorder = borderVertices(points.size(), triangles, partner);
-	std::set<std::pair<int, int>> edges = edgesBetween(triangles, onBorder);
-	const std::vector<Triangle> given = triangles;
+	const std::vector<char> onBorder = borderVertices(points.size(), triangles, partner, cancel);
+	std::set<std::pair<int, int>> edges = edgesBetween(triangles, onBorder, cancel);
+	const std::vector<Triangle> given = copiedArray(triangles, cancel);
 	const TriangleTree tree(points, given, progress.part(0, 0.3));
 	std::vector<Triangle> borderPoints; // as triangles, to be searched by boxes
 	for (int v = 0; v < int(points.size()); ++v)
 		if (onBorder[size_t(v)])
 			borderPoints.push_back({v, v, v});
-	const TriangleTree borders(points, borderPoints, progress.cancelOnly());
-	std::vector<int> byPiece(given.size());
-	std::iota(byPiece.begin(), byPiece.end(), 0);
-	std::stable_sort(byPiece.begin(), byPiece.end(),
-		[&](int f, int g) { return piece[size_t(f)] < piece[size_t(g)]; });
+	const TriangleTree borders(points, borderPoints, cancel);
+	std::vector<std::pair<int, int>> byPiece; // piece and face
+	byPiece.reserve(given.size());
+	cancellableLoop(
+		int(given.size()), cancel, [&](int f) { byPiece.emplace_back(piece[size_t(f)], f); });
+	sortCancellable(byPiece, 0, byPiece.size(), cancel);
 	const Progress capping = progress.part(0.3, 1);
 	int closed = 0;
 	for (size_t i = 0; i < cuts.size(); ++i) {
 		capping.report(double(i) / double(cuts.size()), "Capping cuts");
 		const PlaneCut& cut = cuts[i];
-		const size_t whose = size_t(*cut.border.pieces.begin());
+		const int ofCut = *cut.border.pieces.begin();
+		const size_t whose = size_t(ofCut);
 		double lowest = 0, highest = 0;
-		for (auto f = std::partition_point(byPiece.begin(), byPiece.end(),
-				 [&](int g) { return size_t(piece[size_t(g)]) < whose; });
-			 f != byPiece.end() && size_t(piece[size_t(*f)]) == whose; ++f)
-			for (int v : given[size_t(*f)]) {
+		const auto begin = std::lower_bound(byPiece.begin(), byPiece.end(), std::pair(ofCut, 0));
+		const auto end = std::lower_bound(begin, byPiece.end(), std::pair(ofCut + 1, 0));
+		cancellableLoop(int(end - begin), cancel, [&](int k) {
+			for (int v : given[size_t(begin[k].second)]) {
 				const double height = cut.height(points[size_t(v)]);
 				lowest = std::min(lowest, height);
 				highest = std::max(highest, height);
 			}
+		});
 		if (std::min(highest, -lowest) > cut.tolerance
 			|| area[whose] < limits.surface * (capped[whose] + cut.area))
 			continue;
@@ -256,14 +265,16 @@ inline int capCuts(const std::vector<Point3d>& points, std::vector<Triangle>& tr
 		std::optional<std::vector<Triangle>> ears;
 		for (int rounds : {0, 2, 8})
 			if (!ears)
-				ears = clippedEars(smoothed(polygon, rounds),
-					[&](int a, int b) { return cut.border.mayJoin(a, b, edges); });
+				ears = clippedEars(
+					smoothed(polygon, rounds),
+					[&](int a, int b) { return cut.border.mayJoin(a, b, edges); }, cancel);
 		if (!ears)
 			continue;
 		std::vector<Triangle> cap;
 		double crossing = 0;
 		std::map<std::pair<int, int>, int> uses;
 		for (const Triangle& t : *ears) {
+			cancel.check();
 			cap.push_back(cut.border.triangle(t));
 			for (size_t k = 0; k < 3; ++k)
 				fits = fits && ++uses[cut.border.edge(t[k], t[(k + 1) % 3])] <= 2;

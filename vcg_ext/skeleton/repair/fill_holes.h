@@ -245,10 +245,14 @@ inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& point
 {
 	Ticker ticker(progress.cancelOnly(), repairing, double(partner.size()));
 	const auto origin = [&](int h) { return triangles[size_t(h) / 3][size_t(h) % 3]; };
+	const Progress cancel = progress.cancelOnly();
 	std::map<int, std::vector<BorderFan>> fansAt;
-	for (int h = 0; h < int(partner.size()); ++h)
-		if (partner[size_t(h)] < 0)
-			fansAt[origin(h)].push_back(borderFan(points, triangles, partner, h));
+	cancellableLoop(int(partner.size()), cancel, [&](int h) {
+		if (partner[size_t(h)] >= 0)
+			return;
+		ticker.tick();
+		fansAt[origin(h)].push_back(borderFan(points, triangles, partner, h));
+	});
 	std::map<int, int> following; // of the half-edge into a vertex
 	std::set<int> splitting;      // vertices whose fans face different ways
 	for (const auto& [v, around] : fansAt) {
@@ -282,9 +286,9 @@ inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& point
 	}
 	std::vector<std::vector<int>> loops;
 	std::vector<char> done(partner.size(), 0);
-	for (int h = 0; h < int(partner.size()); ++h) {
+	cancellableLoop(int(partner.size()), cancel, [&](int h) {
 		if (partner[size_t(h)] >= 0 || done[size_t(h)])
-			continue;
+			return;
 		std::vector<int> loop;
 		std::map<int, size_t> placeOf; // in the loop, of the half-edge from a splitting vertex
 		for (int at = h; !done[size_t(at)];) {
@@ -310,7 +314,7 @@ inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& point
 		}
 		if (!loop.empty())
 			loops.push_back(std::move(loop));
-	}
+	});
 	return loops;
 }
 
@@ -334,12 +338,15 @@ inline Point3d areaVector(
 }
 
 /// For the lowest face of each piece, see pieceOfFaces(), the area of the piece; for the others 0.
+/// @throws Cancelled
 inline std::vector<double> areaOfPieces(const std::vector<Point3d>& points,
-	const std::vector<Triangle>& triangles, const std::vector<int>& piece)
+	const std::vector<Triangle>& triangles, const std::vector<int>& piece,
+	const Cancellation& cancel)
 {
 	std::vector<double> area(piece.size(), 0);
-	for (size_t f = 0; f < piece.size(); ++f)
-		area[size_t(piece[f])] += areaVector(points, triangles[f]).Norm();
+	cancellableLoop(int(piece.size()), cancel, [&](int f) {
+		area[size_t(piece[size_t(f)])] += areaVector(points, triangles[size_t(f)]).Norm();
+	});
 	return area;
 }
 
@@ -387,39 +394,44 @@ inline BorderPolygon borderPolygon(const std::vector<Point3d>& points,
 	return border;
 }
 
-/// For each vertex whether it is on a border.
-inline std::vector<char> borderVertices(
-	size_t vertices, const std::vector<Triangle>& triangles, const std::vector<int>& partner)
+/// For each vertex whether it is on a border. @throws Cancelled
+inline std::vector<char> borderVertices(size_t vertices, const std::vector<Triangle>& triangles,
+	const std::vector<int>& partner, const Cancellation& cancel)
 {
 	std::vector<char> onBorder(vertices, 0);
-	for (size_t h = 0; h < partner.size(); ++h)
-		if (partner[h] < 0)
-			onBorder[size_t(triangles[h / 3][h % 3])] = 1;
+	cancellableLoop(int(partner.size()), cancel, [&](int h) {
+		if (partner[size_t(h)] < 0)
+			onBorder[size_t(triangles[size_t(h) / 3][size_t(h) % 3])] = 1;
+	});
 	return onBorder;
 }
 
-/// The edges whose two vertices are marked.
-inline std::set<std::pair<int, int>> edgesBetween(
-	const std::vector<Triangle>& triangles, const std::vector<char>& marked)
+/// The edges whose two vertices are marked. @throws Cancelled
+inline std::set<std::pair<int, int>> edgesBetween(const std::vector<Triangle>& triangles,
+	const std::vector<char>& marked, const Cancellation& cancel)
 {
 	std::set<std::pair<int, int>> edges;
-	for (const Triangle& t : triangles)
+	cancellableLoop(int(triangles.size()), cancel, [&](int f) {
+		const Triangle& t = triangles[size_t(f)];
 		for (size_t k = 0; k < 3; ++k)
 			if (marked[size_t(t[k])] && marked[size_t(t[(k + 1) % 3])])
 				edges.insert(std::minmax(t[k], t[(k + 1) % 3]));
+	});
 	return edges;
 }
 
-/// For each face the lowest one of its piece of surface.
-inline std::vector<int> pieceOfFaces(const std::vector<int>& partner)
+/// For each face the lowest one of its piece of surface. @throws Cancelled
+inline std::vector<int> pieceOfFaces(
+	const std::vector<int>& partner, const Cancellation& cancel = Cancellation())
 {
 	MergeForest pieces(int(partner.size() / 3));
-	for (int h = 0; h < int(partner.size()); ++h)
+	cancellableLoop(int(partner.size()), cancel, [&](int h) {
 		if (partner[size_t(h)] > h)
 			pieces.join(h / 3, partner[size_t(h)] / 3);
+	});
 	std::vector<int> lowest;
-	for (int f = 0; f < pieces.size(); ++f)
-		lowest.push_back(pieces.find(f));
+	lowest.reserve(partner.size() / 3);
+	cancellableLoop(pieces.size(), cancel, [&](int f) { lowest.push_back(pieces.find(f)); });
 	return lowest;
 }
 
@@ -503,12 +515,13 @@ inline FilledHoles fillHoles(const std::vector<Point3d>& points, std::vector<Tri
 		detail::holeLoops(points, triangles, partner, progress.cancelOnly());
 	if (loops.empty())
 		return done;
-	const std::vector<int> piece = detail::pieceOfFaces(partner);
-	const std::vector<double> area = detail::areaOfPieces(points, triangles, piece);
+	const Progress cancel = progress.cancelOnly();
+	const std::vector<int> piece = detail::pieceOfFaces(partner, cancel);
+	const std::vector<double> area = detail::areaOfPieces(points, triangles, piece, cancel);
 	std::vector<double> filled(piece.size(), 0);
 	const double largest = *std::max_element(area.begin(), area.end());
-	std::set<std::pair<int, int>> edges =
-		detail::edgesBetween(triangles, detail::borderVertices(points.size(), triangles, partner));
+	std::set<std::pair<int, int>> edges = detail::edgesBetween(
+		triangles, detail::borderVertices(points.size(), triangles, partner, cancel), cancel);
 	const std::vector<Triangle> near =
 		detail::facesNearHoles(points, triangles, loops, limits.edges, progress.part(0, 0.1));
 	if (near.empty()) {

@@ -10,6 +10,7 @@
 #include "fill_holes.h"
 #include "part_surface.h"
 
+#include <skeleton/core/progress.h>
 #include <skeleton/mesh/surface_mesh.h>
 
 #include <Eigen/Eigenvalues>
@@ -123,10 +124,11 @@ inline LimbEnd limbEnd(const std::vector<Point3d>& points, const std::vector<Tri
 }
 
 /// Whether a piece of surface, given alone, has an end where a limb is cut through.
+/// @throws Cancelled
 inline bool isTornLimb(const std::vector<Point3d>& points, const std::vector<Triangle>& triangles,
-	const std::vector<int>& partner)
+	const std::vector<int>& partner, const Progress& progress)
 {
-	const std::vector<std::vector<int>> loops = holeLoops(points, triangles, partner);
+	const std::vector<std::vector<int>> loops = holeLoops(points, triangles, partner, progress);
 	return std::any_of(loops.begin(), loops.end(), [&](const std::vector<int>& loop) {
 		const LimbEnd end = limbEnd(points, triangles, partner, loop);
 		return end.isCutThrough && end.isOnce();

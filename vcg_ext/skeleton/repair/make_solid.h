@@ -20,6 +20,7 @@
 #include <skeleton/core/notes.h>
 #include <skeleton/core/parameters.h>
 #include <skeleton/core/progress.h>
+#include <skeleton/core/ticker.h>
 #include <skeleton/input/check_input.h>
 #include <skeleton/mesh/surface_rounding.h>
 #include <skeleton/spatial/nearest_points.h>
@@ -210,21 +211,24 @@ inline void turnOutward(
 	const std::vector<Point3d>& points, std::vector<Triangle>& triangles, const Progress& progress)
 {
 	const std::vector<int> partner = pairedHalfEdges(points, triangles, nullptr, progress);
-	const std::vector<int> piece = pieceOfFaces(partner);
+	const Progress cancel = progress.cancelOnly();
+	const std::vector<int> piece = pieceOfFaces(partner, cancel);
 	std::vector<double> volume(triangles.size(), 0);
 	std::vector<char> open(triangles.size(), 0);
 	const Point3d origin = points[size_t(triangles[0][0])];
-	for (size_t f = 0; f < triangles.size(); ++f) {
+	cancellableLoop(int(triangles.size()), cancel, [&](int i) {
+		const size_t f = size_t(i);
 		const Triangle& t = triangles[f];
 		volume[size_t(piece[f])] += (points[size_t(t[0])] - origin)
 			* ((points[size_t(t[1])] - origin) ^ (points[size_t(t[2])] - origin)) / 6;
 		for (size_t k = 0; k < 3; ++k)
 			if (partner[3 * f + k] < 0)
 				open[size_t(piece[f])] = 1;
-	}
-	for (size_t f = 0; f < triangles.size(); ++f)
-		if (const size_t p = size_t(piece[f]); !open[p] && volume[p] < 0)
-			std::swap(triangles[f][1], triangles[f][2]);
+	});
+	cancellableLoop(int(triangles.size()), cancel, [&](int f) {
+		if (const size_t p = size_t(piece[size_t(f)]); !open[p] && volume[p] < 0)
+			std::swap(triangles[size_t(f)][1], triangles[size_t(f)][2]);
+	});
 }
 
 /// Whether a surface encloses a solid, by the winding number just inside of it.
@@ -262,13 +266,15 @@ inline std::vector<char> isOfOpenPiece(const std::vector<Point3d>& points,
 	const std::vector<Triangle>& triangles, const Progress& progress)
 {
 	const std::vector<int> partner = pairedHalfEdges(points, triangles, nullptr, progress);
-	const std::vector<int> piece = pieceOfFaces(partner);
+	const Progress cancel = progress.cancelOnly();
+	const std::vector<int> piece = pieceOfFaces(partner, cancel);
 	std::vector<char> open(triangles.size(), 0);
-	for (size_t h = 0; h < partner.size(); ++h)
-		if (partner[h] < 0)
-			open[size_t(piece[h / 3])] = 1;
-	for (size_t f = 0; f < open.size(); ++f)
-		open[f] = open[size_t(piece[f])];
+	cancellableLoop(int(partner.size()), cancel, [&](int h) {
+		if (partner[size_t(h)] < 0)
+			open[size_t(piece[size_t(h) / 3])] = 1;
+	});
+	cancellableLoop(
+		int(open.size()), cancel, [&](int f) { open[size_t(f)] = open[size_t(piece[size_t(f)])]; });
 	return open;
 }
 
@@ -496,7 +502,7 @@ private:
 	SolidSurface thickened(double thickness, Repair repair, const Progress& progress)
 	{
 		const Box3d box =
-			boundsOfFaces(points, finiteFaces(points, triangles), progress.cancelOnly());
+			boundsOfFaces(points, finiteFaces(points, triangles, progress), progress.cancelOnly());
 		ThickenedSheets sheets =
 			thickenedSheets(points, triangles, thickness * box.Diag(), progress.part(0, 0.3));
 		MendedSurface thick;
@@ -682,13 +688,13 @@ private:
 	void takeSidesAsGiven(MendedSurface& mended, const Progress& progress)
 	{
 		constexpr double better = 0.02; // of the area
-		std::vector<Triangle> faces = finiteFaces(points, triangles);
+		std::vector<Triangle> faces = finiteFaces(points, triangles, progress);
 		removeDegenerateFaces(points.size(), faces, progress.part(0, 0.1));
 		std::vector<int> partner =
 			pairedHalfEdges(mended.points, faces, nullptr, progress.part(0.1, 0.2));
 		if (faces.empty() || mended.triangles.empty())
 			return;
-		dropSpecks(mended.points, faces, partner);
+		dropSpecks(mended.points, faces, partner, progress);
 		if (enclosingPart(mended.points, faces, progress.part(0.2, 0.6))
 			> enclosingPart(mended.points, mended.triangles, progress.part(0.6, 1)) + better) {
 			mended.triangles = std::move(faces);
@@ -799,7 +805,7 @@ private:
 	void finish(SurfaceMesh mesh, std::vector<int> vertexOfInput, const Progress& progress)
 	{
 		std::vector<char> used(points.size(), 0);
-		const std::vector<Triangle> finite = finiteFaces(points, triangles);
+		const std::vector<Triangle> finite = finiteFaces(points, triangles, progress);
 		Box3d box;
 		for (const Triangle& t : finite)
 			for (int v : t) {

@@ -16,9 +16,10 @@
 #include "winding_number.h"
 
 #include <skeleton/core/errors.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/core/progress.h>
 #include <skeleton/core/shape_limits.h>
-#include <skeleton/core/large_arrays.h>
+#include <skeleton/core/ticker.h>
 #include <skeleton/input/coincident_points.h>
 #include <skeleton/input/soup_repair.h>
 #include <skeleton/mesh/surface_mesh.h>
@@ -28,7 +29,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -98,8 +98,9 @@ inline int removeBackToBack(
 inline int holesOf(const std::vector<Point3d>& points, const std::vector<Triangle>& triangles,
 	const Progress& progress)
 {
-	return int(
-		holeLoops(points, triangles, pairedHalfEdges(points, triangles, nullptr, progress)).size());
+	return int(holeLoops(
+		points, triangles, pairedHalfEdges(points, triangles, nullptr, progress), progress)
+				   .size());
 }
 
 /**
@@ -115,16 +116,17 @@ inline int cutAroundHoles(
 	const std::vector<int> partner =
 		pairedHalfEdges(points, triangles, nullptr, progress.part(0, 0.5));
 	std::vector<char> cut(triangles.size(), 0);
-	for (const std::vector<int>& loop : holeLoops(points, triangles, partner))
+	const Progress cancel = progress.cancelOnly();
+	for (const std::vector<int>& loop : holeLoops(points, triangles, partner, cancel))
 		for (int h : loop)
 			if (loop.size() <= edges)
 				cut[size_t(h) / 3] = 1;
 	double whole = 0, gone = 0;
-	for (size_t f = 0; f < triangles.size(); ++f) {
-		const double area = areaVector(points, triangles[f]).Norm();
+	cancellableLoop(int(triangles.size()), cancel, [&](int f) {
+		const double area = areaVector(points, triangles[size_t(f)]).Norm();
 		whole += area;
-		gone += cut[f] ? area : 0;
-	}
+		gone += cut[size_t(f)] ? area : 0;
+	});
 	if (!(gone < part * whole))
 		return 0;
 	return int(removeMarked(triangles, cut));
@@ -137,15 +139,18 @@ inline int dropInnerWalls(
 {
 	const std::vector<int> partner =
 		pairedHalfEdges(points, triangles, nullptr, progress.part(0, 0.3));
-	const std::vector<int> piece = pieceOfFaces(partner);
+	const Progress cancel = progress.cancelOnly();
+	const std::vector<int> piece = pieceOfFaces(partner, cancel);
 	std::vector<char> open(triangles.size(), 0); // pieces, by their first face
-	for (size_t h = 0; h < partner.size(); ++h)
-		if (partner[h] < 0)
-			open[size_t(piece[h / 3])] = 1;
+	cancellableLoop(int(partner.size()), cancel, [&](int h) {
+		if (partner[size_t(h)] < 0)
+			open[size_t(piece[size_t(h) / 3])] = 1;
+	});
 	std::vector<Triangle> closed;
-	for (size_t f = 0; f < triangles.size(); ++f)
-		if (!open[size_t(piece[f])])
-			closed.push_back(triangles[f]);
+	cancellableLoop(int(triangles.size()), cancel, [&](int f) {
+		if (!open[size_t(piece[size_t(f)])])
+			closed.push_back(triangles[size_t(f)]);
+	});
 	if (closed.empty() || closed.size() == triangles.size())
 		return 0;
 	const TriangleTree tree(points, closed, progress.part(0.3, 0.5));
@@ -203,32 +208,34 @@ inline MendedSurface mend(const std::vector<Point3d>& points,
 	MendReport& report = mended.report;
 	mended.points = copiedArray(points, progress);
 	std::vector<Triangle>& faces = mended.triangles;
-	faces = finiteFaces(points, triangles);
-	for (size_t v = 0; v < points.size(); ++v)
-		if (!isFinitePlace(points[v]))
-			mended.points[v] = Point3d(0, 0, 0); // of no face
+	const Progress cancel = progress.cancelOnly();
+	faces = finiteFaces(points, triangles, cancel);
+	cancellableLoop(int(points.size()), cancel, [&](int v) {
+		if (!isFinitePlace(points[size_t(v)]))
+			mended.points[size_t(v)] = Point3d(0, 0, 0); // of no face
+	});
 	report.facesDropped = int(triangles.size() - faces.size());
 	report.facesDropped += int(removeDegenerateFaces(points.size(), faces, progress.part(0, 0.1)));
 
 	// Coincident vertices, if there are fewer defects with these merged.
 	std::vector<int>& vertexOfInput = mended.vertexOfInput;
-	vertexOfInput.resize(points.size());
-	std::iota(vertexOfInput.begin(), vertexOfInput.end(), 0);
+	vertexOfInput = numberedArray(points.size(), cancel);
 	const auto edgesOf = [&](const std::vector<Triangle>& some) {
-		return sortedSoupEdges(mended.points.size(), some, progress.cancelOnly());
+		return sortedSoupEdges(mended.points.size(), some, cancel);
 	};
 	const auto defectsOf = [&](const SoupEdges& some) {
-		const EdgeDefects defects = edgeDefects(mended.points, some, progress.cancelOnly());
+		const EdgeDefects defects = edgeDefects(mended.points, some, cancel);
 		return defects.border + defects.nonManifold;
 	};
 	SoupEdges edges = edgesOf(faces);
 	if (const size_t defects = defectsOf(edges)) {
 		const std::vector<int> first =
 			firstCoincident(mended.points, progress.part(0.1, 0.15), repairing);
-		std::vector<Triangle> merged = faces;
-		for (Triangle& t : merged)
-			for (int& v : t)
+		std::vector<Triangle> merged = copiedArray(faces, cancel);
+		cancellableLoop(int(merged.size()), cancel, [&](int f) {
+			for (int& v : merged[size_t(f)])
 				v = first[size_t(v)];
+		});
 		if (merged != faces) {
 			const size_t dropped =
 				removeDegenerateFaces(points.size(), merged, progress.part(0.15, 0.2));
@@ -243,7 +250,7 @@ inline MendedSurface mend(const std::vector<Point3d>& points,
 			}
 		}
 	}
-	if (const int dropped = removeBackToBack(faces, edges, progress.cancelOnly())) {
+	if (const int dropped = removeBackToBack(faces, edges, cancel)) {
 		report.facesDropped += dropped;
 		edges = edgesOf(faces);
 	}
@@ -257,14 +264,14 @@ inline MendedSurface mend(const std::vector<Point3d>& points,
 
 	std::vector<int> partedFrom;
 	// First over the edges with two faces only: the pairing at the others depends on it.
-	const int turnedFirst = orientCoherently(faces, edges, progress.cancelOnly());
+	const int turnedFirst = orientCoherently(faces, edges, cancel);
 	PartedSurface parted =
 		partSurface(mended.points, faces, partedFrom, true, progress.part(0.4, 0.5));
 	report.edgesParted = parted.edges;
 	report.verticesParted = parted.vertices;
 	const bool isParted = parted.edges > 0 || parted.vertices > 0;
-	const int turnedThen = isParted ? orientCoherently(faces, edgesOf(faces), progress.cancelOnly())
-									: std::min(turnedFirst, 0);
+	const int turnedThen =
+		isParted ? orientCoherently(faces, edgesOf(faces), cancel) : std::min(turnedFirst, 0);
 	report.oneSided = turnedThen < 0;
 	report.facesTurned = std::max(turnedFirst, 0) + std::max(turnedThen, 0);
 	if (report.oneSided)
@@ -273,25 +280,25 @@ inline MendedSurface mend(const std::vector<Point3d>& points,
 		? pairedHalfEdges(mended.points, faces, nullptr, progress.part(0.5, 0.55))
 		: std::move(parted.partner);
 	// A torn-off limb may be as small as a speck: it stays until bridgeGaps() has tried to join it.
-	Specks specks = specksOf(mended.points, faces, partner);
+	Specks specks = specksOf(mended.points, faces, partner, cancel);
 	if (specks.count > 0) {
-		spareTornLimbs(mended.points, faces, partner, specks);
-		report.piecesDropped = dropSpecks(faces, partner, specks);
-		specks = specksOf(mended.points, faces, partner);
+		spareTornLimbs(mended.points, faces, partner, specks, cancel);
+		report.piecesDropped = dropSpecks(faces, partner, specks, cancel);
+		specks = specksOf(mended.points, faces, partner, cancel);
 	}
 	report.gapsBridged = bridgeGaps(
 		mended.points, faces, partner, specks.isOne, GapLimits(), progress.part(0.55, 0.6));
 	if (report.gapsBridged > 0) {
-		partner = pairedHalfEdges(mended.points, faces, nullptr, progress.cancelOnly());
-		specks = specksOf(mended.points, faces, partner);
+		partner = pairedHalfEdges(mended.points, faces, nullptr, cancel);
+		specks = specksOf(mended.points, faces, partner, cancel);
 	}
-	report.piecesDropped += dropSpecks(faces, partner, specks);
+	report.piecesDropped += dropSpecks(faces, partner, specks, cancel);
 	const FilledHoles holes =
 		fillHoles(mended.points, faces, partner, limits, progress.part(0.6, 0.9));
 	report.holesClosed = holes.closed;
 	report.holesLeft = holes.left;
 	if (report.holesLeft > 0) {
-		partner = pairedHalfEdges(mended.points, faces, nullptr, progress.cancelOnly());
+		partner = pairedHalfEdges(mended.points, faces, nullptr, cancel);
 		const int capped =
 			capCuts(mended.points, faces, partner, CutLimits(), progress.part(0.9, 0.95));
 		report.holesClosed += capped;
@@ -299,15 +306,14 @@ inline MendedSurface mend(const std::vector<Point3d>& points,
 	}
 	constexpr int maxCuts = 3;
 	for (int round = 0; round < maxCuts && report.holesLeft > 0; ++round) {
-		const Progress again = progress.cancelOnly();
-		std::vector<Triangle> fewer = faces;
+		std::vector<Triangle> fewer = copiedArray(faces, cancel);
 		const size_t pointsBefore = mended.points.size();
-		const int cut = cutAroundHoles(mended.points, fewer, again);
+		const int cut = cutAroundHoles(mended.points, fewer, cancel);
 		if (!cut)
 			break;
-		partner = partSurface(mended.points, fewer, partedFrom, true, again).partner;
-		const int dropped = dropSpecks(mended.points, fewer, partner);
-		const FilledHoles filled = fillHoles(mended.points, fewer, partner, limits, again);
+		partner = partSurface(mended.points, fewer, partedFrom, true, cancel).partner;
+		const int dropped = dropSpecks(mended.points, fewer, partner, cancel);
+		const FilledHoles filled = fillHoles(mended.points, fewer, partner, limits, cancel);
 		if (filled.left >= report.holesLeft) {
 			mended.points.resize(pointsBefore);
 			break;
@@ -318,26 +324,24 @@ inline MendedSurface mend(const std::vector<Point3d>& points,
 		report.holesClosed += filled.closed;
 		report.holesLeft = filled.left;
 	}
-	const int walls =
-		report.holesLeft > 0 ? dropInnerWalls(mended.points, faces, progress.cancelOnly()) : 0;
+	const int walls = report.holesLeft > 0 ? dropInnerWalls(mended.points, faces, cancel) : 0;
 	report.piecesDropped += walls;
 	if (walls)
-		report.holesLeft = holesOf(mended.points, faces, progress.cancelOnly());
+		report.holesLeft = holesOf(mended.points, faces, cancel);
 	if (report.holesLeft > 0) {
 		constexpr double tiny =
 			0.002; // of the area: a fold there is better than to wrap all the rest
 		HoleLimits rough = limits;
 		rough.anyhow = tiny;
-		const Progress again = progress.cancelOnly();
-		partner = partSurface(mended.points, faces, partedFrom, true, again).partner;
-		const FilledHoles filled = fillHoles(mended.points, faces, partner, rough, again);
+		partner = partSurface(mended.points, faces, partedFrom, true, cancel).partner;
+		const FilledHoles filled = fillHoles(mended.points, faces, partner, rough, cancel);
 		report.holesClosed += filled.closed;
 		report.holesLeft = filled.left;
 	}
 	if (report.holesLeft == 0) {
 		report.verticesParted +=
 			partSurface(mended.points, faces, partedFrom, false, progress.part(0.95, 1)).vertices;
-		mended.closed = SurfaceMesh::isClosedManifold(mended.points.size(), faces);
+		mended.closed = SurfaceMesh::isClosedManifold(mended.points.size(), faces, cancel);
 	}
 	return mended;
 }

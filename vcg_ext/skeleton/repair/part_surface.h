@@ -9,6 +9,7 @@
 
 #include <skeleton/core/disjoint_sets.h>
 #include <skeleton/core/grouped_sort.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/core/progress.h>
 #include <skeleton/core/ticker.h>
 #include <skeleton/input/soup_repair.h>
@@ -39,17 +40,20 @@ namespace detail {
 class Fans
 {
 public:
-	Fans(const std::vector<Triangle>& triangles, const std::vector<int>& partner) :
-			triangles(triangles), fans(3 * int(triangles.size()))
+	/// @throws Cancelled
+	Fans(const std::vector<Triangle>& triangles, const std::vector<int>& partner,
+		const Cancellation& cancel) :
+			triangles(triangles),
+			fans(3 * int(triangles.size()))
 	{
-		for (int h = 0; h < int(partner.size()); ++h) {
+		cancellableLoop(int(partner.size()), cancel, [&](int h) {
 			const int g = partner[size_t(h)];
 			if (g < h)
-				continue;
+				return;
 			for (int v : {vertex(h), vertex(SurfaceMesh::next(h))})
 				fans.merge(fans.find(vertex(h) == v ? h : SurfaceMesh::next(h)),
 					fans.find(vertex(g) == v ? g : SurfaceMesh::next(g)));
-		}
+		});
 	}
 
 	/// The corner that stands for the fan of a corner; not always the lowest.
@@ -120,7 +124,7 @@ void pairAcrossSolid(const SoupEdge* faces, const Point3d& axis, const std::vect
 inline std::vector<int> pairedHalfEdges(const std::vector<Point3d>& points,
 	const std::vector<Triangle>& triangles, int* crowdedEdges, const Progress& progress)
 {
-	std::vector<int> partner(3 * triangles.size(), -1);
+	std::vector<int> partner = filledArray(3 * triangles.size(), -1, progress);
 	const SoupEdges edges = sortedSoupEdges(points.size(), triangles, progress.part(0, 0.7));
 	int crowded = 0;
 	forEachSoupEdge(
@@ -207,22 +211,25 @@ inline PartedSurface partSurface(std::vector<Point3d>& points, std::vector<Trian
 		parted.partner = detail::pairedHalfEdges(points, triangles, &crowded, part.part(0, 0.5));
 		if (round == 0)
 			parted.edges = crowded;
-		const detail::Fans fans(triangles, parted.partner);
+		const Progress cancel = part.cancelOnly();
+		const int corners = int(parted.partner.size());
+		const detail::Fans fans(triangles, parted.partner, cancel);
 		std::vector<char> isOpen(parted.partner.size(), 0); // of fans, see Fans::find()
-		for (int h = 0; h < int(parted.partner.size()); ++h)
+		detail::cancellableLoop(corners, cancel, [&](int h) {
 			if (parted.partner[size_t(h)] < 0)
 				isOpen[size_t(fans.find(h))] = isOpen[size_t(fans.find(SurfaceMesh::next(h)))] = 1;
+		});
 		// A vertex keeps its first fan; with keepOpenFans, if that is open, all open ones.
 		const size_t before = points.size();
-		std::vector<int> owner(before, -1);
-		std::vector<int> vertexOfFan(parted.partner.size(), -1);
+		std::vector<int> owner = detail::filledArray(before, -1, cancel);
+		std::vector<int> vertexOfFan = detail::filledArray(parted.partner.size(), -1, cancel);
 		std::vector<char> manifold(before, 1);
-		for (int c = 0; c < int(parted.partner.size()); ++c) {
+		detail::cancellableLoop(corners, cancel, [&](int c) {
 			const int fan = fans.find(c);
 			const int v = triangles[size_t(c) / 3][size_t(c) % 3];
 			int& vertex = vertexOfFan[size_t(fan)];
 			if (vertex >= 0)
-				continue;
+				return;
 			int& first = owner[size_t(v)];
 			if (first < 0)
 				first = fan;
@@ -234,9 +241,10 @@ inline PartedSurface partSurface(std::vector<Point3d>& points, std::vector<Trian
 				partedFrom.push_back(v);
 				manifold[size_t(v)] = 0;
 			}
-		}
-		for (int c = 0; c < int(parted.partner.size()); ++c)
+		});
+		detail::cancellableLoop(corners, cancel, [&](int c) {
 			triangles[size_t(c) / 3][size_t(c) % 3] = vertexOfFan[size_t(fans.find(c))];
+		});
 		parted.vertices += int(std::count(manifold.begin(), manifold.end(), 0));
 		if (!crowded)
 			return parted;

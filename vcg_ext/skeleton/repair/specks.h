@@ -10,6 +10,9 @@
 #include "fill_holes.h"
 #include "limb_ends.h"
 
+#include <skeleton/core/large_arrays.h>
+#include <skeleton/core/progress.h>
+#include <skeleton/core/ticker.h>
 #include <skeleton/mesh/surface_mesh.h>
 
 #include <vcg/space/box3.h>
@@ -33,9 +36,9 @@ struct Specks
 /// The specks of a surface, unless it is made of them. Open pieces are specks if they are small in
 /// area; sheets may be larger, and flat ones, of which no filling makes a body, larger still.
 /// Closed pieces are specks if they are small in size, or have no volume.
-/// @param partner  as PartedSurface has it. @pre there are triangles.
+/// @param partner  as PartedSurface has it. @pre there are triangles. @throws Cancelled
 inline Specks specksOf(const std::vector<Point3d>& points, const std::vector<Triangle>& triangles,
-	const std::vector<int>& partner)
+	const std::vector<int>& partner, const Cancellation& cancel = Cancellation())
 {
 	constexpr double speck = 0.002, sheet = 0.01, flatSheet = 0.1; // of the whole area
 	// |sum of area vectors| / area: half a sphere has 0.5, a flat piece 1
@@ -45,7 +48,7 @@ inline Specks specksOf(const std::vector<Point3d>& points, const std::vector<Tri
 	// All specks, and all flat sheets, of the whole area: if they are more, they are the surface.
 	constexpr double maxOfAll = 0.05, maxFlatness = 0.2;
 	constexpr double flat = 1e-10; // volume over area^1.5
-	const std::vector<int> piece = pieceOfFaces(partner);
+	const std::vector<int> piece = pieceOfFaces(partner, cancel);
 	struct Piece
 	{
 		double area = 0, volume = 0;
@@ -56,7 +59,8 @@ inline Specks specksOf(const std::vector<Point3d>& points, const std::vector<Tri
 	std::map<int, Piece> pieces;
 	double whole = 0, largest = 0, fullest = 0;
 	const Point3d origin = points[size_t(triangles[0][0])];
-	for (size_t f = 0; f < triangles.size(); ++f) {
+	cancellableLoop(int(triangles.size()), cancel, [&](int i) {
+		const size_t f = size_t(i);
 		const Triangle& t = triangles[f];
 		const Point3d a = points[size_t(t[0])] - origin, b = points[size_t(t[1])] - origin,
 					  c = points[size_t(t[2])] - origin;
@@ -72,7 +76,7 @@ inline Specks specksOf(const std::vector<Point3d>& points, const std::vector<Tri
 			p.box.Add(points[size_t(t[k])]);
 		}
 		largest = std::max(largest, p.box.Diag());
-	}
+	});
 	// That of an open piece depends on the origin: from the middle it is about what is enclosed.
 	for (auto& [first, p] : pieces)
 		if (p.open)
@@ -107,23 +111,28 @@ inline Specks specksOf(const std::vector<Point3d>& points, const std::vector<Tri
 	if (drop.size() == pieces.size())
 		return found;
 	found.count = int(drop.size());
-	for (size_t f = 0; f < triangles.size() && found.count > 0; ++f)
-		found.isOne[f] = drop.count(piece[f]) > 0;
+	if (found.count > 0)
+		cancellableLoop(int(triangles.size()), cancel,
+			[&](int f) { found.isOne[size_t(f)] = drop.count(piece[size_t(f)]) > 0; });
 	return found;
 }
 
-/// Unmarks the specks that are torn-off limbs, see isTornLimb().
+/// Unmarks the specks that are torn-off limbs, see isTornLimb(). @throws Cancelled
 inline void spareTornLimbs(const std::vector<Point3d>& points,
-	const std::vector<Triangle>& triangles, const std::vector<int>& partner, Specks& specks)
+	const std::vector<Triangle>& triangles, const std::vector<int>& partner, Specks& specks,
+	const Progress& progress)
 {
-	const std::vector<int> piece = pieceOfFaces(partner);
+	const std::vector<int> piece = pieceOfFaces(partner, progress);
 	std::map<int, std::vector<int>> faces;
-	std::vector<int> number(triangles.size(), -1); // within the piece
-	for (size_t f = 0; f < triangles.size(); ++f)
-		if (specks.isOne[f]) {
-			number[f] = int(faces[piece[f]].size());
-			faces[piece[f]].push_back(int(f));
-		}
+	std::vector<int> number = filledArray(triangles.size(), -1, progress); // within the piece
+	cancellableLoop(int(triangles.size()), progress, [&](int i) {
+		const size_t f = size_t(i);
+		if (!specks.isOne[f])
+			return;
+		std::vector<int>& ofPiece = faces[piece[f]];
+		number[f] = int(ofPiece.size());
+		ofPiece.push_back(i);
+	});
 	for (const auto& [first, some] : faces) {
 		std::vector<Triangle> own;
 		std::vector<int> ownPartner;
@@ -134,7 +143,7 @@ inline void spareTornLimbs(const std::vector<Point3d>& points,
 				ownPartner.push_back(g < 0 ? -1 : 3 * number[size_t(g) / 3] + g % 3);
 			}
 		}
-		if (!isTornLimb(points, own, ownPartner))
+		if (!isTornLimb(points, own, ownPartner, progress))
 			continue;
 		for (int f : some)
 			specks.isOne[size_t(f)] = 0;
@@ -143,33 +152,38 @@ inline void spareTornLimbs(const std::vector<Point3d>& points,
 }
 
 /// Removes specks. @param partner  of the half-edges, is updated. @return how many specks.
-inline int dropSpecks(
-	std::vector<Triangle>& triangles, std::vector<int>& partner, const Specks& specks)
+/// @throws Cancelled
+inline int dropSpecks(std::vector<Triangle>& triangles, std::vector<int>& partner,
+	const Specks& specks, const Cancellation& cancel)
 {
 	if (!specks.count)
 		return 0;
-	std::vector<int> number(triangles.size(), -1);
+	std::vector<int> number = filledArray(triangles.size(), -1, cancel);
 	int kept = 0;
-	for (size_t f = 0; f < triangles.size(); ++f)
-		if (!specks.isOne[f])
-			number[f] = kept++;
-	std::vector<int> partnerLeft(3 * size_t(kept), -1);
-	for (size_t h = 0; h < partner.size(); ++h)
+	cancellableLoop(int(triangles.size()), cancel, [&](int f) {
+		if (!specks.isOne[size_t(f)])
+			number[size_t(f)] = kept++;
+	});
+	std::vector<int> partnerLeft = filledArray(3 * size_t(kept), -1, cancel);
+	cancellableLoop(int(partner.size()), cancel, [&](int i) {
+		const size_t h = size_t(i);
 		if (number[h / 3] >= 0 && partner[h] >= 0)
 			partnerLeft[3 * size_t(number[h / 3]) + h % 3] =
 				3 * number[size_t(partner[h]) / 3] + partner[h] % 3;
-	for (size_t f = 0; f < triangles.size(); ++f)
-		if (number[f] >= 0)
-			triangles[size_t(number[f])] = triangles[f];
+	});
+	cancellableLoop(int(triangles.size()), cancel, [&](int f) {
+		if (const int to = number[size_t(f)]; to >= 0)
+			triangles[size_t(to)] = triangles[size_t(f)];
+	});
 	triangles.resize(size_t(kept));
 	partner = std::move(partnerLeft);
 	return specks.count;
 }
 
-inline int dropSpecks(
-	const std::vector<Point3d>& points, std::vector<Triangle>& triangles, std::vector<int>& partner)
+inline int dropSpecks(const std::vector<Point3d>& points, std::vector<Triangle>& triangles,
+	std::vector<int>& partner, const Cancellation& cancel)
 {
-	return dropSpecks(triangles, partner, specksOf(points, triangles, partner));
+	return dropSpecks(triangles, partner, specksOf(points, triangles, partner, cancel), cancel);
 }
 
 } // namespace vcg::tri::mcf::detail

@@ -12,8 +12,10 @@
 
 #include <skeleton/core/disjoint_sets.h>
 #include <skeleton/core/grouped_sort.h>
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/core/progress.h>
 #include <skeleton/core/shape_limits.h>
+#include <skeleton/core/ticker.h>
 #include <skeleton/input/coincident_points.h>
 #include <skeleton/input/soup_repair.h>
 #include <skeleton/mesh/surface_mesh.h>
@@ -54,7 +56,8 @@ inline ThickenedSheets thickenedSheets(const std::vector<Point3d>& points,
 	using namespace detail;
 	ThickenedSheets thick;
 	thick.points = points;
-	std::vector<Triangle> faces = finiteFaces(points, triangles);
+	const Progress cancel = progress.cancelOnly();
+	std::vector<Triangle> faces = finiteFaces(points, triangles, cancel);
 	for (Point3d& p : thick.points)
 		if (!isFinitePlace(p))
 			p = Point3d(0, 0, 0); // of no face
@@ -66,11 +69,12 @@ inline ThickenedSheets thickenedSheets(const std::vector<Point3d>& points,
 	removeDegenerateFaces(points.size(), faces, progress.part(0.1, 0.2));
 	// A face that is there once for each side counts once.
 	std::vector<std::pair<Triangle, size_t>> known; // corners in order, and the face
-	for (size_t f = 0; f < faces.size(); ++f) {
-		known.emplace_back(faces[f], f);
+	known.reserve(faces.size());
+	cancellableLoop(int(faces.size()), cancel, [&](int f) {
+		known.emplace_back(faces[size_t(f)], f);
 		std::sort(known.back().first.begin(), known.back().first.end());
-	}
-	sortCancellable(known, 0, known.size(), progress.cancelOnly());
+	});
+	sortCancellable(known, 0, known.size(), cancel);
 	std::vector<char> isKnown(faces.size(), 0);
 	for (size_t i = 1; i < known.size(); ++i)
 		isKnown[known[i].second] = known[i].first == known[i - 1].first;
@@ -85,24 +89,24 @@ inline ThickenedSheets thickenedSheets(const std::vector<Point3d>& points,
 	const auto vertex = [&](int c) { return faces[size_t(c % corners) / 3][size_t(c) % 3]; };
 	const auto other = [&](int c) { return c < corners ? c + corners : c - corners; };
 	MergeForest fans(2 * corners);
-	for (int h = 0; h < corners; ++h) {
+	cancellableLoop(corners, cancel, [&](int h) {
 		const int g = partner[size_t(h)];
 		if (g < h)
-			continue;
+			return;
 		const bool isSameSide = vertex(h) != vertex(g);
 		for (int at : {h, SurfaceMesh::next(h)}) {
 			const int there = vertex(g) == vertex(at) ? g : SurfaceMesh::next(g);
 			fans.join(at, isSameSide ? there : other(there));
 			fans.join(other(at), isSameSide ? other(there) : there);
 		}
-	}
-	std::vector<Point3d> normal(size_t(2 * corners), Point3d(0, 0, 0));
-	for (int c = 0; c < 2 * corners; ++c) {
+	});
+	std::vector<Point3d> normal = filledArray(size_t(2 * corners), Point3d(0, 0, 0), cancel);
+	cancellableLoop(2 * corners, cancel, [&](int c) {
 		const Triangle& t = faces[size_t(c % corners) / 3];
 		const Point3d& a = thick.points[size_t(t[0])];
 		const Point3d up = (thick.points[size_t(t[1])] - a) ^ (thick.points[size_t(t[2])] - a);
 		normal[size_t(fans.find(c))] += c < corners ? up : -up;
-	}
+	});
 	std::vector<int> placeOf(size_t(2 * corners), -1);
 	const auto place = [&](int c) {
 		const int fan = fans.find(c);

@@ -215,7 +215,6 @@ inline void openPockets(SiteComplex& complex, const std::vector<Point3d>& positi
 			[](const auto& a, const auto& b) { return a.size() < b.size(); });
 		std::map<EdgeOfComplex, int> count = detail::faceCounts(complex.faces);
 		std::set<FaceOfComplex> touched;
-		bool any = false;
 		for (const std::vector<int>& ids : pockets) {
 			std::set<FaceOfComplex> pocket;
 			for (int f : ids)
@@ -224,7 +223,6 @@ inline void openPockets(SiteComplex& complex, const std::vector<Point3d>& positi
 				[&](const FaceOfComplex& f) { return touched.count(f); });
 			if (!fresh)
 				continue; // shares faces with one opened in this round: the next one finds it again
-			any = true;
 			touched.insert(pocket.begin(), pocket.end());
 			// Edges whose faces are all in the pocket: a face at the longest one is opened.
 			std::map<EdgeOfComplex, int> within;
@@ -257,8 +255,6 @@ inline void openPockets(SiteComplex& complex, const std::vector<Point3d>& positi
 			detail::thinPocket(complex, pocket, FaceOfComplex(opened), inside, count, position,
 				isCoarse ? 0 : pocket.size() / 2, isCoarse ? longEdge : 0);
 		}
-		if (!any)
-			return;
 	}
 }
 

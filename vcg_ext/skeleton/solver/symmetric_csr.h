@@ -53,13 +53,6 @@ struct SymmetricRows
 	/// different values are more predictable.
 	static constexpr int Group = 3;
 
-	/// Ends and pads the row that the last entries belong to.
-	void endRow()
-	{
-		entries.resize(size_t(filledUp(int(entries.size()), Group)));
-		start.push_back(int(entries.size()));
-	}
-
 	int size() const { return int(diagonal.size()); }
 
 	/// The rows and columns in [begin, end). @pre padding apart, these rows have no other columns.

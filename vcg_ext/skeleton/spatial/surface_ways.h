@@ -7,6 +7,10 @@
 #ifndef VCG_MCF_SURFACE_WAYS_H
 #define VCG_MCF_SURFACE_WAYS_H
 
+#include <skeleton/core/grouped_sort.h>
+#include <skeleton/core/large_arrays.h>
+#include <skeleton/core/progress.h>
+#include <skeleton/core/ticker.h>
 #include <skeleton/mesh/closest_point_walk.h>
 #include <skeleton/mesh/surface_mesh.h>
 
@@ -47,34 +51,40 @@ public:
 	 * @param points    of the surface; kept by reference.
 	 * @param triangles corners as indices into `points`; kept by reference.
 	 * @param spacing   maximum distance of the nodes along an edge, in the points' unit; > 0.
-	 * Complexity: O(F log F + N) for N nodes.
+	 * @param cancel    of this and of the ways.
+	 * @throws Cancelled. Complexity: O(F log F + N) for N nodes.
 	 */
 	SurfaceWays(const std::vector<Point3d>& points, const std::vector<Triangle>& triangles,
-		double spacing) :
+		double spacing, Cancellation cancel = Cancellation()) :
 			points(points),
-			triangles(triangles), inward(points.size(), Point3d(0, 0, 0)), facesAt(points.size()),
-			edgesOf(triangles.size())
+			triangles(triangles), cancel(std::move(cancel)),
+			inward(detail::filledArray(points.size(), Point3d(0, 0, 0), this->cancel)),
+			facesAt(points.size()), edgesOf(triangles.size())
 	{
-		for (size_t f = 0; f < triangles.size(); ++f) {
-			const Point3d n = normal(int(f));
-			for (int v : triangles[f]) {
+		const int faces = int(triangles.size());
+		detail::cancellableLoop(faces, this->cancel, [&](int f) {
+			const Point3d n = normal(f);
+			for (int v : triangles[size_t(f)]) {
 				inward[size_t(v)] -= n;
-				facesAt[size_t(v)].push_back(int(f));
+				facesAt[size_t(v)].push_back(f);
 			}
-		}
+		});
 		std::vector<std::tuple<int, int, int, int>> sides; // ends, face, side
-		for (size_t f = 0; f < triangles.size(); ++f)
+		detail::cancellableLoop(faces, this->cancel, [&](int f) {
+			const Triangle& t = triangles[size_t(f)];
 			for (int k = 0; k < 3; ++k) {
-				const int v = triangles[f][k], w = triangles[f][(k + 1) % 3];
-				sides.emplace_back(std::min(v, w), std::max(v, w), int(f), k);
+				const int v = t[k], w = t[(k + 1) % 3];
+				sides.emplace_back(std::min(v, w), std::max(v, w), f, k);
 			}
-		std::sort(sides.begin(), sides.end());
-		for (const auto& [v, w, f, k] : sides) {
+		});
+		detail::sortCancellable(sides, 0, sides.size(), this->cancel);
+		detail::cancellableLoop(int(sides.size()), this->cancel, [&](int i) {
+			const auto& [v, w, f, k] = sides[size_t(i)];
 			if (edges.empty() || edges.back().ends != std::array<int, 2> {v, w})
 				addEdge(v, w, spacing);
 			edges.back().faces.push_back(f);
 			edgesOf[size_t(f)][size_t(k)] = int(edges.size()) - 1;
-		}
+		});
 	}
 
 	/// The triangles at a vertex.
@@ -95,7 +105,7 @@ public:
 	 * @param fromFace the triangle with `from`.
 	 * @param toFace   the one with `to`.
 	 * @return empty within one triangle, or where there is no path.
-	 * Complexity: O(N log N), less for ends that are near each other.
+	 * @throws Cancelled. Complexity: O(N log N), less for ends that are near each other.
 	 */
 	std::vector<Place> way(int fromFace, const Point3d& from, int toFace, const Point3d& to) const
 	{
@@ -123,6 +133,7 @@ private:
 
 	const std::vector<Point3d>& points;
 	const std::vector<Triangle>& triangles;
+	Cancellation cancel;
 	std::vector<Point3d> inward; ///< not of unit length
 	std::vector<std::vector<int>> facesAt;
 	std::vector<std::array<int, 3>> edgesOf;
@@ -198,8 +209,8 @@ private:
 		using Entry = std::tuple<double, double, int>;
 		std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
 		const double infinity = std::numeric_limits<double>::infinity();
-		std::vector<double> distance(size_t(nodeCount()), infinity);
-		std::vector<int> previous(distance.size(), -1);
+		std::vector<double> distance = detail::filledArray(size_t(nodeCount()), infinity, cancel);
+		std::vector<int> previous = detail::filledArray(distance.size(), -1, cancel);
 		const auto reach = [&](int f, const Point3d& at, double so, int before) {
 			forEachNodeOf(f, [&](int x) {
 				const Point3d p = pointOf(x);
@@ -213,7 +224,10 @@ private:
 		};
 		reach(fromFace, from, 0, -1);
 		std::vector<int> path;
-		while (!queue.empty()) {
+		constexpr size_t checkEvery = 1 << 12;
+		for (size_t taken = 0; !queue.empty(); ++taken) {
+			if (taken % checkEvery == 0)
+				cancel.check();
 			const auto [all, so, x] = queue.top();
 			queue.pop();
 			if (so > distance[size_t(x)])
