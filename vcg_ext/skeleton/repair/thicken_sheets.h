@@ -100,7 +100,7 @@ inline ThickenedSheets thickenedSheets(const std::vector<Point3d>& points,
 			fans.join(other(at), isSameSide ? other(there) : there);
 		}
 	});
-	std::vector<Point3d> normal = filledArray(size_t(2 * corners), Point3d(0, 0, 0), cancel);
+	std::vector<Point3d> normal = filledArray(2 * partner.size(), Point3d(0, 0, 0), cancel);
 	cancellableLoop(2 * corners, cancel, [&](int c) {
 		const Triangle& t = faces[size_t(c % corners) / 3];
 		const Point3d& a = thick.points[size_t(t[0])];
