@@ -551,7 +551,8 @@ struct PointsInBall
  * @pre the shape has no handles: then all paths inside it between two points are homotopic.
  * @param spacings at its points; on return at the remaining ones.
  * @param keptOf   gets, for each of its points, the last remaining one up to it.
- * Complexity: O(n log n) for n points of which few are in each ball. @throws Cancelled
+ * Complexity: O(n log n + n m) for n points of which m are in each ball, and O(n) for each loop that
+ * is tried. @throws Cancelled
  */
 inline BallChain withoutLoops(const BallChain& line, std::vector<double>& spacings,
 	std::vector<int>& keptOf, const ClosestSurface& surface, const Progress& progress)
@@ -573,17 +574,31 @@ inline BallChain withoutLoops(const BallChain& line, std::vector<double>& spacin
 			if (size_t(j) > i + 1 && along[size_t(j)] >= along[i] + longer * reach)
 				found.push_back(j);
 		});
-		std::sort(found.begin(), found.end(), std::greater<int>());
-		found.resize(std::min(found.size(), mostTried));
+		const size_t tried = std::min(found.size(), mostTried);
+		std::partial_sort(
+			found.begin(), found.begin() + std::ptrdiff_t(tried), found.end(), std::greater<int>());
+		found.resize(tried);
 		return found;
+	};
+	// The first and the last of the points near a point, found when they are first asked for.
+	std::vector<std::array<int, 2>> nearOf(line.points.size(), {-1, -1});
+	const auto firstAndLastNear = [&](size_t k) {
+		std::array<int, 2>& near = nearOf[k];
+		if (near[0] < 0) {
+			near = {int(k), int(k)};
+			forEachNear(k, nearRest * spacings[k], [&](int other) {
+				near = {std::min(near[0], other), std::max(near[1], other)};
+			});
+		}
+		return near;
 	};
 	// Whether all points between i and j are near those up to i or from j on.
 	const auto isNearRest = [&](size_t i, size_t j) {
 		for (size_t k = i + 1; k < j; ++k) {
-			bool isNear = false;
-			forEachNear(k, nearRest * spacings[k],
-				[&](int other) { isNear |= size_t(other) <= i || size_t(other) >= j; });
-			if (!isNear)
+			if (k % nodesPerCheck == 0)
+				progress.check();
+			const auto [first, last] = firstAndLastNear(k);
+			if (size_t(first) > i && size_t(last) < j)
 				return false;
 		}
 		return true;
