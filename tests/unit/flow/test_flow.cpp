@@ -329,7 +329,7 @@ TEST(Flow, GivesUpWhatItSpreads)
 
 TEST(Flow, ASceneOfManyFlatBodiesSettles)
 {
-	// Epsilon is 2.4 times the default: in a few bodies triangles of such edges never come to rest.
+	// Epsilon is 2.4 times the default: in a few bodies triangles with such edges oscillate forever.
 	constexpr int bodies = 300, inARow = 20;
 	shapes::Soup scene;
 	for (int i = 0; i < bodies; ++i) {

@@ -37,8 +37,9 @@ namespace detail {
 /// other in memory and in the elimination order. surfaceForFlow() numbers stage 0 in the same way.
 constexpr int renumberEvery = 4;
 
-/// Part of a component's area: a smaller change in a step counts as none. Where epsilon is larger than
-/// the default, so are the few triangles of such edges that turn to and fro for ever.
+/// The change of a component's area in a step, as a part of its initial area, below which the step
+/// counts as settled. A few triangles with edges of about epsilon may oscillate forever; their area
+/// grows with the square of epsilon.
 inline double settledArea(double epsilon)
 {
 	constexpr double usual = 1e-4, largest = 1e-3;

@@ -69,7 +69,6 @@ struct VertexStates
 		const std::vector<int>& newVertex, int count, const Cancellation& cancel = Cancellation())
 	{
 		forEachProperty([&](auto& values) {
-			cancel.check();
 			std::decay_t<decltype(values)> moved(static_cast<size_t>(count));
 			detail::cancellableLoop(int(values.size()), cancel, [&](int v) {
 				if (newVertex[v] >= 0)

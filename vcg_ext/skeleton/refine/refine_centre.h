@@ -417,8 +417,8 @@ inline std::vector<Point3d> widePlaces(const ClosestSurface& surface, const Poin
 	return places;
 }
 
-/// Whether a branch runs along the wall of a plate: the ball touches the wall and a side of the
-/// plate, so that widePlaces() finds none, but away from one contact the shape is wide.
+/// Whether a branch runs along the wall of a plate: the ball touches the wall and one of the plate's
+/// two faces, so that widePlaces() finds none, but opposite to one contact the shape is wide.
 inline bool isAlongWall(const ClosestSurface& surface, const Point3d& x,
 	const ClosestSurface::Hit& hit, const Point3d& contact, const Point3d& direction)
 {

@@ -187,11 +187,10 @@ inline int capCuts(const std::vector<Point3d>& points, std::vector<Triangle>& tr
 	const Progress& progress = Progress())
 {
 	using namespace detail;
-	const std::vector<std::vector<int>> loops =
-		holeLoops(points, triangles, partner, progress.cancelOnly());
+	const Progress cancel = progress.cancelOnly();
+	const std::vector<std::vector<int>> loops = holeLoops(points, triangles, partner, cancel);
 	if (loops.empty())
 		return 0;
-	const Progress cancel = progress.cancelOnly();
 	const std::vector<int> piece = pieceOfFaces(partner, cancel);
 	const std::vector<double> area = areaOfPieces(points, triangles, piece, cancel);
 	std::vector<double> capped(piece.size(), 0);

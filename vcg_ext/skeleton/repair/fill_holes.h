@@ -243,9 +243,9 @@ inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& point
 	const std::vector<Triangle>& triangles, const std::vector<int>& partner,
 	const Progress& progress = Progress())
 {
-	Ticker ticker(progress.cancelOnly(), repairing, double(partner.size()));
-	const auto origin = [&](int h) { return triangles[size_t(h) / 3][size_t(h) % 3]; };
 	const Progress cancel = progress.cancelOnly();
+	Ticker ticker(cancel, repairing, double(partner.size()));
+	const auto origin = [&](int h) { return triangles[size_t(h) / 3][size_t(h) % 3]; };
 	std::map<int, std::vector<BorderFan>> fansAt;
 	cancellableLoop(int(partner.size()), cancel, [&](int h) {
 		if (partner[size_t(h)] >= 0)
@@ -435,6 +435,19 @@ inline std::vector<int> pieceOfFaces(
 	return lowest;
 }
 
+/// For the lowest face of each piece, see pieceOfFaces(), whether the piece has a border.
+/// @throws Cancelled
+inline std::vector<char> openPieces(
+	const std::vector<int>& partner, const std::vector<int>& piece, const Cancellation& cancel)
+{
+	std::vector<char> open(piece.size(), 0);
+	cancellableLoop(int(partner.size()), cancel, [&](int h) {
+		if (partner[size_t(h)] < 0)
+			open[size_t(piece[size_t(h) / 3])] = 1;
+	});
+	return open;
+}
+
 /// Whether a triangle crosses others of `triangles` with which it shares no vertex. @param counts
 /// counts(face): whether that face is considered.
 template <class Counts>
@@ -510,12 +523,12 @@ inline FilledHoles fillHoles(const std::vector<Point3d>& points, std::vector<Tri
 	const Progress& progress = Progress())
 {
 	const char* const what = "Filling holes";
+	const Progress cancel = progress.cancelOnly();
 	FilledHoles done;
 	const std::vector<std::vector<int>> loops =
-		detail::holeLoops(points, triangles, partner, progress.cancelOnly());
+		detail::holeLoops(points, triangles, partner, cancel);
 	if (loops.empty())
 		return done;
-	const Progress cancel = progress.cancelOnly();
 	const std::vector<int> piece = detail::pieceOfFaces(partner, cancel);
 	const std::vector<double> area = detail::areaOfPieces(points, triangles, piece, cancel);
 	std::vector<double> filled(piece.size(), 0);

@@ -213,17 +213,14 @@ inline void turnOutward(
 	const std::vector<int> partner = pairedHalfEdges(points, triangles, nullptr, progress);
 	const Progress cancel = progress.cancelOnly();
 	const std::vector<int> piece = pieceOfFaces(partner, cancel);
+	const std::vector<char> open = openPieces(partner, piece, cancel);
 	std::vector<double> volume(triangles.size(), 0);
-	std::vector<char> open(triangles.size(), 0);
 	const Point3d origin = points[size_t(triangles[0][0])];
 	cancellableLoop(int(triangles.size()), cancel, [&](int i) {
 		const size_t f = size_t(i);
 		const Triangle& t = triangles[f];
 		volume[size_t(piece[f])] += (points[size_t(t[0])] - origin)
 			* ((points[size_t(t[1])] - origin) ^ (points[size_t(t[2])] - origin)) / 6;
-		for (size_t k = 0; k < 3; ++k)
-			if (partner[3 * f + k] < 0)
-				open[size_t(piece[f])] = 1;
 	});
 	cancellableLoop(int(triangles.size()), cancel, [&](int f) {
 		if (const size_t p = size_t(piece[size_t(f)]); !open[p] && volume[p] < 0)
@@ -268,11 +265,7 @@ inline std::vector<char> isOfOpenPiece(const std::vector<Point3d>& points,
 	const std::vector<int> partner = pairedHalfEdges(points, triangles, nullptr, progress);
 	const Progress cancel = progress.cancelOnly();
 	const std::vector<int> piece = pieceOfFaces(partner, cancel);
-	std::vector<char> open(triangles.size(), 0);
-	cancellableLoop(int(partner.size()), cancel, [&](int h) {
-		if (partner[size_t(h)] < 0)
-			open[size_t(piece[size_t(h) / 3])] = 1;
-	});
+	std::vector<char> open = openPieces(partner, piece, cancel);
 	cancellableLoop(
 		int(open.size()), cancel, [&](int f) { open[size_t(f)] = open[size_t(piece[size_t(f)])]; });
 	return open;

@@ -141,11 +141,7 @@ inline int dropInnerWalls(
 		pairedHalfEdges(points, triangles, nullptr, progress.part(0, 0.3));
 	const Progress cancel = progress.cancelOnly();
 	const std::vector<int> piece = pieceOfFaces(partner, cancel);
-	std::vector<char> open(triangles.size(), 0); // pieces, by their first face
-	cancellableLoop(int(partner.size()), cancel, [&](int h) {
-		if (partner[size_t(h)] < 0)
-			open[size_t(piece[size_t(h) / 3])] = 1;
-	});
+	const std::vector<char> open = openPieces(partner, piece, cancel);
 	std::vector<Triangle> closed;
 	cancellableLoop(int(triangles.size()), cancel, [&](int f) {
 		if (!open[size_t(piece[size_t(f)])])
@@ -176,11 +172,9 @@ inline int dropInnerWalls(
 			drop[size_t(first)] = 1;
 			++dropped;
 		}
-	size_t kept = 0;
-	for (size_t f = 0; f < triangles.size(); ++f)
-		if (!drop[size_t(piece[f])])
-			triangles[kept++] = triangles[f];
-	triangles.resize(kept);
+	cancellableLoop(
+		int(drop.size()), cancel, [&](int f) { drop[size_t(f)] = drop[size_t(piece[size_t(f)])]; });
+	removeMarked(triangles, drop);
 	return dropped;
 }
 

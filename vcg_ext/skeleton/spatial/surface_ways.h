@@ -51,18 +51,18 @@ public:
 	 * @param points    of the surface; kept by reference.
 	 * @param triangles corners as indices into `points`; kept by reference.
 	 * @param spacing   maximum distance of the nodes along an edge, in the points' unit; > 0.
-	 * @param cancel    of this and of the ways.
+	 * @param cancellation  also of way().
 	 * @throws Cancelled. Complexity: O(F log F + N) for N nodes.
 	 */
 	SurfaceWays(const std::vector<Point3d>& points, const std::vector<Triangle>& triangles,
-		double spacing, Cancellation cancel = Cancellation()) :
+		double spacing, Cancellation cancellation = Cancellation()) :
 			points(points),
-			triangles(triangles), cancel(std::move(cancel)),
-			inward(detail::filledArray(points.size(), Point3d(0, 0, 0), this->cancel)),
+			triangles(triangles), cancel(std::move(cancellation)),
+			inward(detail::filledArray(points.size(), Point3d(0, 0, 0), cancel)),
 			facesAt(points.size()), edgesOf(triangles.size())
 	{
 		const int faces = int(triangles.size());
-		detail::cancellableLoop(faces, this->cancel, [&](int f) {
+		detail::cancellableLoop(faces, cancel, [&](int f) {
 			const Point3d n = normal(f);
 			for (int v : triangles[size_t(f)]) {
 				inward[size_t(v)] -= n;
@@ -70,15 +70,15 @@ public:
 			}
 		});
 		std::vector<std::tuple<int, int, int, int>> sides; // ends, face, side
-		detail::cancellableLoop(faces, this->cancel, [&](int f) {
+		detail::cancellableLoop(faces, cancel, [&](int f) {
 			const Triangle& t = triangles[size_t(f)];
 			for (int k = 0; k < 3; ++k) {
 				const int v = t[k], w = t[(k + 1) % 3];
 				sides.emplace_back(std::min(v, w), std::max(v, w), f, k);
 			}
 		});
-		detail::sortCancellable(sides, 0, sides.size(), this->cancel);
-		detail::cancellableLoop(int(sides.size()), this->cancel, [&](int i) {
+		detail::sortCancellable(sides, 0, sides.size(), cancel);
+		detail::cancellableLoop(int(sides.size()), cancel, [&](int i) {
 			const auto& [v, w, f, k] = sides[size_t(i)];
 			if (edges.empty() || edges.back().ends != std::array<int, 2> {v, w})
 				addEdge(v, w, spacing);
