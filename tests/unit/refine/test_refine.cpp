@@ -1368,6 +1368,29 @@ TEST(Refine, HoweverThinTheShapeTheNodesAreBounded)
 	EXPECT_FALSE(bounds.holdAtEnd(line(int(2 * refining::maxNodes(1)))));
 }
 
+TEST(Refine, ACurveMayGrowIntoLimbsButNotToAndFro)
+{
+	const auto star = [](int arms, double length) {
+		CurveMaker curve;
+		for (int i = 0; i < arms; ++i) {
+			const double angle = 2 * M_PI * i / arms;
+			curve.chain({Point3d(0, 0, 0), Point3d(std::cos(angle), std::sin(angle), 0) * length});
+		}
+		return curve.in(SurfaceMesh());
+	};
+	const auto pacing = [](int ways, double length) {
+		std::vector<Point3d> points;
+		for (int i = 0; i <= ways; ++i)
+			points.emplace_back(i % 2 ? length : 0, 1e-6 * i, 0);
+		return CurveMaker().chain(points).in(SurfaceMesh());
+	};
+	const refining::CurveBounds bounds(star(2, 0.25), RefineParameters().spacing);
+	EXPECT_TRUE(bounds.hold(star(8, 0.5))) << "limbs of a round body";
+	EXPECT_FALSE(bounds.hold(pacing(8, 0.5))) << "as long";
+	EXPECT_TRUE(bounds.hold(pacing(4, 0.5)));
+	EXPECT_FALSE(bounds.hold(star(20, 0.5)));
+}
+
 TEST(Refine, AFewEdgesThatHaveLeftTheSurfaceAreBroughtBack)
 {
 	using refining::Defect;

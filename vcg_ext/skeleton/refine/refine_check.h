@@ -46,22 +46,26 @@ inline double maxNodes(double length)
 class CurveBounds
 {
 public:
-	/// The maximum length is three times the sum of the unrefined length and the diagonal; the
-	/// maximum number of nodes is twice the sum of those before and those at `spacing` along the
-	/// maximum length.
+	/// The maximum length is three times the unrefined length and, for each tip of the curve, half
+	/// a diagonal: what has not grown limbs only goes to and fro. Two to six tips count, so that the
+	/// bound is at most three times the sum of the unrefined length and the diagonal; the maximum
+	/// number of nodes is twice the sum of those before and those at `spacing` along that.
 	CurveBounds(const CurveSkeleton& unrefined, double spacing) :
 			nodesBefore(unrefined.position.size())
 	{
 		constexpr double longer = 3, denser = 2;
-		length = longer * (statistics(unrefined).length + 1);
-		nodes = size_t(denser * (double(nodesBefore) + length / spacing));
+		longest = longer * statistics(unrefined).length;
+		nodes =
+			size_t(denser * (double(nodesBefore) + (longest + ofTip * double(mostTips)) / spacing));
 	}
 
 	/// Whether a curve may be refined further.
 	bool hold(const CurveSkeleton& curve) const
 	{
+		const SkeletonStatistics its = statistics(curve);
+		const int tips = std::clamp(its.terminals, fewestTips, mostTips);
 		return curve.position.size() <= nodes
-			&& lengthOf(curve) <= length; // false if the length is NaN
+			&& its.length <= longest + ofTip * tips; // false if the length is NaN
 	}
 
 	/// Whether a curve may be the result: if hold(), with at most 4/3 maxNodes() nodes more than
@@ -71,20 +75,15 @@ public:
 		constexpr double more = 4.0 / 3;
 		return hold(curve)
 			&& double(curve.position.size())
-			<= double(nodesBefore) + more * maxNodes(lengthOf(curve));
+			<= double(nodesBefore) + more * maxNodes(statistics(curve).length);
 	}
 
 private:
-	double length;
-	size_t nodes, nodesBefore;
+	static constexpr int fewestTips = 2, mostTips = 6;
+	static constexpr double ofTip = 0.5;
 
-	static double lengthOf(const CurveSkeleton& curve)
-	{
-		double sum = 0;
-		for (const auto& [a, b] : curve.edges)
-			sum += Distance(curve.position[a], curve.position[b]);
-		return sum;
-	}
+	double longest; ///< without what the tips add
+	size_t nodes, nodesBefore;
 };
 
 /**
