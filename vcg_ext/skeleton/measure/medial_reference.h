@@ -8,6 +8,7 @@
 #define VCG_MCF_MEDIAL_REFERENCE_H
 
 #include <skeleton/spatial/closest_surface.h>
+#include <skeleton/spatial/maximal_ball.h>
 #include <skeleton/core/parallel.h>
 #include <skeleton/spatial/point_tree.h>
 #include <skeleton/core/progress.h>
@@ -29,27 +30,24 @@ struct MedialReference
 
 namespace detail {
 
-/// A ball that touches the surface at a point and has its centre below it.
+/// A maximal ball and where it touches, or nearly touches, the surface a second time.
 struct TouchingBall
 {
-	Point3d point, outward;
-	double radius;
-	/// Where it touches, or nearly touches, a second time.
+	Point3d point;
+	MaximalBall ball;
 	Point3d contact;
 
-	Point3d centre() const { return point - outward * radius; }
+	/// One that touches nothing else yet: its spokes are opposite.
+	TouchingBall(const Point3d& point, const Point3d& outward, double radius) :
+			point(point), ball(point, outward, 0, radius), contact(point - outward * (2 * radius))
+	{
+	}
 
 	/// The angle between the two contacts, seen from the centre, radians.
 	double spokeAngle() const
 	{
-		const Point3d a = point - centre(), b = contact - centre();
+		const Point3d a = point - ball.centre(), b = contact - ball.centre();
 		return std::atan2((a ^ b).Norm(), a * b);
-	}
-
-	/// A ball of the given radius that touches nothing else yet: its spokes are opposite.
-	static TouchingBall alone(const Point3d& point, const Point3d& outward, double radius)
-	{
-		return {point, outward, radius, point - outward * (2 * radius)};
 	}
 };
 
@@ -60,27 +58,26 @@ struct TouchingBall
  *                 `reach`; then sets `where` to the nearest.
  */
 template <class Deepest>
-void shrink(TouchingBall& ball, int maxSteps, const Deepest& deepest)
+void shrink(TouchingBall& touching, int maxSteps, const Deepest& deepest)
 {
 	constexpr double tolerance = 1e-3;
+	MaximalBall& ball = touching.ball;
 	for (int i = 0; i < maxSteps; ++i) {
 		Point3d x(0, 0, 0);
-		if (!deepest(ball.centre(), ball.radius * (1 - tolerance), x))
+		const double radius = ball.radius();
+		if (!deepest(ball.centre(), radius * (1 - tolerance), x))
 			return;
-		const Point3d e = ball.point - x;
-		const double depth = e * ball.outward;
-		const double radius = depth > 0 ? e.SquaredNorm() / (2 * depth) : ball.radius;
-		if (!(radius < ball.radius))
+		ball.visit(i, x);
+		if (!(ball.radius() < radius))
 			return;
-		ball.radius = radius;
-		ball.contact = x;
+		touching.contact = x;
 	}
 }
 
 /// Shrinks a ball against the surface itself.
-inline void shrinkExactly(TouchingBall& ball, const ClosestSurface& surface, int near)
+inline void shrinkExactly(TouchingBall& touching, const ClosestSurface& surface, int near)
 {
-	shrink(ball, 30, [&](const Point3d& centre, double reach, Point3d& where) {
+	shrink(touching, 30, [&](const Point3d& centre, double reach, Point3d& where) {
 		const ClosestSurface::Hit hit = surface.closest(centre, near);
 		near = hit.face;
 		where = hit.point;
@@ -153,34 +150,37 @@ inline MedialReference medialReference(const SurfaceMesh& surface, const Closest
 		few.push_back(sample.position);
 	const PointTree tree(few, begin);
 
-	std::vector<detail::TouchingBall> balls(samples.size());
+	std::vector<Point3d> centre(samples.size());
+	std::vector<double> radius(samples.size());
 	std::vector<char> isMedial(samples.size(), 0);
 	const auto shrinkAll = [&](int begin, int end) {
 		for (int i = begin; i < end; ++i) {
-			auto ball = detail::TouchingBall::alone(samples[i].position, outward[i], largest);
-			detail::shrink(ball, 12, [&](const Point3d& centre, double reach, Point3d& where) {
+			detail::TouchingBall touching(samples[i].position, outward[i], largest);
+			detail::shrink(touching, 12, [&](const Point3d& centre, double reach, Point3d& where) {
 				detail::DeepestPoint search {centre, reach};
 				tree.search(search);
 				where = search.found;
 				return search.any;
 			});
 			// A ball that is held by a near neighbour can only shrink further.
-			if (ball.spokeAngle() < detail::minSpokeAngle - margin)
+			if (touching.spokeAngle() < detail::minSpokeAngle - margin)
 				continue;
-			detail::shrinkExactly(ball, closest, samples[i].face);
-			isMedial[i] = ball.spokeAngle() >= detail::minSpokeAngle && ball.radius > minRadius
-				&& closest.clearance(ball.centre()) > 0;
-			balls[i] = ball;
+			detail::shrinkExactly(touching, closest, samples[i].face);
+			const detail::MaximalBall& ball = touching.ball;
+			isMedial[i] = touching.spokeAngle() >= detail::minSpokeAngle
+				&& ball.radius() > minRadius && closest.clearance(ball.centre()) > 0;
+			centre[i] = ball.centre();
+			radius[i] = ball.radius();
 		}
 	};
 	constexpr int blocksPerReport = 8;
 	forEachBlock(
 		int(samples.size()), progress, "Finding the medial axis", shrinkAll, blocksPerReport);
 	MedialReference reference;
-	for (size_t i = 0; i < balls.size(); ++i)
+	for (size_t i = 0; i < samples.size(); ++i)
 		if (isMedial[i]) {
-			reference.centre.push_back(balls[i].centre());
-			reference.radius.push_back(balls[i].radius);
+			reference.centre.push_back(centre[i]);
+			reference.radius.push_back(radius[i]);
 		}
 	return reference;
 }

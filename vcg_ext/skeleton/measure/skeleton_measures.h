@@ -94,11 +94,11 @@ inline MedialPlace nearestMedial(const Point3d& x, const ClosestSurface::Hit& hi
 	}
 	MedialPlace place = {Distance(x, reference.centre[nearest]), reference.radius[nearest]};
 	if (hasBall) {
-		auto ball = TouchingBall::alone(hit.point, (hit.point - x) / hit.distance, 0.5);
-		shrinkExactly(ball, surface, hit.face);
-		const double own = std::abs(ball.radius - hit.distance);
-		if (ball.spokeAngle() >= minSpokeAngle && own < place.distance)
-			place = {own, ball.radius};
+		TouchingBall touching(hit.point, (hit.point - x) / hit.distance, 0.5);
+		shrinkExactly(touching, surface, hit.face);
+		const double radius = touching.ball.radius(), own = std::abs(radius - hit.distance);
+		if (touching.spokeAngle() >= minSpokeAngle && own < place.distance)
+			place = {own, radius};
 	}
 	return place;
 }
