@@ -698,9 +698,10 @@ TEST(Refine, TakesLowLimbsIfTheyAreLongAndFlatOnesIfTheyComeToAPoint)
 	EXPECT_FALSE(isEvenSpike(0.7)) << "along the rim of a plate";
 	EXPECT_TRUE(isLimb(1.5, 0, 0.3, 0.8)) << "a low spike";
 	EXPECT_FALSE(isLimb(0.5, 0, 1, 0.8)) << "a spike, but too short";
-	const auto isLobe = [&](double height, double spikiness, double size) {
+	const auto isLobe = [&](double height, double spikiness, double size, bool isOnWall = false) {
 		refining::FeatureBranch way = branch(6, 0.9);
-		const refining::Peak peak = {0, 1, spikiness, height * way.radii.back() * size, height};
+		const refining::Peak peak = {
+			0, 1, spikiness, height * way.radii.back() * size, height, isOnWall};
 		for (double& r : way.radii)
 			r *= size;
 		for (Point3d& p : way.points)
@@ -711,6 +712,24 @@ TEST(Refine, TakesLowLimbsIfTheyAreLongAndFlatOnesIfTheyComeToAPoint)
 	EXPECT_FALSE(isLobe(3, 0.3, 0.01)) << "not high";
 	EXPECT_FALSE(isLobe(6, 0.2, 0.01)) << "round";
 	EXPECT_FALSE(isLobe(6, 0.3, 0.002)) << "no large part of the shape";
+	EXPECT_FALSE(isLobe(6, 0.7, 0.01, true)) << "the middle of a wall";
+}
+
+TEST(Refine, TheMiddlesOfAPlatesSidesAreNoLobes)
+{
+	// High above the branches into the corners, and with a spikiness of 0.7.
+	for (const double thickness : {0.035, 0.07, 0.1}) {
+		const SurfaceMesh plate = shapes::refined(shapes::box(1, 1, thickness), 5).mesh();
+		const Point3d middle(0.5, 0.5, thickness / 2);
+		CurveMaker cross;
+		for (const double x : {0.05, 0.95})
+			for (const double y : {0.05, 0.95})
+				cross.line(middle, {x, y, thickness / 2}, 100);
+		const std::vector<Point3d> found = tips(refine(cross.in(plate), plate));
+		EXPECT_EQ(found.size(), 4u) << thickness;
+		for (const Point3d& tip : found)
+			EXPECT_GT(Distance(tip, middle), 0.55) << thickness;
+	}
 }
 
 TEST(Refine, GrowsABranchIntoAHighLobeOfAPlate)

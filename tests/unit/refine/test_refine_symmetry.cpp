@@ -82,6 +82,35 @@ shapes::Soup flatBox()
 		shapes::refined(shapes::box(0.8, 0.6, 0.1), 5), Point3d(-0.4, -0.3, -0.05));
 }
 
+/// A plate with `sides` sides, about the origin; its corners are 0.45 from the axis.
+shapes::Soup regularPlate(int sides, double thickness)
+{
+	shapes::Soup soup;
+	for (double z : {-thickness / 2, thickness / 2}) {
+		for (int i = 0; i < sides; ++i) {
+			const double angle = 2 * M_PI * i / sides;
+			soup.points.emplace_back(0.45 * std::cos(angle), 0.45 * std::sin(angle), z);
+		}
+		soup.points.emplace_back(0, 0, z);
+	}
+	const int upper = sides + 1;
+	for (int i = 0; i < sides; ++i) {
+		const int next = (i + 1) % sides;
+		soup.triangles.push_back({sides, next, i});
+		soup.triangles.push_back({upper + sides, upper + i, upper + next});
+		soup.triangles.push_back({i, next, upper + next});
+		soup.triangles.push_back({i, upper + next, upper + i});
+	}
+	return shapes::refined(soup, 3);
+}
+
+/// The point at a distance from the axis, at an angle in degrees.
+Point3d polar(double distance, double degrees)
+{
+	const double angle = degrees * M_PI / 180;
+	return Point3d(std::cos(angle), std::sin(angle), 0) * distance;
+}
+
 const auto alongX = [](const Point3d& p) { return Point3d(-p[0], p[1], p[2]); };
 const auto alongY = [](const Point3d& p) { return Point3d(p[0], -p[1], p[2]); };
 
@@ -120,6 +149,37 @@ TEST(RefineSymmetry, AStubInThePlateGoesWhereTheOthersAreMore)
 	EXPECT_TRUE(scene.makeSymmetric());
 	EXPECT_EQ(scene.tips().size(), 4u);
 	EXPECT_TRUE(areSymmetric(scene.tips(), alongX));
+}
+
+TEST(RefineSymmetry, OfACornerInEightAllAreAdded)
+{
+	// Two corners, and two tips that the flow has left somewhere on the rim.
+	CurveInShape scene(regularPlate(8, 0.08),
+		CurveMaker()
+			.line({0, 0, 0}, polar(0.4, 135), 60)
+			.line({0, 0, 0}, polar(0.4, 315), 60)
+			.line({0, 0, 0}, polar(0.37, 59), 60)
+			.line({0, 0, 0}, polar(0.37, 240), 60));
+	EXPECT_TRUE(scene.makeSymmetric());
+	EXPECT_EQ(scene.tips().size(), 8u);
+	const auto turned = [](const Point3d& p) {
+		const double c = std::sqrt(0.5);
+		return Point3d(c * (p[0] - p[1]), c * (p[0] + p[1]), p[2]);
+	};
+	EXPECT_TRUE(areSymmetric(scene.tips(), turned) && areSymmetric(scene.tips(), alongX));
+	const SkeletonStatistics now = statistics(scene.curve);
+	EXPECT_EQ(now.components, 1);
+	EXPECT_EQ(now.cycles, 0);
+}
+
+TEST(RefineSymmetry, OnARoundRimNoTipIsAdded)
+{
+	for (int sides : {24, 60}) {
+		CurveInShape scene(regularPlate(sides, 0.08),
+			CurveMaker().line({0, 0, 0}, polar(0.4, 20), 60).line({0, 0, 0}, polar(0.4, 200), 60));
+		EXPECT_FALSE(scene.makeSymmetric()) << sides;
+		EXPECT_EQ(scene.tips().size(), 2u) << sides;
+	}
 }
 
 TEST(RefineSymmetry, ALimbThatOneSideLacks)

@@ -27,20 +27,16 @@
 
 namespace vcg::tri::mcf::refining {
 
-/// The middle of the surface around a peak down to the height `lowest`: a point in its feature's
-/// tip.
-/// @throws Cancelled
-inline Point3d middleOfTip(const SurfaceComponent& surface, const Heights& heights, int peak,
-	double lowest, const Progress& progress)
+/// The vertices of the surface around a peak down to the height `lowest`. @throws Cancelled
+inline std::vector<int> verticesOfTip(const SurfaceComponent& surface, const Heights& heights,
+	int peak, double lowest, const Progress& progress)
 {
 	std::vector<int> tip(1, peak);
 	std::vector<char> seen(surface.size(), 0);
 	seen[peak] = 1;
-	Box3d box;
 	detail::Ticker ticker(progress, "Refining the skeleton", surface.size());
 	for (size_t i = 0; i < tip.size(); ++i) {
 		ticker.tick();
-		box.Add(surface.position(tip[i]));
 		surface.forEachNeighbour(tip[i], [&](int w) {
 			if (!seen[w] && heights.height[w] >= lowest) {
 				seen[w] = 1;
@@ -48,7 +44,44 @@ inline Point3d middleOfTip(const SurfaceComponent& surface, const Heights& heigh
 			}
 		});
 	}
+	return tip;
+}
+
+/// The middle of the surface around a peak down to the height `lowest`: a point in its feature's
+/// tip.
+/// @throws Cancelled
+inline Point3d middleOfTip(const SurfaceComponent& surface, const Heights& heights, int peak,
+	double lowest, const Progress& progress)
+{
+	Box3d box;
+	for (int v : verticesOfTip(surface, heights, peak, lowest, progress))
+		box.Add(surface.position(v));
 	return box.Center();
+}
+
+/**
+ * Whether a peak lies on a wall of a plate that does not turn there, such as the middle of a square's
+ * side, which is high above branches into the corners: the upper half of the surface around it
+ * reaches as far to one side as to the other, and its ends and the peak are nearly on a line. Around
+ * the tip of a lobe they are not, and a lobe that is longer than wide reaches only away from it.
+ * @throws Cancelled
+ */
+inline bool isOnStraightWall(const SurfaceComponent& surface, const Heights& heights,
+	const Peak& peak, const Progress& progress)
+{
+	constexpr double straight = 0.96, minOtherSide = 0.25;
+	const std::vector<int> tip =
+		verticesOfTip(surface, heights, peak.vertex, peak.height / 2, progress);
+	const Point3d& top = surface.position(peak.vertex);
+	const auto farthestFrom = [&](const Point3d& p) {
+		return surface.position(*std::max_element(tip.begin(), tip.end(), [&](int v, int w) {
+			return SquaredDistance(surface.position(v), p)
+				< SquaredDistance(surface.position(w), p);
+		}));
+	};
+	const Point3d one = farthestFrom(top), other = farthestFrom(one);
+	const double toOne = Distance(one, top), toOther = Distance(other, top);
+	return toOther >= minOtherSide * toOne && Distance(one, other) >= straight * (toOne + toOther);
 }
 
 /// The node of the first ball that is met on the surface around a peak, by distance along edges.
@@ -83,6 +116,24 @@ inline int nodeBelow(const CurveSkeleton& skeleton, const SurfaceComponent& surf
 /// Minimum height of a lobe of a plate, in radii.
 constexpr double lobeHeight = 5;
 
+/// Whether a branch stays within a plate: there is room on both sides of it along most of its way.
+inline bool isInPlate(
+	const CurveSkeleton& skeleton, const Branch& branch, const ClosestSurface& surface)
+{
+	constexpr double mostlyFlat = 0.65;
+	int flat = 0;
+	for (size_t i = 1; i < branch.nodes.size(); ++i) {
+		const Point3d& x = skeleton.position[branch.nodes[i]];
+		const ClosestSurface::Hit hit = surface.closest(x);
+		if (hit.distance <= 0)
+			continue;
+		const ClosestSurface::Ball ball = medialBall(surface, x, hit);
+		const Point3d direction = x - skeleton.position[branch.nodes[i - 1]];
+		flat += isMedial(ball) && widePlaces(surface, x, hit, ball.contact, direction).size() == 2;
+	}
+	return flat >= mostlyFlat * double(branch.nodes.size() - 1);
+}
+
 /**
  * By how much a terminal branch that stays within a plate is shorter than the minimum height of so
  * many lobes: below 0; else 0. A plate that stands on a thicker body, as an ear does, is a limb.
@@ -91,22 +142,12 @@ constexpr double lobeHeight = 5;
 inline double lackOfLobe(const CurveSkeleton& skeleton, const Branch& fromJunction, double lobes,
 	const ClosestSurface& surface)
 {
-	constexpr double mostlyFlat = 0.65, asThin = 0.5;
+	constexpr double asThin = 0.5;
 	const double radius = skeleton.radius[fromJunction.first()];
 	const double excess = branchLength(skeleton, fromJunction) - lobes * lobeHeight * radius;
 	if (excess >= 0 || skeleton.radius[fromJunction.last()] < asThin * radius)
 		return 0;
-	int flat = 0;
-	for (size_t i = 1; i < fromJunction.nodes.size(); ++i) {
-		const Point3d& x = skeleton.position[fromJunction.nodes[i]];
-		const ClosestSurface::Hit hit = surface.closest(x);
-		if (hit.distance <= 0)
-			continue;
-		const ClosestSurface::Ball ball = medialBall(surface, x, hit);
-		const Point3d direction = x - skeleton.position[fromJunction.nodes[i - 1]];
-		flat += isMedial(ball) && widePlaces(surface, x, hit, ball.contact, direction).size() == 2;
-	}
-	return flat >= mostlyFlat * double(fromJunction.nodes.size() - 1) ? excess : 0;
+	return isInPlate(skeleton, fromJunction, surface) ? excess : 0;
 }
 
 /**
@@ -208,8 +249,8 @@ inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const HoldingBal
  * Whether a branch leads into a limb: not into the corner of a box, on the way to which the balls
  * shrink nearly as fast as they advance; not along the rim of a plate, which ends in its corner;
  * and not through a plate, in which it could lead anywhere, unless the plate comes to a point and
- * is longer than thick, as an ear is, or is itself a lobe, high above the balls and a large part of
- * the shape.
+ * is longer than thick, as an ear is, or is itself a lobe, high above the balls, a large part of the
+ * shape, and not only the middle of a wall.
  *
  * The branch into a low spike is short: where it enters the body, its few samples can look like a
  * rim or a plate. For spikes, such samples only count if they cover more than a radius; and where
@@ -232,7 +273,7 @@ inline bool leadsIntoLimb(const FeatureBranch& branch, const Peak& peak, const F
 	if (way < minWay * radius || gain < rule.minGain)
 		return false;
 	const bool isLobe = peak.height >= std::max(lobeHeight * radius, rule.minLobe)
-		&& peak.spikiness >= lobeSpikiness;
+		&& peak.spikiness >= lobeSpikiness && !peak.isOnWall;
 	return isLobe || isSpike
 		|| (branch.rim <= maxRim && (branch.flat <= mostlyFlat || way >= minWayIfFlat * radius)
 			&& branch.flat
@@ -367,7 +408,8 @@ inline void growFeatures(CurveSkeleton& skeleton, const SurfaceComponent& compon
 	const int nodes = int(skeleton.position.size());
 	HoldingBalls balls(skeleton);
 	std::vector<Feature> features;
-	for (const Peak& peak : peaks(skeleton, component, heights, rule, progress.part(0.4, 0.8))) {
+	for (Peak& peak : peaks(skeleton, component, heights, rule, progress.part(0.4, 0.8))) {
+		peak.isOnWall = isOnStraightWall(component, heights, peak, progress.cancelOnly());
 		FeatureBranch branch = branchInto(
 			peak, skeleton, balls, component, heights, surface, rule, progress.cancelOnly());
 		const bool grown = leadsIntoLimb(branch, peak, rule);

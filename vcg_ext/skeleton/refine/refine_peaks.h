@@ -174,6 +174,7 @@ struct Peak
 	double extent = 0, spikiness = 0;
 	/// Height of the vertex; the same in radii of the nearest ball.
 	double height = 0, relativeHeight = 0;
+	bool isOnWall = false; ///< see isOnStraightWall()
 };
 
 /// The vertices of positive height, the highest first; ties are broken by the coordinates.

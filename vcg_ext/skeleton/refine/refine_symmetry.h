@@ -78,6 +78,10 @@ struct TipOrbit
 	int tip;
 	double near;               ///< distance within which a tip is at an image
 	std::vector<Image> others; ///< different places only
+	/// Whether a map that moves some of the images leaves the tip in its place, as the reflection in
+	/// a plane through a corner does: elsewhere on a round rim a tip is only by chance.
+	bool isHeld = false;
+	double reach = 0; ///< its distance from the middle of all images
 
 	size_t size() const { return others.size() + 1; }
 	size_t present() const
@@ -87,6 +91,14 @@ struct TipOrbit
 		}));
 	}
 	bool isComplete() const { return present() == size(); }
+	/// Whether a greater part of this orbit is present than of another one; if as great, whether it
+	/// reaches clearly farther, as corners do.
+	bool isFuller(const TipOrbit& other) const
+	{
+		constexpr double clearly = 0.02; // diagonals
+		const size_t own = present() * other.size(), its = other.present() * size();
+		return own != its ? own > its : reach > other.reach + clearly;
+	}
 };
 
 /**
@@ -124,27 +136,60 @@ inline std::vector<TipOrbit> tipOrbits(const CurveSkeleton& skeleton, const Clos
 					&& isSegmentInside(surface, p, clearances.at(p), q, clearances.at(q)));
 		};
 		TipOrbit orbit {tip, near, {}};
+		std::vector<const Eigen::Isometry3d*> holding; // that leave the tip in its place
 		for (const Eigen::Isometry3d& map : maps) {
 			const Point3d place = mapped(map, own);
 			const auto isThere = [&](const TipOrbit::Image& known) {
 				return areInOneLimb(known.place, place);
 			};
-			if (areInOneLimb(place, own)
-				|| std::any_of(orbit.others.begin(), orbit.others.end(), isThere))
+			if (areInOneLimb(place, own)) {
+				holding.push_back(&map);
+				continue;
+			}
+			if (std::any_of(orbit.others.begin(), orbit.others.end(), isThere))
 				continue;
 			const int there = nearest(place);
 			const Point3d& found = skeleton.position[size_t(there)];
 			const bool isImage =
 				areInOneLimb(found, place) && nearest(mapped(map.inverse(), found)) == tip;
+			// Two images of a tip beside a plane of reflection may be at one tip.
+			if (isImage
+				&& std::any_of(orbit.others.begin(), orbit.others.end(),
+					[&](const TipOrbit::Image& known) { return known.tip == there; }))
+				continue;
 			orbit.others.push_back({&map, place, isImage ? there : -1});
 		}
+		Point3d sum = own;
+		for (const TipOrbit::Image& image : orbit.others)
+			sum += image.place;
+		orbit.reach = Distance(own, sum / double(orbit.size()));
+		for (const Eigen::Isometry3d* map : holding)
+			for (const TipOrbit::Image& image : orbit.others)
+				orbit.isHeld |= Distance(mapped(*map, image.place), image.place) > near;
 		orbits.push_back(std::move(orbit));
 	}
 	return orbits;
 }
 
+/// The nodes of a tip's terminal branch, from the tip; of a chain from tip to tip the first half.
+inline std::vector<int> limbOf(
+	const CurveSkeleton& skeleton, const std::vector<std::vector<int>>& neighbours, int tip)
+{
+	Branch branch = branchAlong(neighbours, tip, neighbours[size_t(tip)][0]);
+	if (neighbours[size_t(branch.last())].size() > 1)
+		return branch.nodes;
+	const double half = branchLength(skeleton, branch) / 2;
+	double along = 0;
+	size_t count = 1;
+	for (; count < branch.nodes.size() && along < half; ++count)
+		along += Distance(skeleton.position[size_t(branch.nodes[count - 1])],
+			skeleton.position[size_t(branch.nodes[count])]);
+	branch.nodes.resize(count);
+	return branch.nodes;
+}
+
 /**
- * Adds the image of a terminal branch: from the image of its tip to the first ball of the skeleton
+ * Adds the image of a terminal branch, see limbOf(): from the image of its tip to the first ball of the skeleton
  * that is met; where the image ends before, or leaves the surface, to the nearest node in view.
  * @param neighbours  of the nodes that the branch has.
  * @param balls       of all nodes; takes in the new ones.
@@ -158,7 +203,7 @@ inline bool addImage(CurveSkeleton& skeleton, const std::vector<std::vector<int>
 {
 	BallChain image;
 	int joint = -1;
-	for (int v : branchAlong(neighbours, tip, neighbours[size_t(tip)][0]).nodes) {
+	for (int v : limbOf(skeleton, neighbours, tip)) {
 		const Point3d p = mapped(map, skeleton.position[size_t(v)]);
 		const double radius = clearances.at(p);
 		joint = balls.deepest(p);
@@ -192,16 +237,33 @@ inline bool addImage(CurveSkeleton& skeleton, const std::vector<std::vector<int>
 	return true;
 }
 
+/// The orbit of which the greatest part is present; of several the one that reaches farthest.
+/// @pre there is one.
+inline const TipOrbit& fullest(const std::vector<TipOrbit>& orbits)
+{
+	const auto isLess = [](const TipOrbit& one, const TipOrbit& other) {
+		const size_t ofOne = one.present() * other.size(), ofOther = other.present() * one.size();
+		return ofOne != ofOther ? ofOne < ofOther : one.reach < other.reach;
+	};
+	return *std::max_element(orbits.begin(), orbits.end(), isLess);
+}
+
 /**
  * Adds the missing images of terminal branches of which at least half are present, of those first
- * of which the most are present. @return whether any was added. @throws Cancelled
+ * of which the most are present; where there are none, those of the fullest orbits that are held.
+ * @param isClosed  whether the maps are a group: if not, the shape is as good as round.
+ * @return whether any was added. @throws Cancelled
  * @pre the radii are the distances from the surface. @post the same.
  */
-inline bool addImages(CurveSkeleton& skeleton, const std::vector<TipOrbit>& orbits,
+inline bool addImages(CurveSkeleton& skeleton, const std::vector<TipOrbit>& orbits, bool isClosed,
 	const ClosestSurface& surface, KnownClearances& clearances)
 {
-	const auto isToBeCompleted = [](const TipOrbit& orbit) {
-		return !orbit.isComplete() && 2 * orbit.present() >= orbit.size();
+	const TipOrbit& best = fullest(orbits);
+	const bool isBestFew = isClosed && best.isHeld && 2 * best.present() < best.size();
+	const auto isToBeCompleted = [&](const TipOrbit& orbit) {
+		return !orbit.isComplete()
+			&& (2 * orbit.present() >= orbit.size()
+				|| (isBestFew && orbit.isHeld && !best.isFuller(orbit)));
 	};
 	size_t most = 0;
 	for (const TipOrbit& orbit : orbits)
@@ -228,34 +290,48 @@ inline bool addImages(CurveSkeleton& skeleton, const std::vector<TipOrbit>& orbi
 }
 
 /**
- * Removes stray branches where another branch has at least half of its images, and more than they:
+ * Removes stray branches. Where another branch has at least half of its images, and more than they:
  * those with fewer than half, if they are shorter than three radii of the ball at their junction,
- * and stubs in plates, see lackOfLobe(), with at most half. The shortest go first.
+ * and stubs in plates, see lackOfLobe(), with at most half. Wherever another orbit is fuller: those
+ * in plates with fewer than half, however long, since the flow ends anywhere on a plate's rim. The
+ * shortest go first.
+ * @param isClosed  as in addImages().
  * @return whether any was removed.
  * @pre the radii are the distances from the surface. @throws Cancelled
  */
-inline bool removeStubs(CurveSkeleton& skeleton, const std::vector<TipOrbit>& orbits,
+inline bool removeStubs(CurveSkeleton& skeleton, const std::vector<TipOrbit>& orbits, bool isClosed,
 	const ClosestSurface& surface, const Progress& progress)
 {
 	constexpr double longest = 3; // radii
+	const TipOrbit& best = fullest(orbits);
 	size_t most = 0;
 	for (const TipOrbit& orbit : orbits)
 		if (2 * orbit.present() >= orbit.size())
 			most = std::max(most, orbit.present());
-	enum Share : char { Most, Half, Few };
+	enum Share : char { Most, Half, Few, Least };
 	std::vector<Share> share(skeleton.position.size(), Most);
-	for (const TipOrbit& orbit : orbits)
-		if (orbit.present() < most && 2 * orbit.present() <= orbit.size())
-			share[size_t(orbit.tip)] = 2 * orbit.present() == orbit.size() ? Half : Few;
+	for (const TipOrbit& orbit : orbits) {
+		if (2 * orbit.present() > orbit.size())
+			continue;
+		const bool isHalf = 2 * orbit.present() == orbit.size();
+		if (orbit.present() < most)
+			share[size_t(orbit.tip)] = isHalf ? Half : Few;
+		else if (isClosed && !isHalf && best.isFuller(orbit))
+			share[size_t(orbit.tip)] = Least;
+	}
 	CurveSkeleton fewer = withoutTerminalBranches(
 		skeleton, 0,
 		[&](const CurveSkeleton& s, const Branch& fromJunction) {
 			const Share own = share[size_t(fromJunction.last())];
 			if (own == Most)
 				return 0.0;
-			const double excess =
-				branchLength(s, fromJunction) - longest * s.radius[size_t(fromJunction.first())];
-			return own == Few && excess < 0 ? excess : lackOfLobe(s, fromJunction, 2, surface);
+			const double length = branchLength(s, fromJunction);
+			const double excess = length - longest * s.radius[size_t(fromJunction.first())];
+			if (own == Few && excess < 0)
+				return excess;
+			if (const double lack = lackOfLobe(s, fromJunction, 2, surface); lack < 0)
+				return lack;
+			return isClosed && own != Half && isInPlate(s, fromJunction, surface) ? -1 / length : 0;
 		},
 		progress);
 	if (fewer.position.size() == skeleton.position.size())
@@ -267,8 +343,8 @@ inline bool removeStubs(CurveSkeleton& skeleton, const std::vector<TipOrbit>& or
 /**
  * The skeleton of a symmetric shape with the images of its branches. Where the flow is undecided, as
  * before the corners of a box or a blunt limb, one side may have a branch and the other none. Where
- * at least half of the images of a branch are present, the others are added; short branches of which
- * fewer are present are removed, see removeStubs().
+ * at least half of the images of a branch are present, the others are added, see addImages(); short
+ * branches of which fewer are present, and branches in plates, are removed, see removeStubs().
  * @return its radii are the distances from the surface; nothing if no image is missing, if as many
  *         are missing afterwards, or if some are and there are fewer tips.
  * @throws Cancelled. Complexity: SymmetryFinder, and if a tip's image is missing a closest point
@@ -301,14 +377,15 @@ inline std::optional<CurveSkeleton> withImages(CurveSkeleton skeleton,
 	symmetries.erase(
 		std::remove_if(symmetries.begin(), symmetries.end(), isWrong), symmetries.end());
 	maps = generatedGroup(symmetries);
+	const bool isClosed = isGroup(maps);
 	measureNodes(skeleton, clearances);
 	orbits = tipOrbits(skeleton, surface, clearances, maps);
 	const auto before = incomplete(orbits);
 	const size_t tips = orbits.size();
 	for (int round = 0; round < maxRounds && incomplete(orbits) > 0; ++round) {
 		progress.check();
-		if (!removeStubs(skeleton, orbits, surface, progress)
-			&& !addImages(skeleton, orbits, surface, clearances))
+		if (!removeStubs(skeleton, orbits, isClosed, surface, progress)
+			&& !addImages(skeleton, orbits, isClosed, surface, clearances))
 			break;
 		orbits = tipOrbits(skeleton, surface, clearances, maps);
 	}

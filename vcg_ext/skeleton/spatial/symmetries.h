@@ -358,6 +358,21 @@ inline std::vector<Eigen::Isometry3d> generatedGroup(
 	return maps;
 }
 
+/// Whether maps make up no others but the identity: generatedGroup() may have given up.
+/// Complexity: cubic in their number.
+inline bool isGroup(const std::vector<Eigen::Isometry3d>& maps)
+{
+	const auto isKnown = [&](const Eigen::Isometry3d& map) {
+		return detail::areAlike(map, Eigen::Isometry3d::Identity())
+			|| std::any_of(maps.begin(), maps.end(),
+				[&](const auto& known) { return detail::areAlike(known, map); });
+	};
+	return std::all_of(maps.begin(), maps.end(), [&](const Eigen::Isometry3d& one) {
+		return std::all_of(maps.begin(), maps.end(),
+			[&](const Eigen::Isometry3d& other) { return isKnown(one * other); });
+	});
+}
+
 /**
  * Finds the reflections and rotations that map some components of a surface, taken together, to
  * themselves: the images of points are within 0.15 % of the diagonal of it in the mean, and all,
