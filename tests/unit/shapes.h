@@ -95,6 +95,28 @@ inline Soup subdivided(
 	return s;
 }
 
+/// A regular prism about the z axis, with corners at a distance of 1 from it, turned by an angle.
+inline Soup regularPlate(int sides, double thickness, double turned = 0)
+{
+	Soup s;
+	for (double z : {-thickness / 2, thickness / 2}) {
+		for (int i = 0; i < sides; ++i) {
+			const double angle = 2 * M_PI * i / sides + turned;
+			s.points.emplace_back(std::cos(angle), std::sin(angle), z);
+		}
+		s.points.emplace_back(0, 0, z);
+	}
+	const int upper = sides + 1;
+	for (int i = 0; i < sides; ++i) {
+		const int next = (i + 1) % sides;
+		s.triangles.push_back({sides, next, i});
+		s.triangles.push_back({upper + sides, upper + i, upper + next});
+		s.triangles.push_back({i, next, upper + next});
+		s.triangles.push_back({i, upper + next, upper + i});
+	}
+	return s;
+}
+
 /// Each triangle in four, so many times, in place.
 inline Soup refined(Soup s, int times)
 {

@@ -171,6 +171,28 @@ TEST(Skeletonize, ASymmetricShapeHasNoBranchWithoutItsImage)
 	}
 }
 
+TEST(Skeletonize, ARegularPlateHasABranchIntoEachCorner)
+{
+	for (int sides = 3; sides <= 8; ++sides) {
+		constexpr double turned = 0.3, thickness = 0.1, farthest = 0.15;
+		const CurveSkeleton curve =
+			run(shapes::regularPlate(sides, thickness, turned), Parameters()).curve;
+		const std::vector<std::vector<int>> neighbours = curve.neighbours();
+		int tips = 0;
+		for (size_t v = 0; v < neighbours.size(); ++v) {
+			if (neighbours[v].size() != 1)
+				continue;
+			++tips;
+			const Point3d& tip = curve.position[v];
+			const double side = 2 * M_PI / sides;
+			const double corner =
+				turned + side * std::round((std::atan2(tip[1], tip[0]) - turned) / side);
+			EXPECT_LT(std::hypot(tip[0] - std::cos(corner), tip[1] - std::sin(corner)), farthest);
+		}
+		EXPECT_EQ(tips, sides);
+	}
+}
+
 TEST(Skeletonize, ReadsEveryParameter)
 {
 	const shapes::Soup soup = shapes::fromFile("animal450");

@@ -701,7 +701,7 @@ TEST(Refine, TakesLowLimbsIfTheyAreLongAndFlatOnesIfTheyComeToAPoint)
 	const auto isLobe = [&](double height, double spikiness, double size, bool isOnWall = false) {
 		refining::FeatureBranch way = branch(6, 0.9);
 		const refining::Peak peak = {
-			0, 1, spikiness, height * way.radii.back() * size, height, isOnWall};
+			0, 1, spikiness, height * way.radii.back() * size, height, /*saddle*/ 0, isOnWall};
 		for (double& r : way.radii)
 			r *= size;
 		for (Point3d& p : way.points)

@@ -82,26 +82,10 @@ shapes::Soup flatBox()
 		shapes::refined(shapes::box(0.8, 0.6, 0.1), 5), Point3d(-0.4, -0.3, -0.05));
 }
 
-/// A plate with `sides` sides, about the origin; its corners are 0.45 from the axis.
-shapes::Soup regularPlate(int sides, double thickness)
+/// With corners at 0.45 from the axis.
+shapes::Soup flatPlate(int sides)
 {
-	shapes::Soup soup;
-	for (double z : {-thickness / 2, thickness / 2}) {
-		for (int i = 0; i < sides; ++i) {
-			const double angle = 2 * M_PI * i / sides;
-			soup.points.emplace_back(0.45 * std::cos(angle), 0.45 * std::sin(angle), z);
-		}
-		soup.points.emplace_back(0, 0, z);
-	}
-	const int upper = sides + 1;
-	for (int i = 0; i < sides; ++i) {
-		const int next = (i + 1) % sides;
-		soup.triangles.push_back({sides, next, i});
-		soup.triangles.push_back({upper + sides, upper + i, upper + next});
-		soup.triangles.push_back({i, next, upper + next});
-		soup.triangles.push_back({i, upper + next, upper + i});
-	}
-	return shapes::refined(soup, 3);
+	return shapes::refined(shapes::scaled(shapes::regularPlate(sides, 0.18), 0.45), 3);
 }
 
 /// The point at a distance from the axis, at an angle in degrees.
@@ -154,7 +138,7 @@ TEST(RefineSymmetry, AStubInThePlateGoesWhereTheOthersAreMore)
 TEST(RefineSymmetry, OfACornerInEightAllAreAdded)
 {
 	// Two corners, and two tips that the flow has left somewhere on the rim.
-	CurveInShape scene(regularPlate(8, 0.08),
+	CurveInShape scene(flatPlate(8),
 		CurveMaker()
 			.line({0, 0, 0}, polar(0.4, 135), 60)
 			.line({0, 0, 0}, polar(0.4, 315), 60)
@@ -175,7 +159,7 @@ TEST(RefineSymmetry, OfACornerInEightAllAreAdded)
 TEST(RefineSymmetry, OnARoundRimNoTipIsAdded)
 {
 	for (int sides : {24, 60}) {
-		CurveInShape scene(regularPlate(sides, 0.08),
+		CurveInShape scene(flatPlate(sides),
 			CurveMaker().line({0, 0, 0}, polar(0.4, 20), 60).line({0, 0, 0}, polar(0.4, 200), 60));
 		EXPECT_FALSE(scene.makeSymmetric()) << sides;
 		EXPECT_EQ(scene.tips().size(), 2u) << sides;

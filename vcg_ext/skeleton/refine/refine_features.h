@@ -18,6 +18,7 @@
 #include <skeleton/spatial/closest_surface.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <queue>
@@ -61,27 +62,31 @@ inline Point3d middleOfTip(const SurfaceComponent& surface, const Heights& heigh
 
 /**
  * Whether a peak lies on a wall of a plate that does not turn there, such as the middle of a square's
- * side, which is high above branches into the corners: the upper half of the surface around it
- * reaches as far to one side as to the other, and its ends and the peak are nearly on a line. Around
+ * side, which is high above branches into the corners: the surface around it, down to half its height
+ * or to the next peak, reaches to both sides, and its ends and the peak are nearly on a line. Around
  * the tip of a lobe they are not, and a lobe that is longer than wide reaches only away from it.
- * @throws Cancelled
+ * @param normal  of the plate, unit length: along it nothing counts. @throws Cancelled
  */
 inline bool isOnStraightWall(const SurfaceComponent& surface, const Heights& heights,
-	const Peak& peak, const Progress& progress)
+	const Peak& peak, const Point3d& normal, const Progress& progress)
 {
-	constexpr double straight = 0.96, minOtherSide = 0.25;
-	const std::vector<int> tip =
-		verticesOfTip(surface, heights, peak.vertex, peak.height / 2, progress);
-	const Point3d& top = surface.position(peak.vertex);
+	constexpr double minOtherSide = 0.25, straight = 150 * M_PI / 180;
+	const std::vector<int> tip = verticesOfTip(
+		surface, heights, peak.vertex, std::max(peak.height / 2, peak.saddle), progress);
+	const auto place = [&](int v) {
+		const Point3d& p = surface.position(v);
+		return p - normal * (p * normal);
+	};
 	const auto farthestFrom = [&](const Point3d& p) {
-		return surface.position(*std::max_element(tip.begin(), tip.end(), [&](int v, int w) {
-			return SquaredDistance(surface.position(v), p)
-				< SquaredDistance(surface.position(w), p);
+		return place(*std::max_element(tip.begin(), tip.end(), [&](int v, int w) {
+			return SquaredDistance(place(v), p) < SquaredDistance(place(w), p);
 		}));
 	};
-	const Point3d one = farthestFrom(top), other = farthestFrom(one);
-	const double toOne = Distance(one, top), toOther = Distance(other, top);
-	return toOther >= minOtherSide * toOne && Distance(one, other) >= straight * (toOne + toOther);
+	const Point3d top = place(peak.vertex);
+	const Point3d one = farthestFrom(farthestFrom(top)), other = farthestFrom(one);
+	const Point3d a = one - top, b = other - top;
+	return std::min(a.Norm(), b.Norm()) >= minOtherSide * std::max(a.Norm(), b.Norm())
+		&& std::atan2((a ^ b).Norm(), a * b) >= straight;
 }
 
 /// The node of the first ball that is met on the surface around a peak, by distance along edges.
@@ -409,9 +414,14 @@ inline void growFeatures(CurveSkeleton& skeleton, const SurfaceComponent& compon
 	HoldingBalls balls(skeleton);
 	std::vector<Feature> features;
 	for (Peak& peak : peaks(skeleton, component, heights, rule, progress.part(0.4, 0.8))) {
-		peak.isOnWall = isOnStraightWall(component, heights, peak, progress.cancelOnly());
 		FeatureBranch branch = branchInto(
 			peak, skeleton, balls, component, heights, surface, rule, progress.cancelOnly());
+		if (branch.joint >= 0) {
+			const Point3d& middle = branch.points[branch.points.size() / 2];
+			const Point3d normal = (surface.closest(middle).point - middle).Normalize();
+			peak.isOnWall =
+				isOnStraightWall(component, heights, peak, normal, progress.cancelOnly());
+		}
 		const bool grown = leadsIntoLimb(branch, peak, rule);
 		if (grown) {
 			add(branch);

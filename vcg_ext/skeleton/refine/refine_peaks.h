@@ -174,6 +174,8 @@ struct Peak
 	double extent = 0, spikiness = 0;
 	/// Height of the vertex; the same in radii of the nearest ball.
 	double height = 0, relativeHeight = 0;
+	/// The level at which the surface around it meets that around another peak; 0 if none is known.
+	double saddle = 0;
 	bool isOnWall = false; ///< see isOnStraightWall()
 };
 
@@ -268,11 +270,15 @@ inline std::vector<Peak> peaks(const CurveSkeleton& skeleton, const SurfaceCompo
 		return isHigh(peak.vertex)
 			&& height[peak.vertex] > std::max(peak.spikiness, minSpikiness) * peak.extent;
 	};
-	const auto join = [&](int a, int b) {
+	const auto join = [&](int a, int b, double level) {
 		if (partOfRoot[a] > partOfRoot[b])
 			std::swap(a, b);
 		Peak& higher = parts[partOfRoot[a]];
-		const Peak& lower = parts[partOfRoot[b]];
+		Peak& lower = parts[partOfRoot[b]];
+		if (height[lower.vertex] - level >= minRise(lower.vertex)) {
+			higher.saddle = std::max(higher.saddle, level);
+			lower.saddle = level;
+		}
 		open -= isOpen(higher) + isOpen(lower);
 		higher.extent = std::max(higher.extent,
 			lower.extent
@@ -293,7 +299,7 @@ inline std::vector<Peak> peaks(const CurveSkeleton& skeleton, const SurfaceCompo
 				return;
 			const int other = forest.find(w);
 			if (part >= 0 && part != other)
-				join(part, other);
+				join(part, other, height[v]);
 			part = forest.find(other);
 		});
 		isAbove[v] = 1;
