@@ -87,6 +87,17 @@ inline CurveSkeleton tracked(CurveSkeleton s)
 	return s;
 }
 
+/// The places of the tips.
+inline std::vector<Point3d> tips(const CurveSkeleton& s)
+{
+	std::vector<Point3d> places;
+	const std::vector<std::vector<int>> neighbours = s.neighbours();
+	for (size_t v = 0; v < neighbours.size(); ++v)
+		if (neighbours[v].size() == 1)
+			places.push_back(s.position[v]);
+	return places;
+}
+
 /// Chains of points; points of different chains that coincide are one node.
 class CurveMaker
 {

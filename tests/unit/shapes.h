@@ -95,11 +95,11 @@ inline Soup subdivided(
 	return s;
 }
 
-/// A regular prism about the z axis, with corners at a distance of 1 from it, turned by an angle.
-inline Soup regularPlate(int sides, double thickness, double turned = 0)
+/// A regular prism on the xy plane, with corners at a distance of 1 from the z axis.
+inline Soup prism(int sides, double height, double turned = 0)
 {
 	Soup s;
-	for (double z : {-thickness / 2, thickness / 2}) {
+	for (double z : {0.0, height}) {
 		for (int i = 0; i < sides; ++i) {
 			const double angle = 2 * M_PI * i / sides + turned;
 			s.points.emplace_back(std::cos(angle), std::sin(angle), z);

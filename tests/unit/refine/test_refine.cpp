@@ -29,6 +29,7 @@
 
 using namespace vcg::tri::mcf;
 using curves::CurveMaker;
+using curves::tips;
 using vcg::Point3d;
 
 namespace {
@@ -98,16 +99,6 @@ double meanDistance(const CurveSkeleton& s, const std::function<double(const Poi
 double distanceFromXAxis(const Point3d& p)
 {
 	return std::hypot(p[1], p[2]);
-}
-
-std::vector<Point3d> tips(const CurveSkeleton& s)
-{
-	std::vector<Point3d> result;
-	const auto neighbours = s.neighbours();
-	for (size_t v = 0; v < neighbours.size(); ++v)
-		if (neighbours[v].size() == 1)
-			result.push_back(s.position[v]);
-	return result;
 }
 
 double farthest(const std::vector<Point3d>& points, int axis)
@@ -929,15 +920,9 @@ TEST(Refine, OfTwoBranchesThatEndInTheSamePlaceTheShorterStays)
 							  .chain({{0, 0, 0}, {1, 1, 0}, {3, apart, 0}})
 							  .chain({{0, 0, 0}, {3, 0, 0}})
 							  .in(none);
-		std::vector<Point3d> left;
 		for (size_t v = 0; v < s.position.size(); ++v)
 			s.radius[v] = s.position[v] == Point3d(3, apart, 0) ? radius : 0.3;
-		s = refining::withoutTwinTips(s);
-		const std::vector<std::vector<int>> neighbours = s.neighbours();
-		for (size_t v = 0; v < s.position.size(); ++v)
-			if (neighbours[v].size() == 1)
-				left.push_back(s.position[v]);
-		return left;
+		return tips(refining::withoutTwinTips(s));
 	};
 	EXPECT_EQ(tipsLeft(0.5, 0.4), (std::vector<Point3d> {{-2, 0, 0}, {3, 0, 0}}));
 	EXPECT_EQ(tipsLeft(0.7, 0.4).size(), 3u) << "farther apart than two small balls are wide";

@@ -41,13 +41,7 @@ public:
 		return symmetric.has_value();
 	}
 
-	std::vector<Point3d> tips() const
-	{
-		std::vector<Point3d> places;
-		for (int tip : refining::tipsOf(curve.neighbours()))
-			places.push_back(curve.position[size_t(tip)]);
-		return places;
-	}
+	std::vector<Point3d> tips() const { return curves::tips(curve); }
 
 private:
 	static std::vector<int> numbers(size_t count)
@@ -82,10 +76,13 @@ shapes::Soup flatBox()
 		shapes::refined(shapes::box(0.8, 0.6, 0.1), 5), Point3d(-0.4, -0.3, -0.05));
 }
 
-/// With corners at 0.45 from the axis.
+/// A plate about the origin with corners at 0.45 from the axis.
 shapes::Soup flatPlate(int sides)
 {
-	return shapes::refined(shapes::scaled(shapes::regularPlate(sides, 0.18), 0.45), 3);
+	constexpr double thickness = 0.18;
+	const shapes::Soup plate =
+		shapes::moved(shapes::prism(sides, thickness), Point3d(0, 0, -thickness / 2));
+	return shapes::refined(shapes::scaled(plate, 0.45), 3);
 }
 
 /// The point at a distance from the axis, at an angle in degrees.

@@ -55,25 +55,6 @@ shapes::Soup turned(const shapes::Soup& soup)
 	});
 }
 
-shapes::Soup prism(int sides, double height)
-{
-	shapes::Soup s;
-	for (double z : {0.0, height}) {
-		for (int i = 0; i < sides; ++i)
-			s.points.emplace_back(
-				std::cos(2 * M_PI * i / sides), std::sin(2 * M_PI * i / sides), z);
-		s.points.emplace_back(0, 0, z);
-	}
-	for (int i = 0; i < sides; ++i) {
-		const int j = (i + 1) % sides, up = sides + 1;
-		s.triangles.push_back({j, i, sides});
-		s.triangles.push_back({i + up, j + up, sides + up});
-		s.triangles.push_back({i, j, j + up});
-		s.triangles.push_back({i, j + up, i + up});
-	}
-	return s;
-}
-
 /// A cross with hooks, all to the same side: a quarter turn, but no mirror across its plane.
 shapes::Soup pinwheel()
 {
@@ -103,7 +84,8 @@ TEST(Symmetries, PrismsByTheirMoments)
 {
 	for (int sides : {3, 5, 6, 8})
 		for (double height : {0.3, 5.0})
-			EXPECT_EQ(groupOf(made(turned(prism(sides, height)), 3)).size(), size_t(4 * sides - 1))
+			EXPECT_EQ(groupOf(made(turned(shapes::prism(sides, height)), 3)).size(),
+				size_t(4 * sides - 1))
 				<< sides << " sides, height " << height;
 }
 

@@ -67,7 +67,7 @@ void shrink(TouchingBall& touching, int maxSteps, const Deepest& deepest)
 		const double radius = ball.radius();
 		if (!deepest(ball.centre(), radius * (1 - tolerance), x))
 			return;
-		ball.visit(i, x);
+		ball.visit(/*slot*/ 0, x);
 		if (!(ball.radius() < radius))
 			return;
 		touching.contact = x;

@@ -47,7 +47,7 @@ class CurveBounds
 {
 public:
 	/// The maximum length is three times the unrefined length and, for each tip of the curve, half
-	/// a diagonal: what has not grown limbs only goes to and fro. Two to six tips count, so that the
+	/// a diagonal: a curve with few tips that is longer runs back and forth. Two to six tips count, so that the
 	/// bound is at most three times the sum of the unrefined length and the diagonal; the maximum
 	/// number of nodes is twice the sum of those before and those at `spacing` along that.
 	CurveBounds(const CurveSkeleton& unrefined, double spacing) :

@@ -61,11 +61,11 @@ inline Point3d middleOfTip(const SurfaceComponent& surface, const Heights& heigh
 }
 
 /**
- * Whether a peak lies on a wall of a plate that does not turn there, such as the middle of a square's
- * side, which is high above branches into the corners: the surface around it, down to half its height
+ * Whether a peak lies on a straight wall of a plate, such as the middle of a square's side, which is
+ * high above branches into the corners: the surface around it, down to half its height
  * or to the next peak, reaches to both sides, and its ends and the peak are nearly on a line. Around
  * the tip of a lobe they are not, and a lobe that is longer than wide reaches only away from it.
- * @param normal  of the plate, unit length: along it nothing counts. @throws Cancelled
+ * @param normal  of the plate, unit length; all is projected along it. @throws Cancelled
  */
 inline bool isOnStraightWall(const SurfaceComponent& surface, const Heights& heights,
 	const Peak& peak, const Point3d& normal, const Progress& progress)
@@ -250,6 +250,15 @@ inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const HoldingBal
 	return branch;
 }
 
+/// Whether a branch and its peak are high and spiky enough for the lobe of a plate.
+inline bool isHighAsLobe(const FeatureBranch& branch, const Peak& peak, const FeatureRule& rule)
+{
+	constexpr double lobeSpikiness = 0.25;
+	return branch.joint >= 0
+		&& peak.height >= std::max(lobeHeight * branch.radii.back(), rule.minLobe)
+		&& peak.spikiness >= lobeSpikiness;
+}
+
 /**
  * Whether a branch leads into a limb: not into the corner of a box, on the way to which the balls
  * shrink nearly as fast as they advance; not along the rim of a plate, which ends in its corner;
@@ -266,7 +275,7 @@ inline bool leadsIntoLimb(const FeatureBranch& branch, const Peak& peak, const F
 {
 	constexpr double maxFlatnessIfSpiky = 1.7, evenGain = 0.8, maxFlatnessIfEven = 0.1,
 					 maxRim = 0.5;
-	constexpr double lobeSpikiness = 0.25, mostlyFlat = 0.5, minWayIfFlat = 2;
+	constexpr double mostlyFlat = 0.5, minWayIfFlat = 2;
 	if (branch.joint < 0)
 		return false;
 	const double way = branch.way(), radius = branch.radii.back();
@@ -277,8 +286,7 @@ inline bool leadsIntoLimb(const FeatureBranch& branch, const Peak& peak, const F
 		isSpike ? rule.minWay : std::max(rule.minWay, rule.minProtrusion / peak.relativeHeight);
 	if (way < minWay * radius || gain < rule.minGain)
 		return false;
-	const bool isLobe = peak.height >= std::max(lobeHeight * radius, rule.minLobe)
-		&& peak.spikiness >= lobeSpikiness && !peak.isOnWall;
+	const bool isLobe = isHighAsLobe(branch, peak, rule) && !peak.isOnWall;
 	return isLobe || isSpike
 		|| (branch.rim <= maxRim && (branch.flat <= mostlyFlat || way >= minWayIfFlat * radius)
 			&& branch.flat
@@ -416,7 +424,7 @@ inline void growFeatures(CurveSkeleton& skeleton, const SurfaceComponent& compon
 	for (Peak& peak : peaks(skeleton, component, heights, rule, progress.part(0.4, 0.8))) {
 		FeatureBranch branch = branchInto(
 			peak, skeleton, balls, component, heights, surface, rule, progress.cancelOnly());
-		if (branch.joint >= 0) {
+		if (isHighAsLobe(branch, peak, rule)) {
 			const Point3d& middle = branch.points[branch.points.size() / 2];
 			const Point3d normal = (surface.closest(middle).point - middle).Normalize();
 			peak.isOnWall =

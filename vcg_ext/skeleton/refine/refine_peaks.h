@@ -176,7 +176,7 @@ struct Peak
 	double height = 0, relativeHeight = 0;
 	/// The level at which the surface around it meets that around another peak; 0 if none is known.
 	double saddle = 0;
-	bool isOnWall = false; ///< see isOnStraightWall()
+	bool isOnWall = false; ///< see isOnStraightWall(); found only for what is high as a lobe
 };
 
 /// The vertices of positive height, the highest first; ties are broken by the coordinates.

@@ -23,6 +23,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace vcg::tri::mcf::refining {
@@ -79,7 +80,7 @@ struct TipOrbit
 	double near;               ///< distance within which a tip is at an image
 	std::vector<Image> others; ///< different places only
 	/// Whether a map that moves some of the images leaves the tip in its place, as the reflection in
-	/// a plane through a corner does: elsewhere on a round rim a tip is only by chance.
+	/// a plane through a corner does. On a round rim the place of other tips is arbitrary.
 	bool isHeld = false;
 	double reach = 0; ///< its distance from the middle of all images
 
@@ -91,13 +92,14 @@ struct TipOrbit
 		}));
 	}
 	bool isComplete() const { return present() == size(); }
-	/// Whether a greater part of this orbit is present than of another one; if as great, whether it
-	/// reaches clearly farther, as corners do.
+	/// The fraction of the orbit that is present.
+	double share() const { return double(present()) / double(size()); }
+	/// Whether its share is larger than that of another orbit or, if equal, whether it reaches clearly
+	/// farther, as corners do.
 	bool isFuller(const TipOrbit& other) const
 	{
 		constexpr double clearly = 0.02; // diagonals
-		const size_t own = present() * other.size(), its = other.present() * size();
-		return own != its ? own > its : reach > other.reach + clearly;
+		return share() != other.share() ? share() > other.share() : reach > other.reach + clearly;
 	}
 };
 
@@ -152,7 +154,7 @@ inline std::vector<TipOrbit> tipOrbits(const CurveSkeleton& skeleton, const Clos
 			const Point3d& found = skeleton.position[size_t(there)];
 			const bool isImage =
 				areInOneLimb(found, place) && nearest(mapped(map.inverse(), found)) == tip;
-			// Two images of a tip beside a plane of reflection may be at one tip.
+			// Two images of a tip beside a mirror plane may match the same tip.
 			if (isImage
 				&& std::any_of(orbit.others.begin(), orbit.others.end(),
 					[&](const TipOrbit::Image& known) { return known.tip == there; }))
@@ -237,21 +239,19 @@ inline bool addImage(CurveSkeleton& skeleton, const std::vector<std::vector<int>
 	return true;
 }
 
-/// The orbit of which the greatest part is present; of several the one that reaches farthest.
-/// @pre there is one.
+/// The orbit with the largest share; of several the one that reaches farthest. @pre there is one.
 inline const TipOrbit& fullest(const std::vector<TipOrbit>& orbits)
 {
-	const auto isLess = [](const TipOrbit& one, const TipOrbit& other) {
-		const size_t ofOne = one.present() * other.size(), ofOther = other.present() * one.size();
-		return ofOne != ofOther ? ofOne < ofOther : one.reach < other.reach;
-	};
-	return *std::max_element(orbits.begin(), orbits.end(), isLess);
+	return *std::max_element(
+		orbits.begin(), orbits.end(), [](const TipOrbit& one, const TipOrbit& other) {
+			return std::pair(one.share(), one.reach) < std::pair(other.share(), other.reach);
+		});
 }
 
 /**
  * Adds the missing images of terminal branches of which at least half are present, of those first
  * of which the most are present; where there are none, those of the fullest orbits that are held.
- * @param isClosed  whether the maps are a group: if not, the shape is as good as round.
+ * @param isClosed  whether the maps are a group; if not, the shape is nearly round.
  * @return whether any was added. @throws Cancelled
  * @pre the radii are the distances from the surface. @post the same.
  */
@@ -293,8 +293,8 @@ inline bool addImages(CurveSkeleton& skeleton, const std::vector<TipOrbit>& orbi
  * Removes stray branches. Where another branch has at least half of its images, and more than they:
  * those with fewer than half, if they are shorter than three radii of the ball at their junction,
  * and stubs in plates, see lackOfLobe(), with at most half. Wherever another orbit is fuller: those
- * in plates with fewer than half, however long, since the flow ends anywhere on a plate's rim. The
- * shortest go first.
+ * in plates with fewer than half, however long, since it is arbitrary where on a rim the flow ends.
+ * The shortest go first.
  * @param isClosed  as in addImages().
  * @return whether any was removed.
  * @pre the radii are the distances from the surface. @throws Cancelled

@@ -286,6 +286,13 @@ inline bool areAlike(const Eigen::Isometry3d& one, const Eigen::Isometry3d& othe
 	return (one.linear() - other.linear()).norm() < same;
 }
 
+/// Whether a map turns in the same way as one of several.
+inline bool isAmong(const std::vector<Eigen::Isometry3d>& maps, const Eigen::Isometry3d& map)
+{
+	return std::any_of(
+		maps.begin(), maps.end(), [&](const auto& known) { return areAlike(known, map); });
+}
+
 /// The vertices that are farthest in each of 26 directions, to the faces, edges and corners of a
 /// cube; of several, the first by its place. @throws Cancelled. Complexity: O(V).
 inline std::vector<int> outermost(
@@ -347,8 +354,7 @@ inline std::vector<Eigen::Isometry3d> generatedGroup(
 	for (size_t i = 0; i < maps.size(); ++i)
 		for (const Eigen::Isometry3d& generator : generators) {
 			const Eigen::Isometry3d map = generator * maps[i];
-			if (std::any_of(maps.begin(), maps.end(),
-					[&](const auto& known) { return detail::areAlike(known, map); }))
+			if (detail::isAmong(maps, map))
 				continue;
 			if (maps.size() == maximum)
 				return generators;
@@ -358,18 +364,16 @@ inline std::vector<Eigen::Isometry3d> generatedGroup(
 	return maps;
 }
 
-/// Whether maps make up no others but the identity: generatedGroup() may have given up.
+/// Whether maps, with the identity, are closed under composition; not where generatedGroup() gave up.
 /// Complexity: cubic in their number.
 inline bool isGroup(const std::vector<Eigen::Isometry3d>& maps)
 {
-	const auto isKnown = [&](const Eigen::Isometry3d& map) {
-		return detail::areAlike(map, Eigen::Isometry3d::Identity())
-			|| std::any_of(maps.begin(), maps.end(),
-				[&](const auto& known) { return detail::areAlike(known, map); });
-	};
 	return std::all_of(maps.begin(), maps.end(), [&](const Eigen::Isometry3d& one) {
-		return std::all_of(maps.begin(), maps.end(),
-			[&](const Eigen::Isometry3d& other) { return isKnown(one * other); });
+		return std::all_of(maps.begin(), maps.end(), [&](const Eigen::Isometry3d& other) {
+			const Eigen::Isometry3d product = one * other;
+			return detail::areAlike(product, Eigen::Isometry3d::Identity())
+				|| detail::isAmong(maps, product);
+		});
 	});
 }
 
