@@ -184,6 +184,40 @@ TEST(Skeletonize, ARegularPlateHasABranchIntoEachCorner)
 	}
 }
 
+TEST(Skeletonize, TheWallsOfPlatesHaveNoBranches)
+{
+	const auto isNearOne = [](const std::vector<Point3d>& places, const Point3d& tip) {
+		return std::any_of(places.begin(), places.end(),
+			[&](const Point3d& place) { return Distance(tip, place) < 3.5; });
+	};
+	// A chair: four legs, and two corners of its back; none in the middles of the seat's sides.
+	const shapes::Soup chair = shapes::cells(24, 24, 50, [](int i, int j, int k) {
+		const bool isAtLeg = (i < 2 || i >= 22) && (j < 2 || j >= 22);
+		return (k < 20 && isAtLeg) || (k >= 20 && k < 22) || (k >= 22 && j >= 22);
+	});
+	std::vector<Point3d> ends = {{1, 23, 49}, {23, 23, 49}};
+	for (const double x : {1, 23})
+		for (const double y : {1, 23})
+			ends.push_back({x, y, 1});
+	const std::vector<Point3d> tips = curves::tips(run(chair, Parameters()).curve);
+	EXPECT_EQ(tips.size(), ends.size());
+	for (const Point3d& tip : tips)
+		EXPECT_TRUE(isNearOne(ends, tip)) << tip[0] << " " << tip[1] << " " << tip[2];
+	// A plate with two holes: no branch ends at their rims, nor in the face between them.
+	const shapes::Soup plate = shapes::cells(60, 40, 4, [](int i, int j, int) {
+		const auto isInHole = [&](double x, double y, double radius) {
+			return std::hypot(i + 0.5 - x, j + 0.5 - y) < radius;
+		};
+		return !isInHole(38, 12, 5) && !isInHole(38, 28, 5);
+	});
+	std::vector<Point3d> corners;
+	for (const double x : {1.5, 58.5})
+		for (const double y : {1.5, 38.5})
+			corners.push_back({x, y, 2});
+	for (const Point3d& tip : curves::tips(run(plate, Parameters()).curve))
+		EXPECT_TRUE(isNearOne(corners, tip)) << tip[0] << " " << tip[1] << " " << tip[2];
+}
+
 TEST(Skeletonize, ReadsEveryParameter)
 {
 	const shapes::Soup soup = shapes::fromFile("animal450");

@@ -689,10 +689,10 @@ TEST(Refine, TakesLowLimbsIfTheyAreLongAndFlatOnesIfTheyComeToAPoint)
 	EXPECT_FALSE(isEvenSpike(0.7)) << "along the rim of a plate";
 	EXPECT_TRUE(isLimb(1.5, 0, 0.3, 0.8)) << "a low spike";
 	EXPECT_FALSE(isLimb(0.5, 0, 1, 0.8)) << "a spike, but too short";
-	const auto isLobe = [&](double height, double spikiness, double size, bool isOnWall = false) {
+	const auto isLobe = [&](double height, double spikiness, double size) {
 		refining::FeatureBranch way = branch(6, 0.9);
 		const refining::Peak peak = {
-			0, 1, spikiness, height * way.radii.back() * size, height, /*saddle*/ 0, isOnWall};
+			0, 1, spikiness, height * way.radii.back() * size, height, /*saddle*/ 0};
 		for (double& r : way.radii)
 			r *= size;
 		for (Point3d& p : way.points)
@@ -703,7 +703,6 @@ TEST(Refine, TakesLowLimbsIfTheyAreLongAndFlatOnesIfTheyComeToAPoint)
 	EXPECT_FALSE(isLobe(3, 0.3, 0.01)) << "not high";
 	EXPECT_FALSE(isLobe(6, 0.2, 0.01)) << "round";
 	EXPECT_FALSE(isLobe(6, 0.3, 0.002)) << "no large part of the shape";
-	EXPECT_FALSE(isLobe(6, 0.7, 0.01, true)) << "the middle of a wall";
 }
 
 TEST(Refine, TheMiddlesOfAPlatesSidesAreNoLobes)

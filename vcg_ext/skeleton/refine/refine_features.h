@@ -17,10 +17,13 @@
 #include <skeleton/graph/curve_skeleton.h>
 #include <skeleton/spatial/closest_surface.h>
 
+#include <Eigen/Eigenvalues>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <queue>
 #include <set>
 #include <utility>
@@ -28,24 +31,50 @@
 
 namespace vcg::tri::mcf::refining {
 
-/// The vertices of the surface around a peak down to the height `lowest`. @throws Cancelled
-inline std::vector<int> verticesOfTip(const SurfaceComponent& surface, const Heights& heights,
-	int peak, double lowest, const Progress& progress)
+/// The vertices of the surface that are connected with a given one through those that are taken, which
+/// is first. @throws Cancelled
+template <class IsTaken>
+std::vector<int> verticesAround(
+	const SurfaceComponent& surface, int given, const Progress& progress, const IsTaken& isTaken)
 {
-	std::vector<int> tip(1, peak);
+	std::vector<int> around(1, given);
 	std::vector<char> seen(surface.size(), 0);
-	seen[peak] = 1;
+	seen[given] = 1;
 	detail::Ticker ticker(progress, "Refining the skeleton", surface.size());
-	for (size_t i = 0; i < tip.size(); ++i) {
+	for (size_t i = 0; i < around.size(); ++i) {
 		ticker.tick();
-		surface.forEachNeighbour(tip[i], [&](int w) {
-			if (!seen[w] && heights.height[w] >= lowest) {
+		surface.forEachNeighbour(around[i], [&](int w) {
+			if (!seen[w] && isTaken(w)) {
 				seen[w] = 1;
-				tip.push_back(w);
+				around.push_back(w);
 			}
 		});
 	}
-	return tip;
+	return around;
+}
+
+/**
+ * The normal, up to its sign, of the plate that a part of the surface belongs to: the eigenvector of
+ * the greatest eigenvalue of int n n^T dA; nothing if that is less than one and a half times the
+ * next one, as in a limb or at the end of a thick plate.
+ */
+inline std::optional<Point3d> normalOfPlate(
+	const SurfaceComponent& surface, const std::vector<int>& vertices)
+{
+	constexpr double flat = 1.5;
+	Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+	for (int v : vertices) {
+		const Point3d area = surface.areaVector(v);
+		if (const double size = area.Norm(); size > 0) {
+			const Eigen::Vector3d n(area[0], area[1], area[2]);
+			sum += n * n.transpose() / size;
+		}
+	}
+	const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(sum);
+	if (!(solver.eigenvalues()[2] >= flat * solver.eigenvalues()[1]))
+		return std::nullopt;
+	const Eigen::Vector3d normal = solver.eigenvectors().col(2);
+	return Point3d(normal[0], normal[1], normal[2]);
 }
 
 /// The middle of the surface around a peak down to the height `lowest`: a point in its feature's
@@ -55,38 +84,10 @@ inline Point3d middleOfTip(const SurfaceComponent& surface, const Heights& heigh
 	double lowest, const Progress& progress)
 {
 	Box3d box;
-	for (int v : verticesOfTip(surface, heights, peak, lowest, progress))
+	for (int v :
+		verticesAround(surface, peak, progress, [&](int w) { return heights.height[w] >= lowest; }))
 		box.Add(surface.position(v));
 	return box.Center();
-}
-
-/**
- * Whether a peak lies on a straight wall of a plate, such as the middle of a square's side, which is
- * high above branches into the corners: the surface around it, down to half its height
- * or to the next peak, reaches to both sides, and its ends and the peak are nearly on a line. Around
- * the tip of a lobe they are not, and a lobe that is longer than wide reaches only away from it.
- * @param normal  of the plate, unit length; all is projected along it. @throws Cancelled
- */
-inline bool isOnStraightWall(const SurfaceComponent& surface, const Heights& heights,
-	const Peak& peak, const Point3d& normal, const Progress& progress)
-{
-	constexpr double minOtherSide = 0.25, straight = 150 * M_PI / 180;
-	const std::vector<int> tip = verticesOfTip(
-		surface, heights, peak.vertex, std::max(peak.height / 2, peak.saddle), progress);
-	const auto place = [&](int v) {
-		const Point3d& p = surface.position(v);
-		return p - normal * (p * normal);
-	};
-	const auto farthestFrom = [&](const Point3d& p) {
-		return place(*std::max_element(tip.begin(), tip.end(), [&](int v, int w) {
-			return SquaredDistance(place(v), p) < SquaredDistance(place(w), p);
-		}));
-	};
-	const Point3d top = place(peak.vertex);
-	const Point3d one = farthestFrom(farthestFrom(top)), other = farthestFrom(one);
-	const Point3d a = one - top, b = other - top;
-	return std::min(a.Norm(), b.Norm()) >= minOtherSide * std::max(a.Norm(), b.Norm())
-		&& std::atan2((a ^ b).Norm(), a * b) >= straight;
 }
 
 /// The node of the first ball that is met on the surface around a peak, by distance along edges.
@@ -250,6 +251,13 @@ inline FeatureBranch traceBranch(const CurveSkeleton& skeleton, const HoldingBal
 	return branch;
 }
 
+/// Whether most of a branch runs through a plate or along its rim.
+inline bool isMostlyInPlate(const FeatureBranch& branch)
+{
+	constexpr double most = 0.6;
+	return branch.flat + branch.rim >= most;
+}
+
 /// Whether a branch and its peak are high and spiky enough for the lobe of a plate.
 inline bool isHighAsLobe(const FeatureBranch& branch, const Peak& peak, const FeatureRule& rule)
 {
@@ -263,8 +271,8 @@ inline bool isHighAsLobe(const FeatureBranch& branch, const Peak& peak, const Fe
  * Whether a branch leads into a limb: not into the corner of a box, on the way to which the balls
  * shrink nearly as fast as they advance; not along the rim of a plate, which ends in its corner;
  * and not through a plate, in which it could lead anywhere, unless the plate comes to a point and
- * is longer than thick, as an ear is, or is itself a lobe, high above the balls, a large part of the
- * shape, and not only the middle of a wall.
+ * is longer than thick, as an ear is, or is itself a lobe, high above the balls and a large part of the
+ * shape.
  *
  * The branch into a low spike is short: where it enters the body, its few samples can look like a
  * rim or a plate. For spikes, such samples only count if they cover more than a radius; and where
@@ -286,11 +294,61 @@ inline bool leadsIntoLimb(const FeatureBranch& branch, const Peak& peak, const F
 		isSpike ? rule.minWay : std::max(rule.minWay, rule.minProtrusion / peak.relativeHeight);
 	if (way < minWay * radius || gain < rule.minGain)
 		return false;
-	const bool isLobe = isHighAsLobe(branch, peak, rule) && !peak.isOnWall;
-	return isLobe || isSpike
+	return isHighAsLobe(branch, peak, rule) || isSpike
 		|| (branch.rim <= maxRim && (branch.flat <= mostlyFlat || way >= minWayIfFlat * radius)
 			&& branch.flat
 				<= (gain > evenGain ? maxFlatnessIfEven : maxFlatnessIfSpiky * peak.spikiness));
+}
+
+/**
+ * Whether a peak of a plate is no lobe: it lies in the middle of a face, or on a wall that is straight
+ * or hollow there, such as the middle of a square's side or the rim of a hole, which are high above
+ * branches into the corners or a curve around the hole. Seen along the plate's normal, the ends of
+ * the wall around the peak, down to half its height or to the next peak and no farther away than it is
+ * high, lie on both sides of it and nearly on a line with it, or farther out. Around the tip of a lobe
+ * they lie farther in.
+ * @param joint  where the branch into the peak begins. @throws Cancelled
+ */
+inline bool isNoLobe(const SurfaceComponent& component, const Heights& heights, const Peak& peak,
+	const Point3d& joint, const Progress& progress)
+{
+	constexpr double minOtherSide = 0.25, straight = 165 * M_PI / 180;
+	constexpr double alongFace = 0.85;  // cosine: the edges of a wall have 0.7
+	constexpr double besideWall = 0.25; // heights
+	const auto distance = [&](int v) {
+		return Distance(component.position(v), component.position(peak.vertex));
+	};
+	const auto isNear = [&](int v) { return distance(v) <= peak.height; };
+	const std::vector<int> around = verticesAround(component, peak.vertex, progress, isNear);
+	const std::optional<Point3d> normal = normalOfPlate(component, around);
+	if (!normal)
+		return false;
+	const auto isOnFace = [&](int v) {
+		const Point3d own = component.areaVector(v);
+		return std::abs(own * *normal) >= alongFace * own.Norm();
+	};
+	int top = -1; // the vertex of the wall nearest to the peak
+	for (int v : around)
+		if (!isOnFace(v) && (top < 0 || distance(v) < distance(top)))
+			top = v;
+	if (top < 0 || distance(top) > besideWall * peak.height)
+		return true;
+	const double lowest = std::max(peak.height / 2, peak.saddle);
+	std::vector<Point3d> wall; // from the top
+	for (int v : verticesAround(component, top, progress,
+			 [&](int w) { return isNear(w) && heights.height[w] >= lowest && !isOnFace(w); })) {
+		const Point3d way = component.position(v) - component.position(top);
+		wall.push_back(way - *normal * (way * *normal));
+	}
+	const auto farthestFrom = [&](const Point3d& p) {
+		return *std::max_element(wall.begin(), wall.end(), [&](const Point3d& a, const Point3d& b) {
+			return SquaredDistance(a, p) < SquaredDistance(b, p);
+		});
+	};
+	const Point3d one = farthestFrom(Point3d(0, 0, 0)), other = farthestFrom(one);
+	const bool isStraight = other.Norm() >= minOtherSide * one.Norm()
+		&& std::atan2((one ^ other).Norm(), one * other) >= straight;
+	return isStraight || (one + other) * (component.position(top) - joint) > 0;
 }
 
 /// A candidate feature, and whether it has got its branch.
@@ -392,8 +450,8 @@ inline FeatureBranch branchInto(const Peak& peak, const CurveSkeleton& skeleton,
 
 /**
  * Gives each feature without a branch one: where the surface is far above the skeleton's balls and
- * comes to a point, and where the way there leads through a limb or into the lobe of a plate. Rims
- * and the corners of solids, which curve skeletons leave out, are no features.
+ * comes to a point, and where the way there leads through a limb or into the lobe of a plate. Rims,
+ * the walls of plates and the corners of solids, which curve skeletons leave out, are no features.
  * @pre radius holds the distances from the surface, or lower bounds. @post the same.
  * @throws Cancelled. Complexity: O(V * N + V log V), and O(V log V) for each peak.
  */
@@ -418,19 +476,17 @@ inline void growFeatures(CurveSkeleton& skeleton, const SurfaceComponent& compon
 			last = next;
 		}
 	};
+	const auto isOnWall = [&](const Peak& peak, const FeatureBranch& branch) {
+		return isMostlyInPlate(branch)
+			&& isNoLobe(component, heights, peak, branch.points.back(), progress.cancelOnly());
+	};
 	const int nodes = int(skeleton.position.size());
 	HoldingBalls balls(skeleton);
 	std::vector<Feature> features;
-	for (Peak& peak : peaks(skeleton, component, heights, rule, progress.part(0.4, 0.8))) {
+	for (const Peak& peak : peaks(skeleton, component, heights, rule, progress.part(0.4, 0.8))) {
 		FeatureBranch branch = branchInto(
 			peak, skeleton, balls, component, heights, surface, rule, progress.cancelOnly());
-		if (isHighAsLobe(branch, peak, rule)) {
-			const Point3d& middle = branch.points[branch.points.size() / 2];
-			const Point3d normal = (surface.closest(middle).point - middle).Normalize();
-			peak.isOnWall =
-				isOnStraightWall(component, heights, peak, normal, progress.cancelOnly());
-		}
-		const bool grown = leadsIntoLimb(branch, peak, rule);
+		const bool grown = leadsIntoLimb(branch, peak, rule) && !isOnWall(peak, branch);
 		if (grown) {
 			add(branch);
 			balls.addNew();
@@ -440,7 +496,8 @@ inline void growFeatures(CurveSkeleton& skeleton, const SurfaceComponent& compon
 	// A corner whose branch would end in one that has just grown lies beside a limb.
 	for (const Feature& feature : features)
 		if (!feature.grown && feature.branch.joint < nodes
-			&& leadsIntoLoneCorner(skeleton, component, feature, features, rule))
+			&& leadsIntoLoneCorner(skeleton, component, feature, features, rule)
+			&& !isOnWall(feature.peak, feature.branch))
 			add(feature.branch);
 	std::sort(skeleton.edges.begin(), skeleton.edges.end());
 }

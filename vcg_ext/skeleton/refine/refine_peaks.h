@@ -68,6 +68,13 @@ struct SurfaceComponent
 	{
 		mesh.forEachOutgoing(vertices[i], [&](int h) { visit(place[mesh.target(h)]); });
 	}
+	/// The sum of the areas times the normals of the triangles around a vertex, times two.
+	Point3d areaVector(int i) const
+	{
+		Point3d sum(0, 0, 0);
+		mesh.forEachOutgoing(vertices[i], [&](int h) { sum += mesh.doubleAreaVector(h / 3); });
+		return sum;
+	}
 };
 
 /// The height of each vertex above the union of the skeleton's balls, and the nearest ball's node.
@@ -176,7 +183,6 @@ struct Peak
 	double height = 0, relativeHeight = 0;
 	/// The level at which the surface around it meets that around another peak; 0 if none is known.
 	double saddle = 0;
-	bool isOnWall = false; ///< see isOnStraightWall(); found only for what is high as a lobe
 };
 
 /// The vertices of positive height, the highest first; ties are broken by the coordinates.
