@@ -31,8 +31,8 @@
 
 namespace vcg::tri::mcf::refining {
 
-/// The vertices of the surface that are connected with a given one through those that are taken, which
-/// is first. @throws Cancelled
+/// A given vertex and those that are connected with it by edges through vertices that are taken, in
+/// breadth-first order. @throws Cancelled
 template <class IsTaken>
 std::vector<int> verticesAround(
 	const SurfaceComponent& surface, int given, const Progress& progress, const IsTaken& isTaken)
@@ -64,7 +64,7 @@ inline std::optional<Point3d> normalOfPlate(
 	constexpr double flat = 1.5;
 	Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
 	for (int v : vertices) {
-		const Point3d area = surface.areaVector(v);
+		const Point3d area = surface.doubleAreaVector(v);
 		if (const double size = area.Norm(); size > 0) {
 			const Eigen::Vector3d n(area[0], area[1], area[2]);
 			sum += n * n.transpose() / size;
@@ -301,15 +301,16 @@ inline bool leadsIntoLimb(const FeatureBranch& branch, const Peak& peak, const F
 }
 
 /**
- * Whether a peak of a plate is no lobe: it lies in the middle of a face, or on a wall that is straight
- * or hollow there, such as the middle of a square's side or the rim of a hole, which are high above
- * branches into the corners or a curve around the hole. Seen along the plate's normal, the ends of
- * the wall around the peak, down to half its height or to the next peak and no farther away than it is
- * high, lie on both sides of it and nearly on a line with it, or farther out. Around the tip of a lobe
- * they lie farther in.
- * @param joint  where the branch into the peak begins. @throws Cancelled
+ * Whether the wall of a plate bulges at a peak, as around the tip of a lobe. It does not where it is
+ * straight, as in the middle of a square's side, or hollow, as at the rim of a hole: both may be
+ * high above branches into the corners, or above a curve around the hole. Seen along the plate's
+ * normal, the ends of the wall around the peak, down to half its height or to the next peak and
+ * within a distance of that height, then lie on both sides of it and nearly on a line with it, or farther
+ * out; at a lobe they lie farther in. A peak in the middle of a face is at no wall.
+ * @param joint  where the branch into the peak begins.
+ * @return true where the surface is not like a plate. @throws Cancelled
  */
-inline bool isNoLobe(const SurfaceComponent& component, const Heights& heights, const Peak& peak,
+inline bool bulgesAt(const SurfaceComponent& component, const Heights& heights, const Peak& peak,
 	const Point3d& joint, const Progress& progress)
 {
 	constexpr double minOtherSide = 0.25, straight = 165 * M_PI / 180;
@@ -322,9 +323,9 @@ inline bool isNoLobe(const SurfaceComponent& component, const Heights& heights, 
 	const std::vector<int> around = verticesAround(component, peak.vertex, progress, isNear);
 	const std::optional<Point3d> normal = normalOfPlate(component, around);
 	if (!normal)
-		return false;
+		return true;
 	const auto isOnFace = [&](int v) {
-		const Point3d own = component.areaVector(v);
+		const Point3d own = component.doubleAreaVector(v);
 		return std::abs(own * *normal) >= alongFace * own.Norm();
 	};
 	int top = -1; // the vertex of the wall nearest to the peak
@@ -332,7 +333,7 @@ inline bool isNoLobe(const SurfaceComponent& component, const Heights& heights, 
 		if (!isOnFace(v) && (top < 0 || distance(v) < distance(top)))
 			top = v;
 	if (top < 0 || distance(top) > besideWall * peak.height)
-		return true;
+		return false;
 	const double lowest = std::max(peak.height / 2, peak.saddle);
 	std::vector<Point3d> wall; // from the top
 	for (int v : verticesAround(component, top, progress,
@@ -348,7 +349,8 @@ inline bool isNoLobe(const SurfaceComponent& component, const Heights& heights, 
 	const Point3d one = farthestFrom(Point3d(0, 0, 0)), other = farthestFrom(one);
 	const bool isStraight = other.Norm() >= minOtherSide * one.Norm()
 		&& std::atan2((one ^ other).Norm(), one * other) >= straight;
-	return isStraight || (one + other) * (component.position(top) - joint) > 0;
+	const bool isHollow = (one + other) * (component.position(top) - joint) > 0;
+	return !isStraight && !isHollow;
 }
 
 /// A candidate feature, and whether it has got its branch.
@@ -476,9 +478,9 @@ inline void growFeatures(CurveSkeleton& skeleton, const SurfaceComponent& compon
 			last = next;
 		}
 	};
-	const auto isOnWall = [&](const Peak& peak, const FeatureBranch& branch) {
-		return isMostlyInPlate(branch)
-			&& isNoLobe(component, heights, peak, branch.points.back(), progress.cancelOnly());
+	const auto isLobeIfInPlate = [&](const Peak& peak, const FeatureBranch& branch) {
+		return !isMostlyInPlate(branch)
+			|| bulgesAt(component, heights, peak, branch.points.back(), progress.cancelOnly());
 	};
 	const int nodes = int(skeleton.position.size());
 	HoldingBalls balls(skeleton);
@@ -486,7 +488,7 @@ inline void growFeatures(CurveSkeleton& skeleton, const SurfaceComponent& compon
 	for (const Peak& peak : peaks(skeleton, component, heights, rule, progress.part(0.4, 0.8))) {
 		FeatureBranch branch = branchInto(
 			peak, skeleton, balls, component, heights, surface, rule, progress.cancelOnly());
-		const bool grown = leadsIntoLimb(branch, peak, rule) && !isOnWall(peak, branch);
+		const bool grown = leadsIntoLimb(branch, peak, rule) && isLobeIfInPlate(peak, branch);
 		if (grown) {
 			add(branch);
 			balls.addNew();
@@ -497,7 +499,7 @@ inline void growFeatures(CurveSkeleton& skeleton, const SurfaceComponent& compon
 	for (const Feature& feature : features)
 		if (!feature.grown && feature.branch.joint < nodes
 			&& leadsIntoLoneCorner(skeleton, component, feature, features, rule)
-			&& !isOnWall(feature.peak, feature.branch))
+			&& isLobeIfInPlate(feature.peak, feature.branch))
 			add(feature.branch);
 	std::sort(skeleton.edges.begin(), skeleton.edges.end());
 }

@@ -68,8 +68,8 @@ struct SurfaceComponent
 	{
 		mesh.forEachOutgoing(vertices[i], [&](int h) { visit(place[mesh.target(h)]); });
 	}
-	/// The sum of the areas times the normals of the triangles around a vertex, times two.
-	Point3d areaVector(int i) const
+	/// Sum of the double area vectors of the triangles around a vertex.
+	Point3d doubleAreaVector(int i) const
 	{
 		Point3d sum(0, 0, 0);
 		mesh.forEachOutgoing(vertices[i], [&](int h) { sum += mesh.doubleAreaVector(h / 3); });
