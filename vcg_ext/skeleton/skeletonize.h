@@ -197,13 +197,19 @@ inline Skeletonization skeletonizeOnce(const SurfaceInput& input, const Paramete
 
 	if (!parameters.resample)
 		result.poles = input.poles;
+	const MeasuredSurface measured(surface, progress.cancelOnly());
 	if (!result.poles)
 		result.poles = std::make_shared<const PoleSet>(
-			medialPoles(surface, parameters.poleMethod, progress.part(0.13, 0.23)));
+			medialPoles(measured, parameters.poleMethod, progress.part(0.13, 0.23)));
 	result.seconds.poles = clock.end(Phase::Poles);
 
-	Stage start = startOfFlow(
-		surface, *result.poles, held, parameters, progress.part(0.23, 0.25), observer.onNote);
+	BoundedField field; // that the flow and the refinement follow
+	if (parameters.adaptive)
+		field = boundedField(measured, *result.poles, parameters.relativeLength,
+			boundOfEpsilon(measured, sharedAmong(parameters, measured.diagonals())), nullptr,
+			progress.part(0.23, 0.24));
+	Stage start = startOfFlow(measured, *result.poles, held, parameters, progress.part(0.24, 0.25),
+		observer.onNote, &field);
 	result.stage = std::make_shared<const Stage>(
 		contractToSkeleton(std::move(start), parameters, progress.part(0.25, 0.85), observer));
 	const Stage& stage = *result.stage;
@@ -233,8 +239,9 @@ inline Skeletonization skeletonizeOnce(const SurfaceInput& input, const Paramete
 		scaled.adaptive = parameters.adaptive && refinement.adaptive;
 		scaled.relativeLength = parameters.relativeLength;
 		scaled.detail = parameters.detail;
-		Refinement refined = refineChecked(result.curve, surface, scaled, progress.part(0.9, 0.99),
-			parameters.poleMethod == PoleMethod::Balls ? result.poles.get() : nullptr);
+		const bool areBalls = parameters.poleMethod == PoleMethod::Balls;
+		Refinement refined = refineChecked(result.curve, measured, scaled, progress.part(0.9, 0.99),
+			areBalls ? result.poles.get() : nullptr, areBalls ? &field : nullptr);
 		result.curve = std::move(refined.skeleton);
 		result.refinement = refined.report;
 		result.countRefined();

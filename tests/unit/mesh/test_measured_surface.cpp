@@ -45,3 +45,19 @@ TEST(MeasuredSurface, SizesTurnWithTheShapeAndAreasDoNotHangOnTheTriangles)
 	EXPECT_NEAR(surface.diagonal(0), std::sqrt(14.0), 1e-12);
 	EXPECT_NEAR(surface.area(0), 22, 1e-12);
 }
+
+TEST(MeasuredSurface, TheFramesOfItsVerticesAreComputedOnce)
+{
+	const SurfaceMesh mesh = shapes::joined(
+		{shapes::box(1, 2, 3), shapes::moved(shapes::box(4, 4, 2), Point3d(10, 0, 0))})
+								 .mesh();
+	const MeasuredSurface surface(mesh);
+	const std::vector<PrincipalFrame>& frames = *surface.vertexFrames();
+	ASSERT_EQ(frames.size(), 2u);
+	const std::vector<PrincipalFrame> expected =
+		PrincipalFrame::ofPoints(mesh.position, surface.component(), 2);
+	for (size_t c = 0; c < frames.size(); ++c)
+		for (const Point3d& p : mesh.position)
+			EXPECT_EQ(frames[c].in(p), expected[c].in(p));
+	EXPECT_EQ(surface.vertexFrames().get(), &frames);
+}

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -136,13 +137,12 @@ TEST(SizingField, RingsDoNotSpreadThroughTheHubsOfFans)
 		poles.radius.push_back(height / 2);
 	}
 	const detail::NeighbourLists neighbours(mesh, Progress());
-	std::vector<int> rings;
-	detail::RingScratch scratch(mesh.vertexSlots());
+	detail::RingScratch rings(mesh.vertexSlots()), scratch(mesh.vertexSlots());
 	size_t total = 0, hubs = 0;
 	for (int v = 0; v < mesh.vertexSlots(); ++v) {
 		detail::twoRings(neighbours, v, rings);
-		total += rings.size();
-		EXPECT_TRUE(detail::isThin(mesh, neighbours, poles.radius, v, scratch));
+		total += rings.around.size();
+		EXPECT_TRUE(detail::isThin(mesh, neighbours, poles.radius, height, v, scratch));
 		total += scratch.around.size();
 		hubs += neighbours.valence(v) == around;
 	}
@@ -151,6 +151,46 @@ TEST(SizingField, RingsDoNotSpreadThroughTheHubsOfFans)
 	for (double radius : detail::medianRadii(
 			 neighbours, poles, std::vector<char>(poles.radius.size(), 1), Progress()))
 		ASSERT_EQ(radius, height / 2);
+}
+
+TEST(SizingField, WhereNoBallAroundIsLargerTheRingsNeedNotBeWalked)
+{
+	const SurfaceMesh mesh = bottle().mesh();
+	const PoleSet poles = medialPoles(mesh, PoleMethod::Balls);
+	const detail::NeighbourLists neighbours(mesh, Progress());
+	const std::vector<double> radius = detail::medianRadii(
+		neighbours, poles, std::vector<char>(poles.radius.size(), 1), Progress());
+	const std::vector<double> largest = detail::largestAround(neighbours, radius, Progress());
+	detail::RingScratch walked(mesh.vertexSlots()), bounded(mesh.vertexSlots());
+	int thin = 0, notWalked = 0;
+	for (int v = 0; v < mesh.vertexSlots(); ++v) {
+		EXPECT_GE(largest[v], radius[v]);
+		const double unbounded = std::numeric_limits<double>::infinity();
+		const bool isThin = detail::isThin(mesh, neighbours, radius, unbounded, v, walked);
+		EXPECT_EQ(detail::isThin(mesh, neighbours, radius, largest[v], v, bounded), isThin) << v;
+		for (int w : walked.around)
+			EXPECT_LE(radius[w], largest[v]) << v;
+		thin += isThin;
+		notWalked += bounded.around.empty() || bounded.around.front() != v;
+	}
+	EXPECT_GT(thin, mesh.vertexCount() / 2);
+	EXPECT_GT(notWalked, mesh.vertexCount() / 4);
+}
+
+TEST(SizingField, OneThatIsKnownIsTakenForItsBoundOnly)
+{
+	const SurfaceMesh mesh = bottle().mesh();
+	const MeasuredSurface surface(mesh);
+	const PoleSet poles = medialPoles(surface, PoleMethod::Balls);
+	BoundedField known = boundedField(surface, poles, relative, {0.05}, nullptr);
+	EXPECT_EQ(known.length, sizingField(surface, poles, relative, {0.05}));
+	known.length.assign(known.length.size(), 0.01);
+	EXPECT_EQ(
+		boundedField(surface, poles, relative, {0.05 * (1 + 1e-15)}, &known).length, known.length);
+	for (const double bound : {0.04, 0.06})
+		EXPECT_EQ(boundedField(surface, poles, relative, {bound}, &known).length,
+			sizingField(surface, poles, relative, {bound}))
+			<< bound;
 }
 
 TEST(SizingField, NoiseIsNotThin)

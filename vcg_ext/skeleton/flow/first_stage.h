@@ -81,25 +81,35 @@ inline double cutsByField(const SurfaceMesh& mesh, const SizingField& field)
 	return cuts;
 }
 
+/// The bound of the sizing field below which epsilon follows it, for each component.
+inline std::vector<double> boundOfEpsilon(
+	const MeasuredSurface& surface, const Parameters& parameters)
+{
+	std::vector<double> bound;
+	for (double diagonal : surface.diagonals())
+		bound.push_back(parameters.epsilon / epsilonOfField * diagonal);
+	return bound;
+}
+
 /**
  * Stage::epsilonLimit for each vertex of a surface: epsilonOfField of the sizing field, at most
  * Parameters::maxEpsilon. Where edges are much longer than the shape is thick, as on a needle, the
  * shape does not change from one thickness to the next: the field is raised until cutsByField() is
  * at most thirty times the number of vertices.
  * @param poles of all vertices.
+ * @param known see boundedField().
  * @return empty if epsilon is small enough everywhere, or without parameters.adaptive.
  * @throws Cancelled. Complexity: as sizingField().
  */
 inline std::vector<double> epsilonLimits(const MeasuredSurface& surface, const PoleSet& poles,
-	const Parameters& parameters, const Progress& progress = Progress())
+	const Parameters& parameters, const Progress& progress = Progress(),
+	const BoundedField* known = nullptr)
 {
 	std::vector<double> limits;
 	if (!parameters.adaptive)
 		return limits;
-	std::vector<double> bound;
-	for (double diagonal : surface.diagonals())
-		bound.push_back(parameters.epsilon / epsilonOfField * diagonal);
-	SizingField field = sizingField(surface, poles, parameters.relativeLength, bound, progress);
+	auto [bound, field] = boundedField(surface, poles, parameters.relativeLength,
+		boundOfEpsilon(surface, parameters), known, progress);
 	constexpr double cutsOfVertex = 30;
 	const double maximum = cutsOfVertex * surface.mesh().vertexCount();
 	const auto cuts = [&](const SizingField& raised) {
@@ -231,21 +241,23 @@ inline FlowSurface surfaceForFlow(const MeasuredSurface& given, double epsilon,
  * have a correspondence. The middles of halved edges have their poles against the vertices of the
  * finer surface.
  *
- * @param surface    compact, closed; see checkedSurface().
+ * @param measured   compact, closed; see checkedSurface().
  * @param given      epsilon, poleMethod, adaptive and relativeLength are used; see sharedAmong().
  * @param poles      of all vertices of the surface, see medialPoles().
+ * @param known      see boundedField().
  * @throws SolverError, Cancelled, InvalidParameter. Complexity: O(V), and O(s log s) for s halved
  *         edges.
  */
-inline Stage firstStage(const SurfaceMesh& surface, const Parameters& given, const PoleSet& poles,
-	const Progress& progress = Progress())
+inline Stage firstStage(const MeasuredSurface& measured, const Parameters& given,
+	const PoleSet& poles, const Progress& progress = Progress(),
+	const BoundedField* known = nullptr)
 {
 	given.check();
 	const Progress begin = progress.cancelOnly();
-	const MeasuredSurface measured(surface, begin);
+	const SurfaceMesh& surface = measured.mesh();
 	const Parameters parameters = sharedAmong(given, measured.diagonals());
 	FlowSurface start = surfaceForFlow(measured, parameters.epsilon, poles, progress,
-		epsilonLimits(measured, poles, parameters, begin));
+		epsilonLimits(measured, poles, parameters, begin, known));
 	Stage stage;
 	stage.component = std::move(start.component);
 	stage.epsilonLimit = std::move(start.epsilonLimit);
@@ -283,6 +295,7 @@ inline Stage firstStage(const SurfaceMesh& surface, const Parameters& given, con
 	stage.surface =
 		std::make_shared<const std::vector<Point3d>>(detail::copiedArray(surface.position, end));
 	stage.surfaceTriangles = std::make_shared<const std::vector<Triangle>>(surface.triangles(end));
+	stage.frames = measured.vertexFrames(end);
 	stage.mesh = std::move(start.mesh);
 	const Extent extent = measuredExtent(
 		stage.mesh, stage.component, std::vector<double>(stage.diagonal.size(), 1), end);

@@ -198,6 +198,7 @@ inline Stage initialStage(
 	stage.surface = std::make_shared<const std::vector<Point3d>>(copied(surface.position));
 	stage.surfaceTriangles =
 		std::make_shared<const std::vector<Triangle>>(surface.triangles(progress));
+	stage.frames = measured.vertexFrames(progress);
 	stage.node = detail::numberedArray(stage.pole.size(), progress);
 	return stage;
 }

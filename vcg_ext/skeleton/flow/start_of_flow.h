@@ -34,30 +34,30 @@ namespace vcg::tri::mcf {
  * held vertices and the rims of sheets stay where they are. Components that rest, see
  * componentsAtRest(), are fixed from the start either way.
  *
- * @param surface  compact.
+ * @param measured compact.
  * @param poles    of all its vertices, see medialPoles().
  * @param held     1 for the vertices to hold; empty if there are none.
  * @param given    see sharedAmong() for more than 50 components.
  * @param onNote   receives what is held and kept; may be empty.
+ * @param known    see boundedField().
  * @throws InvalidParameter, InvalidInput, SolverError, Cancelled.
  * Complexity: O(V), with sheets as sheetness().
  */
-inline Stage startOfFlow(const SurfaceMesh& surface, const PoleSet& poles,
+inline Stage startOfFlow(const MeasuredSurface& measured, const PoleSet& poles,
 	const std::vector<char>& held, const Parameters& given, const Progress& progress = Progress(),
-	const NoteCallback& onNote = {})
+	const NoteCallback& onNote = {}, const BoundedField* known = nullptr)
 {
 	if (held.empty() && !given.keepSheets && given.coarsen)
-		return firstStage(surface, given, poles, progress);
+		return firstStage(measured, given, poles, progress, known);
 	const Progress begin = progress.cancelOnly();
-	const MeasuredSurface measured(surface, begin);
 	const Parameters parameters = sharedAmong(given, measured.diagonals());
 	Stage stage = initialStage(measured, poles, begin);
-	stage.epsilonLimit = epsilonLimits(measured, poles, parameters, begin);
+	stage.epsilonLimit = epsilonLimits(measured, poles, parameters, begin, known);
 	const std::vector<char> rests = componentsAtRest(measured, begin);
 	for (size_t v = 0; v < stage.fixed.size(); ++v)
 		stage.fixed[v] = rests[stage.component[v]];
 	if (parameters.keepSheets) {
-		markSheets(stage, sheetness(surface, poles, progress.part(0, 0.4)),
+		markSheets(stage, sheetness(measured.mesh(), poles, progress.part(0, 0.4)),
 			parameters.sheetThreshold, progress.part(0.4, 0.5));
 		if (onNote) {
 			const auto marked = std::count(stage.sheet.begin(), stage.sheet.end(), 1);
@@ -70,7 +70,7 @@ inline Stage startOfFlow(const SurfaceMesh& surface, const PoleSet& poles,
 		}
 	}
 	if (held.empty() && !stage.hasSheets() && parameters.coarsen)
-		return firstStage(surface, parameters, poles, progress.part(0.5, 1));
+		return firstStage(measured, parameters, poles, progress.part(0.5, 1), known);
 	if (!held.empty()) {
 		holdVertices(stage, held);
 		if (onNote)

@@ -13,6 +13,8 @@
 
 #include <skeleton/core/progress.h>
 
+#include <memory>
+#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -56,6 +58,18 @@ public:
 
 	/// The frames of all components.
 	const std::vector<PrincipalFrame>& allFrames() const { return frames; }
+	/// The frames of the vertices of all components, see PrincipalFrame::ofPoints(): those that the
+	/// poles, the flow and the refinement work in. Computed by the first call, for all.
+	/// @throws Cancelled
+	const std::shared_ptr<const std::vector<PrincipalFrame>>& vertexFrames(
+		const Progress& progress = Progress()) const
+	{
+		std::call_once(vertexFramesOnce, [&] {
+			ofVertices = std::make_shared<const std::vector<PrincipalFrame>>(
+				PrincipalFrame::ofPoints(surface.position, ofVertex, size_t(count), progress));
+		});
+		return ofVertices;
+	}
 	/// The frame of a component.
 	const PrincipalFrame& frame(int c) const { return frames[c]; }
 	/// The area of a component, mesh units squared.
@@ -84,6 +98,8 @@ private:
 	int count = 0;
 	std::vector<int> ofVertex;
 	std::vector<PrincipalFrame> frames;
+	mutable std::once_flag vertexFramesOnce;
+	mutable std::shared_ptr<const std::vector<PrincipalFrame>> ofVertices;
 };
 
 } // namespace vcg::tri::mcf

@@ -16,7 +16,7 @@
 #include <skeleton/core/large_arrays.h>
 #include <skeleton/core/ticker.h>
 #include <skeleton/mesh/component_meshes.h>
-#include <skeleton/mesh/components.h>
+#include <skeleton/mesh/measured_surface.h>
 #include <skeleton/mesh/principal_frame.h>
 #include <skeleton/mesh/surface_mesh.h>
 
@@ -78,14 +78,14 @@ inline PoleSet polesOfComponent(const SurfaceMesh& mesh, const PrincipalFrame& f
  * medialPoles() of some vertices, against all vertices of their component; in the order of
  * `vertices`. Shrinking balls are searched for these vertices only; the Voronoi diagram is always
  * that of all.
- * @param component of each vertex of the mesh, see connectedComponents().
- * @param frames    of the vertices of each component, see PrincipalFrame::ofPoints().
- * @pre mesh is compact. @throws SolverError, Cancelled.
+ * @pre the surface is compact. @throws SolverError, Cancelled.
  */
-inline PoleSet polesAt(const SurfaceMesh& mesh, const std::vector<int>& component,
-	const std::vector<PrincipalFrame>& frames, const std::vector<int>& vertices, PoleMethod method,
-	const Progress& progress = Progress())
+inline PoleSet polesAt(const MeasuredSurface& surface, const std::vector<int>& vertices,
+	PoleMethod method, const Progress& whole = Progress())
 {
+	const SurfaceMesh& mesh = surface.mesh();
+	const std::vector<PrincipalFrame>& frames = *surface.vertexFrames(whole.part(0, 0.02));
+	const Progress progress = whole.part(0.02, 1);
 	if (frames.size() == 1)
 		return detail::polesOfComponent(mesh, frames.front(), vertices, method, progress);
 	const Progress begin = progress.cancelOnly();
@@ -96,7 +96,7 @@ inline PoleSet polesAt(const SurfaceMesh& mesh, const std::vector<int>& componen
 	PoleSet poles;
 	poles.centre = detail::filledArray(vertices.size(), Point3d(0, 0, 0), begin);
 	poles.radius = detail::filledArray(vertices.size(), -1.0, begin);
-	forEachComponent(mesh, component, int(frames.size()), progress,
+	forEachComponent(mesh, surface.component(), surface.components(), progress,
 		[&](int c, const SurfaceMesh& own, const std::vector<int>& ids, const Progress& part) {
 			std::vector<int> ofThese;
 			detail::cancellableLoop(int(ids.size()), part, [&](int i) {
@@ -115,32 +115,20 @@ inline PoleSet polesAt(const SurfaceMesh& mesh, const std::vector<int>& componen
 	return poles;
 }
 
-/// The same; finds the components and frames itself.
-inline PoleSet polesAt(const SurfaceMesh& mesh, const std::vector<int>& vertices, PoleMethod method,
-	const Progress& progress = Progress())
-{
-	int components = 0;
-	const std::vector<int> component =
-		connectedComponents(mesh, &components, progress.part(0, 0.02));
-	const std::vector<PrincipalFrame> frames = PrincipalFrame::ofPoints(
-		mesh.position, component, size_t(components), progress.part(0.02, 0.04));
-	return polesAt(mesh, component, frames, vertices, method, progress.part(0.04, 1));
-}
-
 /**
  * The inner medial pole of each vertex: the centre of a large ball inside the shape that touches
  * the surface at the vertex. Every pole lies inside the shape; a vertex without one has radius -1.
  * Each component is a solid of its own, as if the others were not there: they may lie within each
  * other, or cross.
- * @pre mesh is compact.
+ * @pre the surface is compact.
  * @throws SolverError, Cancelled.
  */
 inline PoleSet medialPoles(
-	const SurfaceMesh& mesh, PoleMethod method, const Progress& progress = Progress())
+	const MeasuredSurface& surface, PoleMethod method, const Progress& progress = Progress())
 {
-	std::vector<int> all(mesh.vertexSlots());
+	std::vector<int> all(surface.mesh().vertexSlots());
 	std::iota(all.begin(), all.end(), 0);
-	return polesAt(mesh, all, method, progress);
+	return polesAt(surface, all, method, progress);
 }
 
 } // namespace vcg::tri::mcf

@@ -88,23 +88,39 @@ private:
 /// all around a fan of triangles, which is no neighbourhood, in the square of its size.
 constexpr int maxSpread = 256;
 
-/// The vertices up to two edges away from v, v included, ascending; see maxSpread.
-inline void twoRings(const NeighbourLists& neighbours, int v, std::vector<int>& around)
+/// Scratch memory of a walk over the rings of each vertex of a mesh in turn.
+struct RingScratch
 {
-	around.assign(1, v);
-	neighbours.forEach(v, [&](int w) {
+	std::vector<int> around;
+	std::vector<int> seenFrom; ///< of each vertex: the last one whose rings held it, -1 if none did
+	std::vector<double> radii;
+	explicit RingScratch(int vertices) : seenFrom(size_t(vertices), -1) {}
+};
+
+/// The vertices up to two edges away from v, v first; see maxSpread.
+/// @param scratch receives them as `around`; used for other vertices before.
+inline void twoRings(const NeighbourLists& neighbours, int v, RingScratch& scratch)
+{
+	std::vector<int>& around = scratch.around;
+	const auto add = [&](int w) {
+		if (scratch.seenFrom[w] == v)
+			return;
+		scratch.seenFrom[w] = v;
 		around.push_back(w);
-		if (neighbours.valence(w) <= maxSpread)
-			neighbours.forEach(w, [&](int x) { around.push_back(x); });
-	});
-	std::sort(around.begin(), around.end());
-	around.erase(std::unique(around.begin(), around.end()), around.end());
+	};
+	around.clear();
+	add(v);
+	neighbours.forEach(v, add);
+	const size_t oneRing = around.size();
+	for (size_t i = 1; i < oneRing; ++i)
+		if (neighbours.valence(around[i]) <= maxSpread)
+			neighbours.forEach(around[i], add);
 }
 
-/// Calls visit(vertex, scratch) for each vertex, several at once, each thread with a
-/// Scratch(vertices) of its own.
+/// Calls visit(vertex, RingScratch&) for each vertex, several at once, each thread with scratch
+/// memory of its own.
 /// @throws Cancelled
-template <class Scratch, class Visit>
+template <class Visit>
 void forEachVertex(int vertices, const Progress& progress, const Visit& visit)
 {
 	constexpr int minForTeam = 1 << 12;
@@ -113,7 +129,7 @@ void forEachVertex(int vertices, const Progress& progress, const Visit& visit)
 		return;
 	forEachPart(rangesForThreads(vertices, minForTeam), progress, sizing,
 		[&](int begin, int end, const Progress& part) {
-			Scratch scratch(vertices);
+			RingScratch scratch(vertices);
 			for (int v = begin; v < end; ++v) {
 				if ((v - begin) % reportEvery == 0)
 					part.report(double(v - begin) / double(end - begin), sizing);
@@ -132,18 +148,12 @@ void forEachVertex(int vertices, const Progress& progress, const Visit& visit)
 inline std::vector<double> medianRadii(const NeighbourLists& neighbours, const PoleSet& poles,
 	const std::vector<char>& isNear, const Progress& progress)
 {
-	struct Scratch
-	{
-		std::vector<int> around;
-		std::vector<double> radii;
-		explicit Scratch(int) {}
-	};
 	std::vector<double> median(isNear.size(), std::numeric_limits<double>::infinity());
-	forEachVertex<Scratch>(int(isNear.size()), progress, [&](int v, Scratch& scratch) {
+	forEachVertex(int(isNear.size()), progress, [&](int v, RingScratch& scratch) {
 		if (!isNear[v])
 			return;
 		std::vector<double>& radii = scratch.radii;
-		twoRings(neighbours, v, scratch.around);
+		twoRings(neighbours, v, scratch);
 		radii.clear();
 		for (int w : scratch.around)
 			if (poles.has(w))
@@ -157,13 +167,27 @@ inline std::vector<double> medianRadii(const NeighbourLists& neighbours, const P
 	return median;
 }
 
-/// Scratch memory of isThin().
-struct RingScratch
+/// isThin() looks up to so many edges away.
+constexpr int farthestRing = 6;
+
+/// An upper bound of the radii up to farthestRing edges away from each vertex.
+/// @throws Cancelled. Complexity: O(E).
+inline std::vector<double> largestAround(
+	const NeighbourLists& neighbours, std::vector<double> radius, const Progress& progress)
 {
-	std::vector<int> around;
-	std::vector<char> seen; ///< zero for each vertex between two calls
-	explicit RingScratch(int vertices) : seen(size_t(vertices), 0) {}
-};
+	std::vector<double> next(radius.size());
+	for (int ring = 0; ring < farthestRing; ++ring) {
+		const Progress part =
+			progress.part(double(ring) / farthestRing, double(ring + 1) / farthestRing);
+		forEachVertex(int(radius.size()), part, [&](int v, RingScratch&) {
+			double largest = radius[v];
+			neighbours.forEach(v, [&](int w) { largest = std::max(largest, radius[w]); });
+			next[v] = largest;
+		});
+		radius.swap(next);
+	}
+	return radius;
+}
 
 /**
  * Whether small balls at a vertex mean that the shape is thin there. Balls shrink towards sharp
@@ -171,37 +195,41 @@ struct RingScratch
  * up to three edges away, and up to six within two radii r, at most a quarter may have balls larger
  * than 1.1 r + d / 4, d their distance. See maxSpread.
  * @param radius  see medianRadii().
+ * @param largest of all that it may look at, see largestAround(): along a tube it decides alone.
  */
 inline bool isThin(const SurfaceMesh& mesh, const NeighbourLists& neighbours,
-	const std::vector<double>& radius, int v, RingScratch& scratch)
+	const std::vector<double>& radius, double largest, int v, RingScratch& scratch)
 {
 	constexpr double reachOfRadius = 2, step = 0.1, slope = 0.25, maxGrowth = 0.25;
-	constexpr int always = 3, farthest = 6; // edges
+	constexpr int always = 3; // edges
 	std::vector<int>& around = scratch.around;
-	std::vector<char>& seen = scratch.seen;
+	std::vector<int>& seenFrom = scratch.seenFrom;
 	const Point3d& p = mesh.position[v];
 	const double reach = reachOfRadius * radius[v], larger = radius[v] * (1 + step);
+	if (largest <= larger)
+		return true;
 	around.assign(1, v);
-	seen[v] = 1;
+	seenFrom[v] = v;
 	int countLarger = 0;
 	size_t first = 0;
-	for (int ring = 0; ring < farthest && first < around.size(); ++ring) {
+	for (int ring = 0; ring < farthestRing && first < around.size(); ++ring) {
 		const size_t last = around.size();
 		for (; first < last; ++first) {
 			if (first > 0 && neighbours.valence(around[first]) > maxSpread)
 				continue;
 			neighbours.forEach(around[first], [&](int w) {
-				if (seen[w] || (ring >= always && Distance(mesh.position[w], p) > reach))
+				if (seenFrom[w] == v)
 					return;
-				seen[w] = 1;
+				seenFrom[w] = v;
+				const double squared = SquaredDistance(mesh.position[w], p);
+				if (ring >= always && squared > reach * reach)
+					return;
 				around.push_back(w);
-				countLarger += radius[w] > larger
-					&& radius[w] > larger + slope * Distance(mesh.position[w], p);
+				countLarger +=
+					radius[w] > larger && radius[w] > larger + slope * std::sqrt(squared);
 			});
 		}
 	}
-	for (int w : around)
-		seen[w] = 0;
 	return countLarger <= maxGrowth * double(around.size() - 1);
 }
 
@@ -322,12 +350,14 @@ inline SizingField sizingField(const MeasuredSurface& surface, const PoleSet& po
 	const detail::NeighbourLists neighbours(mesh, progress.part(0.1, 0.2));
 	const std::vector<double> radius =
 		detail::medianRadii(neighbours, poles, isNear, progress.part(0.2, 0.4));
+	const std::vector<double> largest =
+		detail::largestAround(neighbours, radius, progress.part(0.4, 0.45));
 	std::vector<char> isSeed(size_t(mesh.vertexSlots()), 0);
-	detail::forEachVertex<detail::RingScratch>(
-		mesh.vertexSlots(), progress.part(0.4, 0.6), [&](int v, detail::RingScratch& scratch) {
+	detail::forEachVertex(
+		mesh.vertexSlots(), progress.part(0.45, 0.6), [&](int v, detail::RingScratch& scratch) {
 			const double length = relativeLength * radius[v];
 			isSeed[v] = poles.has(v) && length > 0 && length < thin[component[v]]
-				&& detail::isThin(mesh, neighbours, radius, v, scratch);
+				&& detail::isThin(mesh, neighbours, radius, largest[v], v, scratch);
 		});
 	std::vector<Entry> seeds;
 	for (int v = 0; v < mesh.vertexSlots(); ++v)
@@ -392,6 +422,32 @@ inline SizingField sizingField(const MeasuredSurface& surface, const PoleSet& po
 	}
 	progress.report(1, detail::sizing);
 	return field;
+}
+
+/// A sizing field that several phases ask for, and the bound that it was computed for.
+struct BoundedField
+{
+	std::vector<double> bound; ///< of each component, mesh units
+	SizingField length;
+
+	/// Whether it is the field for this bound, too; up to rounding.
+	bool isFor(const std::vector<double>& other) const
+	{
+		constexpr double rounding = 1e-12;
+		return std::equal(bound.begin(), bound.end(), other.begin(), other.end(),
+			[](double a, double b) { return std::abs(a - b) <= rounding * b; });
+	}
+};
+
+/// sizingField(), or `known` where that is the same. @param known null: none is.
+inline BoundedField boundedField(const MeasuredSurface& surface, const PoleSet& poles,
+	double relativeLength, std::vector<double> bound, const BoundedField* known,
+	const Progress& progress = Progress())
+{
+	if (known && known->isFor(bound))
+		return *known;
+	SizingField length = sizingField(surface, poles, relativeLength, bound, progress);
+	return {std::move(bound), std::move(length)};
 }
 
 /**

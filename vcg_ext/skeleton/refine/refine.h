@@ -436,17 +436,17 @@ namespace refining {
 /**
  * The scale of each vertex, see LocalScale.
  * @param poles of all vertices; null: they are computed.
+ * @param known see boundedField().
  * @return empty where it is 1 everywhere. @throws Cancelled
  */
-inline std::vector<double> scaleOfVertices(const SurfaceMesh& surface,
-	const std::vector<int>& component, int components, const std::vector<PrincipalFrame>& frame,
-	const RefineParameters& parameters, const PoleSet* poles, const Progress& progress)
+inline std::vector<double> scaleOfVertices(const MeasuredSurface& surface,
+	const RefineParameters& parameters, const PoleSet* poles, const BoundedField* known,
+	const Progress& progress)
 {
 	constexpr double neutralSpacing = 0.005; // of the diagonal, where the field is neutralLength
 	std::vector<double> scale;
 	if (!parameters.adaptive)
 		return scale;
-	const MeasuredSurface measured(surface, component, components, progress);
 	PoleSet found;
 	if (!poles) {
 		found = medialPoles(surface, PoleMethod::Balls, progress);
@@ -454,13 +454,14 @@ inline std::vector<double> scaleOfVertices(const SurfaceMesh& surface,
 	}
 	const double neutral = neutralLength * parameters.spacing / neutralSpacing;
 	std::vector<double> bound;
-	for (const PrincipalFrame& own : frame)
-		bound.push_back(neutral * own.size());
-	const SizingField field =
-		sizingField(measured, *poles, parameters.relativeLength, bound, progress);
-	scale.reserve(field.size());
-	for (size_t v = 0; v < field.size(); ++v)
-		scale.push_back(std::min(1.0, field[v] / bound[component[v]]));
+	for (double diagonal : surface.diagonals())
+		bound.push_back(neutral * diagonal);
+	const BoundedField field =
+		boundedField(surface, *poles, parameters.relativeLength, std::move(bound), known, progress);
+	scale.reserve(field.length.size());
+	for (size_t v = 0; v < field.length.size(); ++v)
+		scale.push_back(
+			std::min(1.0, field.length[v] / field.bound[size_t(surface.component()[v])]));
 	return scale;
 }
 
@@ -619,21 +620,23 @@ inline Defect refineChecked(CurveSkeleton& refined, ClosestSurface& surface,
  * its own. The radius is measured anew, as the mean distance to these vertices.
  *
  * @param curve       its `node` has an entry for each vertex of `surface`.
- * @param surface     closed triangle mesh of any number of components, compact.
+ * @param measured    closed triangle mesh of any number of components, compact.
  * @param parameters  see RefineParameters.
  * @param progress    window for reports; cancelling leaves nothing behind.
  * @param poles       of all vertices of the surface, by shrinking balls; null: they are computed.
+ * @param known       see boundedField(); by the same poles and relative length.
  * @return the refined skeleton, mesh units, nodes of the first component first, and the report.
  * @throws InvalidParameter, InvalidInput if the correspondence does not fit the surface or the
  *         curve or the curve has nodes that are not finite, Cancelled.
  * Complexity: O(V log V + N log V) for V vertices and N nodes, and growFeatures().
  * Source: ours; see Tagliasacchi et al., "Mean Curvature Skeletons", SGP 2012, for the curve.
  */
-inline Refinement refineChecked(const CurveSkeleton& curve, const SurfaceMesh& surface,
+inline Refinement refineChecked(const CurveSkeleton& curve, const MeasuredSurface& measured,
 	const RefineParameters& parameters = RefineParameters(), const Progress& progress = Progress(),
-	const PoleSet* poles = nullptr)
+	const PoleSet* poles = nullptr, const BoundedField* known = nullptr)
 {
 	parameters.check();
+	const SurfaceMesh& surface = measured.mesh();
 	if (int(curve.node.size()) != surface.vertexSlots())
 		throw InvalidInput("The skeleton's correspondence is for a surface of "
 			+ std::to_string(curve.node.size()) + " vertices, this one has "
@@ -647,9 +650,8 @@ inline Refinement refineChecked(const CurveSkeleton& curve, const SurfaceMesh& s
 	});
 	if (!refining::isFinite(curve))
 		throw InvalidInput("The skeleton has nodes whose coordinates are not finite.");
-	int components = 0;
-	const std::vector<int> component =
-		connectedComponents(surface, &components, progress.part(0, 0.01));
+	const int components = measured.components();
+	const std::vector<int>& component = measured.component();
 	const std::vector<int> componentOfNode = componentOfNodes(curve, component);
 	const ComponentVertices vertices(component, components, progress.cancelOnly());
 	std::vector<std::vector<int>> nodes(components), edges(components);
@@ -660,8 +662,7 @@ inline Refinement refineChecked(const CurveSkeleton& curve, const SurfaceMesh& s
 		if (const int c = componentOfNode[curve.edges[e][0]]; c >= 0)
 			edges[c].push_back(int(e));
 	// Each component in its own principal frame, with a diagonal of 1.
-	const std::vector<PrincipalFrame> frame = PrincipalFrame::ofPoints(
-		surface.position, component, size_t(components), progress.part(0.01, 0.02));
+	const std::vector<PrincipalFrame>& frame = *measured.vertexFrames(progress.part(0, 0.02));
 	const auto toUnit = [&](const Point3d& p, int c) {
 		return frame[c].onGrid(p) / frame[c].sizeInside();
 	};
@@ -681,9 +682,8 @@ inline Refinement refineChecked(const CurveSkeleton& curve, const SurfaceMesh& s
 	std::vector<std::pair<int, int>>
 		kept; // nodes of the result that are as they were, and what they were
 	constexpr double sampleSpacing = 0.01;
-	refining::LocalScale scale(unit,
-		refining::scaleOfVertices(
-			surface, component, components, frame, parameters, poles, progress.cancelOnly()));
+	refining::LocalScale scale(
+		unit, refining::scaleOfVertices(measured, parameters, poles, known, progress.cancelOnly()));
 	const auto isThin = [&](int c) { return scale.minimum(vertices.ids[c]) < 1; };
 	for (int c = 0; c < components; ++c) {
 		if (nodes[c].empty())
@@ -756,7 +756,7 @@ inline Refinement refineChecked(const CurveSkeleton& curve, const SurfaceMesh& s
 }
 
 /// The skeleton of refineChecked() alone.
-inline CurveSkeleton refine(const CurveSkeleton& curve, const SurfaceMesh& surface,
+inline CurveSkeleton refine(const CurveSkeleton& curve, const MeasuredSurface& surface,
 	const RefineParameters& parameters = RefineParameters(), const Progress& progress = Progress())
 {
 	return refineChecked(curve, surface, parameters, progress).skeleton;

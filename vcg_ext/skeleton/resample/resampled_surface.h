@@ -159,7 +159,7 @@ inline std::optional<SizingField> fieldOfResampling(const MeasuredSurface& surfa
 		return std::nullopt;
 	PoleSet found;
 	if (!poles) {
-		found = medialPoles(surface.mesh(), PoleMethod::Balls, progress.part(0, 0.8));
+		found = medialPoles(surface, PoleMethod::Balls, progress.part(0, 0.8));
 		poles = &found;
 	}
 	SizingField field =
@@ -255,7 +255,7 @@ inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Paramete
 	PoleSet poles;
 	std::vector<double> thickness;
 	if (parameters.adaptive) {
-		poles = medialPoles(mesh, PoleMethod::Balls, progress.part(0.05, 0.15));
+		poles = medialPoles(surface, PoleMethod::Balls, progress.part(0.05, 0.15));
 		thickness = localThickness(surface, poles, parameters, progress.part(0.15, 0.2));
 	}
 	result.noise = measureNoise(surface, progress.part(0.2, 0.25), thickness);

@@ -58,17 +58,16 @@ public:
 			points(points),
 			triangles(triangles)
 	{
-		std::vector<Point3d> middle;
-		middle.reserve(triangles.size());
-		ids.reserve(triangles.size());
+		std::vector<Sample> samples;
+		samples.reserve(triangles.size());
 		detail::reportedLoop(int(triangles.size()), progress.part(0, 0.1), sorting, [&](int f) {
-			middle.push_back((corner(f, 0) + corner(f, 1) + corner(f, 2)) / 3.0);
-			ids.push_back(f);
+			samples.push_back({(corner(f, 0) + corner(f, 1) + corner(f, 2)) / 3.0, f});
 		});
 		nodes.reserve(triangles.size());
+		ids.reserve(triangles.size());
 		detail::Ticker ticker(progress.part(0.1, 1), sorting, double(triangles.size()));
 		if (!triangles.empty())
-			build(middle, 0, int(triangles.size()), ticker);
+			build(samples, 0, int(triangles.size()), ticker);
 	}
 
 	const std::vector<Node>& allNodes() const { return nodes; }
@@ -253,13 +252,23 @@ private:
 		return sum;
 	}
 
-	void build(const std::vector<Point3d>& middle, int begin, int end, detail::Ticker& ticker)
+	/// The centroid of a triangle beside its id while the tree is built: fetched by the id, centroids
+	/// would be far apart.
+	struct Sample
+	{
+		Point3d middle;
+		int id;
+	};
+
+	/// @pre ids holds those of the samples before `begin`.
+	void build(std::vector<Sample>& samples, int begin, int end, detail::Ticker& ticker)
 	{
 		const int at = int(nodes.size());
 		nodes.push_back({Box3d(), begin, end, -1});
 		if (end - begin <= leafSize) {
 			for (int i = begin; i < end; ++i) {
-				nodes[size_t(at)].box.Add(boxOf(ids[size_t(i)]));
+				ids.push_back(samples[size_t(i)].id);
+				nodes[size_t(at)].box.Add(boxOf(ids.back()));
 				ticker.tick();
 			}
 			return;
@@ -270,19 +279,19 @@ private:
 			ticker.check();
 		Box3d spread;
 		for (int i = begin; i < end; ++i)
-			spread.Add(middle[size_t(ids[size_t(i)])]);
+			spread.Add(samples[size_t(i)].middle);
 		if (end - begin >= many)
 			ticker.check();
 		const int axis = spread.MaxDim();
 		const int half = (begin + end) / 2;
-		std::nth_element(
-			ids.begin() + begin, ids.begin() + half, ids.begin() + end, [&](int a, int b) {
-				const double x = middle[size_t(a)][axis], y = middle[size_t(b)][axis];
-				return x != y ? x < y : a < b;
+		std::nth_element(samples.begin() + begin, samples.begin() + half, samples.begin() + end,
+			[axis](const Sample& a, const Sample& b) {
+				const double x = a.middle[axis], y = b.middle[axis];
+				return x != y ? x < y : a.id < b.id;
 			});
-		build(middle, begin, half, ticker);
+		build(samples, begin, half, ticker);
 		const int right = int(nodes.size());
-		build(middle, half, end, ticker);
+		build(samples, half, end, ticker);
 		nodes[size_t(at)].right = right;
 		nodes[size_t(at)].box = nodes[size_t(at) + 1].box;
 		nodes[size_t(at)].box.Add(nodes[size_t(right)].box);
