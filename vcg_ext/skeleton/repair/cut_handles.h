@@ -92,6 +92,7 @@ private:
 	{
 		std::vector<int> vertices, steps, faces;
 	};
+	class Marked;
 
 	std::vector<Point3d>& points;
 	std::vector<Triangle>& triangles;
@@ -101,6 +102,9 @@ private:
 	std::vector<int> pieceOfPoint, genus;
 	std::vector<double> diagonal;
 	std::vector<int> placeOf, faceAt; ///< number in the current patch, -1: not in it
+	// Scratch of isCertainlyPlanar().
+	std::vector<char> reached;
+	std::vector<int> front;
 
 	static int next(int h) { return SurfaceMesh::next(h); }
 	int origin(int h) const { return triangles[size_t(h) / 3][size_t(h) % 3]; }
@@ -180,10 +184,55 @@ private:
 		return patch;
 	}
 
+	/**
+	 * Whether the genus of a patch is 0 by a bound: of c components with b borders it is
+	 * (2 c - chi - b) / 2, and b >= c if each of them has one. Points where several fans of faces
+	 * meet count once in chi, which makes the bound larger.
+	 */
+	bool isCertainlyPlanar(const Patch& patch, const Marked& marked)
+	{
+		const int n = int(patch.faces.size());
+		int edges = 0, vertices = 0, components = 0;
+		for (int i = 0; i < 3 * n; ++i) {
+			edges += marked.partnerOf(i) < i;
+			int& place = placeOf[size_t(origin(marked.halfEdge(i)))];
+			vertices += place < 0;
+			place = 0;
+		}
+		for (int i = 0; i < 3 * n; ++i)
+			placeOf[size_t(origin(marked.halfEdge(i)))] = -1;
+		reached.assign(size_t(n), 0);
+		for (int first = 0; first < n; ++first) {
+			if (reached[size_t(first)])
+				continue;
+			++components;
+			bool hasBorder = false;
+			reached[size_t(first)] = 1;
+			front.assign(1, first);
+			while (!front.empty()) {
+				const int f = front.back();
+				front.pop_back();
+				for (int i = 3 * f; i < 3 * f + 3; ++i) {
+					const int j = marked.partnerOf(i);
+					hasBorder = hasBorder || j < 0;
+					if (j >= 0 && !reached[size_t(j) / 3]) {
+						reached[size_t(j) / 3] = 1;
+						front.push_back(j / 3);
+					}
+				}
+			}
+			if (!hasBorder)
+				return false;
+		}
+		return components - (vertices - edges + n) < 2;
+	}
+
 	/// The genus of a patch, summed over its components, each border closed by a disc.
 	int genusOf(const Patch& patch)
 	{
 		const Marked marked(*this, patch);
+		if (isCertainlyPlanar(patch, marked))
+			return 0;
 		const int n = int(patch.faces.size());
 		MergeForest pieces(n), fans(3 * n);
 		int edges = 0;

@@ -717,9 +717,9 @@ private:
 		turnOutward(given, faces, progress.part(0, 0.05));
 		TriangleTree tree(given, faces, progress.part(0.05, 0.1));
 		std::vector<SurfacePlace> places = placesByArea(given, faces, samples);
+		const std::vector<char> isOpen = isOfOpenPiece(given, faces, progress.cancelOnly());
 		const std::vector<double> weights =
-			layerWeights(tree, isOfOpenPiece(given, faces, progress.cancelOnly()),
-				layersApart * box.Diag(), progress.cancelOnly());
+			layerWeights(tree, isOpen, layersApart * box.Diag(), progress.cancelOnly());
 		Enclosure enclosure;
 		{
 			const WindingNumber winding(tree, progress.part(0.1, 0.12), weights);
@@ -741,7 +741,11 @@ private:
 		const double thin =
 			smallThickness(places, tree, thinPart, widest / ofThickness, progress.part(0.2, 0.25));
 		const double spacing = std::clamp(ofThickness * thin, narrowest, widest);
-		WrappedSurface made = wrap(tree, winding, spacing, maxNodes, progress.part(0.25, 0.8));
+		std::vector<char> isClosed;
+		for (char each : isOpen)
+			isClosed.push_back(!each);
+		WrappedSurface made =
+			wrap(tree, winding, isClosed, spacing, maxNodes, progress.part(0.25, 0.8));
 		if (made.triangles.empty())
 			refuse(error, false);
 		solid.report.outcome = SolidReport::Wrapped;

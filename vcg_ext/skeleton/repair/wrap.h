@@ -8,6 +8,7 @@
 #define VCG_MCF_WRAP_H
 
 #include "tetrahedral_lattice.h"
+#include "winding_columns.h"
 #include "winding_number.h"
 
 #include <skeleton/core/errors.h>
@@ -22,6 +23,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -47,8 +49,10 @@ namespace detail {
 class Wrapping
 {
 public:
-	Wrapping(const TriangleTree& tree, const WindingNumber& winding, double spacing, int maxNodes) :
-			tree(tree), winding(winding), maxNodes(maxNodes),
+	Wrapping(const TriangleTree& tree, const WindingNumber& winding,
+		const std::vector<char>& isClosed, double spacing, int maxNodes) :
+			tree(tree),
+			winding(winding), isClosed(isClosed), maxNodes(maxNodes),
 			lattice(originOf(tree, spacing), spacing)
 	{
 	}
@@ -56,7 +60,8 @@ public:
 	WrappedSurface run(const Progress& progress)
 	{
 		addNodesNearTriangles(progress.part(0, 0.15));
-		evaluate(progress.part(0.15, 0.55));
+		prepareWinding(progress.part(0.15, 0.2));
+		evaluate(progress.part(0.2, 0.55));
 		leaveOutFins(progress.part(0.55, 0.6));
 		placeVertices(progress.part(0.6, 0.9));
 		connect(progress.part(0.9, 1));
@@ -69,8 +74,18 @@ private:
 
 	const TriangleTree& tree;
 	const WindingNumber& winding;
+	const std::vector<char>& isClosed; ///< of each triangle; empty: none is
 	int maxNodes;
 	Lattice lattice;
+	std::optional<WindingColumns> columns; ///< of the closed pieces
+	/// The other triangles by themselves, if there are closed ones, too.
+	struct OpenPieces
+	{
+		std::vector<Triangle> triangles;
+		std::optional<TriangleTree> tree;
+		std::optional<WindingNumber> winding;
+	};
+	OpenPieces open;
 	std::vector<double> value;    ///< of w, for each node
 	std::vector<int> firstVertex; ///< of those on the edges forward from each node
 	WrappedSurface surface;
@@ -158,6 +173,32 @@ private:
 		}
 	}
 
+	void prepareWinding(const Progress& progress)
+	{
+		if (std::find(isClosed.begin(), isClosed.end(), 1) == isClosed.end())
+			return;
+		columns.emplace(tree, isClosed, lattice, progress.part(0, 0.5));
+		std::vector<double> weights;
+		for (int f = 0; f < tree.size(); ++f)
+			if (!isClosed[size_t(f)]) {
+				open.triangles.push_back(tree.triangle(f));
+				weights.push_back(winding.weight(f));
+			}
+		if (open.triangles.empty())
+			return;
+		open.tree.emplace(tree.allPoints(), open.triangles, progress.part(0.5, 0.9));
+		open.winding.emplace(*open.tree, progress.part(0.9, 1), std::move(weights));
+	}
+
+	double windingAt(int node) const
+	{
+		const Point3d p = lattice.position(node);
+		if (columns)
+			if (const std::optional<int> ofClosed = columns->at(lattice, lattice.place(node)))
+				return *ofClosed + (open.winding ? (*open.winding)(p) : 0);
+		return winding(p);
+	}
+
 	void evaluate(const Progress& progress)
 	{
 		for (int from = 0, first = lattice.size(); from < lattice.size();) {
@@ -167,7 +208,7 @@ private:
 			const Progress part = from == 0 ? progress.part(0, 0.9) : progress.cancelOnly();
 			forEachBlock(to - from, part, wrapping, [&](int begin, int end) {
 				for (int i = from + begin; i < from + end; ++i)
-					value[size_t(i)] = winding(lattice.position(i));
+					value[size_t(i)] = windingAt(i);
 			});
 			reportedLoop(
 				to - from, progress.part(0.9, from < first ? 1 : 0.9), wrapping, [&](int i) {
@@ -356,6 +397,9 @@ private:
  * open sheets are left out. Cavities are separate pieces.
  *
  * @param tree      of the triangles. @param winding  their winding number.
+ * @param isClosed  of each triangle, whether its piece has no border: of these the winding number is
+ *                  taken column by column, see WindingColumns, which takes a hundredth of the time.
+ *                  They have weight 1. Empty: none is.
  * @param spacing   of the lattice, mesh units, > 0: about the edge length of the result.
  * @param maxNodes  largest number of nodes of the lattice.
  * @throws SolverError if more nodes are needed, or the triangles reach over 1e9 spacings; Cancelled.
@@ -363,10 +407,11 @@ private:
  * Source: ours; marching tetrahedra after Doi and Koide, 1991, on the lattice of Labelle and
  * Shewchuk, 2007.
  */
-inline WrappedSurface wrap(const TriangleTree& tree, const WindingNumber& winding, double spacing,
-	int maxNodes, const Progress& progress = Progress())
+inline WrappedSurface wrap(const TriangleTree& tree, const WindingNumber& winding,
+	const std::vector<char>& isClosed, double spacing, int maxNodes,
+	const Progress& progress = Progress())
 {
-	return detail::Wrapping(tree, winding, spacing, maxNodes).run(progress);
+	return detail::Wrapping(tree, winding, isClosed, spacing, maxNodes).run(progress);
 }
 
 } // namespace vcg::tri::mcf

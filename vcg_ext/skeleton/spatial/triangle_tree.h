@@ -72,10 +72,12 @@ public:
 
 	const std::vector<Node>& allNodes() const { return nodes; }
 	const std::vector<int>& order() const { return ids; }
+	const std::vector<Point3d>& allPoints() const { return points; }
 	const Point3d& corner(int f, int k) const
 	{
 		return points[size_t(triangles[size_t(f)][size_t(k)])];
 	}
+	const Triangle& triangle(int f) const { return triangles[size_t(f)]; }
 	int size() const { return int(ids.size()); }
 
 	/// The closest point; of equally close ones, the one on the triangle that is visited first.

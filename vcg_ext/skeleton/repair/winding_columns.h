@@ -1,0 +1,173 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief Winding numbers of closed surfaces at the nodes of a lattice, column by column.
+
+#ifndef VCG_MCF_WINDING_COLUMNS_H
+#define VCG_MCF_WINDING_COLUMNS_H
+
+#include "tetrahedral_lattice.h"
+
+#include <skeleton/core/grouped_sort.h>
+#include <skeleton/core/progress.h>
+#include <skeleton/core/ticker.h>
+#include <skeleton/mesh/surface_mesh.h>
+#include <skeleton/spatial/triangle_tree.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/**
+ * The winding number of closed surfaces at the nodes of a lattice: an integer, the sum of the signed
+ * crossings of the ray from the node along z. The crossings of each column of nodes are found once,
+ * triangle by triangle.
+ */
+class WindingColumns
+{
+public:
+	using Place = TetrahedralLattice::Place;
+
+	/**
+	 * @param tree     the triangles. @param isClosed  of each, whether it counts: those that do have
+	 *                 each edge as often in one direction as in the other.
+	 * @param lattice  its origin and spacing are used.
+	 * @throws Cancelled. Complexity: O(F + n log n) for n crossings, about two for each squared
+	 *         spacing of the area seen along z.
+	 */
+	WindingColumns(const TriangleTree& tree, const std::vector<char>& isClosed,
+		const TetrahedralLattice& lattice, const Progress& progress = Progress())
+	{
+		detail::Ticker ticker(progress, counting, 2.0 * tree.size());
+		for (int f = 0; f < tree.size(); ++f)
+			if (isClosed[size_t(f)])
+				addCrossings(tree, f, lattice, ticker);
+		detail::sortCancellable(crossings, 0, crossings.size(), progress);
+		// From the top of each column down.
+		for (size_t i = crossings.size(); i-- > 0;) {
+			const bool isTop =
+				i + 1 == crossings.size() || crossings[i + 1].column != crossings[i].column;
+			crossings[i].winding = crossings[i].change + (isTop ? 0 : crossings[i + 1].winding);
+		}
+		for (size_t i = 0; i < crossings.size(); ++i)
+			if (i == 0 || crossings[i - 1].column != crossings[i].column)
+				columns.push_back(i);
+		columns.push_back(crossings.size());
+	}
+
+	/// The winding number at a node; nothing where rounding has lost a crossing of its column, so
+	/// that it does not end outside. On a triangle: that of its lower side.
+	/// Complexity: O(log n).
+	std::optional<int> at(const TetrahedralLattice& lattice, const Place& node) const
+	{
+		const Column column = {node[0], node[1]};
+		const auto found = std::lower_bound(columns.begin(), columns.end() - 1, column,
+			[&](size_t begin, const Column& c) { return crossings[begin].column < c; });
+		if (found == columns.end() - 1 || crossings[*found].column != column)
+			return 0;
+		if (crossings[*found].winding != 0)
+			return std::nullopt;
+		const auto end = crossings.begin() + std::ptrdiff_t(*(found + 1));
+		const auto above = std::lower_bound(crossings.begin() + std::ptrdiff_t(*found), end,
+			lattice.position(node)[2], [](const Crossing& c, double z) { return c.z < z; });
+		return above == end ? 0 : above->winding;
+	}
+
+private:
+	static constexpr const char* counting = "Wrapping the surface";
+	using Column = std::array<int, 2>; ///< of places
+
+	/// Where a column crosses a triangle.
+	struct Crossing
+	{
+		Column column;
+		int change;  ///< of the winding number, downwards
+		int winding; ///< just below: the sum of the changes from the top on
+		double z;
+
+		bool operator<(const Crossing& other) const
+		{
+			return column != other.column ? column < other.column
+				: z != other.z            ? z < other.z
+										  : change < other.change;
+		}
+	};
+
+	std::vector<Crossing> crossings; ///< by column, and from below in each
+	std::vector<size_t> columns;     ///< the first crossing of each, and the end of the last
+
+	/// Whether (x, y) is on the left of the edge from v to w, seen from above; on the other side
+	/// for w v, exactly. On the line it counts as moved by an infinitesimal step along x, and a yet
+	/// infinitely smaller one along y.
+	static bool isLeft(
+		const Triangle& t, const std::array<Point3d, 3>& corner, int k, double x, double y)
+	{
+		const int v = t[size_t(k)], w = t[size_t((k + 1) % 3)];
+		const Point3d &p = corner[size_t(v < w ? k : (k + 1) % 3)],
+					  &q = corner[size_t(v < w ? (k + 1) % 3 : k)];
+		const double dx = q[0] - p[0], dy = q[1] - p[1];
+		double side = dx * (y - p[1]) - dy * (x - p[0]);
+		if (side == 0)
+			side = dy != 0 ? -dy : dx;
+		return (side > 0) == (v < w);
+	}
+
+	void addCrossings(
+		const TriangleTree& tree, int f, const TetrahedralLattice& lattice, detail::Ticker& ticker)
+	{
+		const Triangle t = tree.triangle(f);
+		const std::array<Point3d, 3> corner = {
+			tree.corner(f, 0), tree.corner(f, 1), tree.corner(f, 2)};
+		const Point3d normal = (corner[1] - corner[0]) ^ (corner[2] - corner[0]);
+		if (normal[2] == 0)
+			return;
+		const Point3d origin = lattice.position(Place {0, 0, 0});
+		const double half = lattice.spacing() / 2;
+		const Box3d box = tree.boxOf(f);
+		// One line more on either side, for rounding: the test below is exact.
+		const int firstColumn = int(std::floor((box.min[0] - origin[0]) / half));
+		const int lastColumn = int(std::ceil((box.max[0] - origin[0]) / half));
+		for (int i = firstColumn; i <= lastColumn; ++i) {
+			const double x = lattice.position(Place {i, 0, 0})[0];
+			double low = std::numeric_limits<double>::infinity(), high = -low;
+			const auto reach = [&](double y) {
+				low = std::min(low, y);
+				high = std::max(high, y);
+			};
+			for (size_t k = 0; k < 3; ++k) {
+				const Point3d &p = corner[k], &q = corner[(k + 1) % 3];
+				if ((p[0] < x) == (q[0] < x))
+					continue;
+				reach(p[1] + (q[1] - p[1]) * ((x - p[0]) / (q[0] - p[0])));
+			}
+			for (const Point3d& p : corner)
+				if (p[0] == x)
+					reach(p[1]);
+			if (!(low <= high))
+				continue;
+			const int last = int(std::ceil((high - origin[1]) / half));
+			int j = int(std::floor((low - origin[1]) / half));
+			for (j -= (i - j) & 1; j <= last; j += 2) {
+				ticker.tick();
+				const double y = lattice.position(Place {0, j, 0})[1];
+				const bool left = isLeft(t, corner, 0, x, y);
+				if (isLeft(t, corner, 1, x, y) != left || isLeft(t, corner, 2, x, y) != left)
+					continue;
+				const double z = corner[0][2]
+					- (normal[0] * (x - corner[0][0]) + normal[1] * (y - corner[0][1])) / normal[2];
+				crossings.push_back(
+					{{i, j}, left ? 1 : -1, 0, std::clamp(z, box.min[2], box.max[2])});
+			}
+		}
+	}
+};
+
+} // namespace vcg::tri::mcf
+
+#endif
