@@ -107,8 +107,7 @@ TEST(WindingColumns, OnlyTheMarkedTrianglesCount)
 	const WindingColumns columns(tree, isClosed, lattice);
 	forEachPlace(40, [&](const TetrahedralLattice::Place& at) {
 		const Point3d p = lattice.position(at);
-		const bool isInside =
-			p[0] > 0 && p[0] < 2 && p[1] > 0 && p[1] < 2 && p[2] > 0 && p[2] < 2;
+		const bool isInside = p[0] > 0 && p[0] < 2 && p[1] > 0 && p[1] < 2 && p[2] > 0 && p[2] < 2;
 		EXPECT_EQ(columns.at(lattice, at), std::optional<int>(isInside));
 	});
 }
