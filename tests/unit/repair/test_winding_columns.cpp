@@ -51,7 +51,7 @@ TEST(WindingColumns, AreTheWindingNumbersOfClosedSurfacesThatCross)
 	const TriangleTree tree(soup.points, soup.triangles);
 	const WindingNumber winding(tree);
 	const TetrahedralLattice lattice(Point3d(-1.01, -1.02, -1.03), 0.1);
-	const WindingColumns columns(tree, std::vector<char>(soup.triangles.size(), 1), lattice);
+	const WindingColumns columns(tree, std::vector<char>(soup.triangles.size(), 0), lattice);
 	std::map<int, int> seen;
 	forEachPlace(90, [&](const TetrahedralLattice::Place& at) {
 		const std::optional<int> found = columns.at(lattice, at);
@@ -70,7 +70,7 @@ TEST(WindingColumns, NodesAboveVerticesAndEdgesAreCountedOnce)
 		{shapes::box(2, 2, 2), shapes::moved(shapes::box(1, 1, 1), Point3d(0.5, 0.5, 0.5))});
 	const TriangleTree tree(soup.points, soup.triangles);
 	const TetrahedralLattice lattice(Point3d(-1, -1, -1.03125), 0.5);
-	const WindingColumns columns(tree, std::vector<char>(soup.triangles.size(), 1), lattice);
+	const WindingColumns columns(tree, std::vector<char>(soup.triangles.size(), 0), lattice);
 	const auto isIn = [](double low, double x, double high) { return x > low && x < high; };
 	int inside = 0;
 	forEachPlace(17, [&](const TetrahedralLattice::Place& at) {
@@ -100,11 +100,11 @@ TEST(WindingColumns, OnlyTheMarkedTrianglesCount)
 	const shapes::Soup soup = shapes::joined(
 		{shapes::box(2, 2, 2), shapes::moved(shapes::box(2, 2, 2), Point3d(1, 1, 1))});
 	const TriangleTree tree(soup.points, soup.triangles);
-	std::vector<char> isClosed(soup.triangles.size(), 0);
-	for (size_t f = 0; f < isClosed.size() / 2; ++f)
-		isClosed[f] = 1;
+	std::vector<char> isOpen(soup.triangles.size(), 1);
+	for (size_t f = 0; f < isOpen.size() / 2; ++f)
+		isOpen[f] = 0;
 	const TetrahedralLattice lattice(Point3d(-0.53, -0.52, -0.51), 0.2);
-	const WindingColumns columns(tree, isClosed, lattice);
+	const WindingColumns columns(tree, isOpen, lattice);
 	forEachPlace(40, [&](const TetrahedralLattice::Place& at) {
 		const Point3d p = lattice.position(at);
 		const bool isInside = p[0] > 0 && p[0] < 2 && p[1] > 0 && p[1] < 2 && p[2] > 0 && p[2] < 2;
@@ -125,7 +125,7 @@ TEST(WindingColumns, AColumnThatDoesNotEndOutsideIsNotTrusted)
 	}
 	const TriangleTree tree(soup.points, kept);
 	const TetrahedralLattice lattice(Point3d(-0.53, -0.52, -0.51), 0.2);
-	const WindingColumns columns(tree, std::vector<char>(kept.size(), 1), lattice);
+	const WindingColumns columns(tree, std::vector<char>(kept.size(), 0), lattice);
 	EXPECT_FALSE(columns.at(lattice, {10, 10, 10}));
 	EXPECT_EQ(columns.at(lattice, {0, 0, 10}), std::optional<int>(0));
 }
@@ -140,10 +140,10 @@ TEST(WindingColumns, AWrapOfClosedAndOpenPiecesIsThatByWindingNumbersAlone)
 		shapes::joined({open, shapes::moved(turned(shapes::torus(), 0.3), Point3d(0.8, 0, 0.1))});
 	const TriangleTree tree(soup.points, soup.triangles);
 	const WindingNumber winding(tree);
-	std::vector<char> isClosed(soup.triangles.size(), 1);
+	std::vector<char> isOpen(soup.triangles.size(), 0);
 	for (size_t f = 0; f < closedFrom; ++f)
-		isClosed[f] = 0;
-	const WrappedSurface one = wrap(tree, winding, isClosed, 0.08, 1000000);
+		isOpen[f] = 1;
+	const WrappedSurface one = wrap(tree, winding, isOpen, 0.08, 1000000);
 	const WrappedSurface other = wrap(tree, winding, {}, 0.08, 1000000);
 	EXPECT_EQ(one.triangles, other.triangles);
 	ASSERT_EQ(one.points.size(), other.points.size());

@@ -179,10 +179,12 @@ inline std::vector<double> largestAround(
 	for (int ring = 0; ring < farthestRing; ++ring) {
 		const Progress part =
 			progress.part(double(ring) / farthestRing, double(ring + 1) / farthestRing);
-		forEachVertex(int(radius.size()), part, [&](int v, RingScratch&) {
-			double largest = radius[v];
-			neighbours.forEach(v, [&](int w) { largest = std::max(largest, radius[w]); });
-			next[v] = largest;
+		forEachBlock(int(radius.size()), part, sizing, [&](int begin, int end) {
+			for (int v = begin; v < end; ++v) {
+				double largest = radius[v];
+				neighbours.forEach(v, [&](int w) { largest = std::max(largest, radius[w]); });
+				next[v] = largest;
+			}
 		});
 		radius.swap(next);
 	}
@@ -195,7 +197,7 @@ inline std::vector<double> largestAround(
  * up to three edges away, and up to six within two radii r, at most a quarter may have balls larger
  * than 1.1 r + d / 4, d their distance. See maxSpread.
  * @param radius  see medianRadii().
- * @param largest of all that it may look at, see largestAround(): along a tube it decides alone.
+ * @param largest see largestAround(): where it is not larger, as along a tube, no ring is walked.
  */
 inline bool isThin(const SurfaceMesh& mesh, const NeighbourLists& neighbours,
 	const std::vector<double>& radius, double largest, int v, RingScratch& scratch)

@@ -92,7 +92,6 @@ private:
 	{
 		std::vector<int> vertices, steps, faces;
 	};
-	class Marked;
 
 	std::vector<Point3d>& points;
 	std::vector<Triangle>& triangles;
@@ -184,49 +183,6 @@ private:
 		return patch;
 	}
 
-	/**
-	 * Whether the genus of a patch is 0 by a bound: of c components with b borders it is
-	 * (2 c - chi - b) / 2, and b >= c if each of them has one. Points where several fans of faces
-	 * meet count once in chi, which makes the bound larger.
-	 */
-	bool isCertainlyPlanar(const Patch& patch, const Marked& marked)
-	{
-		const int n = int(patch.faces.size());
-		int edges = 0, vertices = 0, components = 0;
-		for (int i = 0; i < 3 * n; ++i) {
-			edges += marked.partnerOf(i) < i;
-			int& place = placeOf[size_t(origin(marked.halfEdge(i)))];
-			vertices += place < 0;
-			place = 0;
-		}
-		for (int i = 0; i < 3 * n; ++i)
-			placeOf[size_t(origin(marked.halfEdge(i)))] = -1;
-		reached.assign(size_t(n), 0);
-		for (int first = 0; first < n; ++first) {
-			if (reached[size_t(first)])
-				continue;
-			++components;
-			bool hasBorder = false;
-			reached[size_t(first)] = 1;
-			front.assign(1, first);
-			while (!front.empty()) {
-				const int f = front.back();
-				front.pop_back();
-				for (int i = 3 * f; i < 3 * f + 3; ++i) {
-					const int j = marked.partnerOf(i);
-					hasBorder = hasBorder || j < 0;
-					if (j >= 0 && !reached[size_t(j) / 3]) {
-						reached[size_t(j) / 3] = 1;
-						front.push_back(j / 3);
-					}
-				}
-			}
-			if (!hasBorder)
-				return false;
-		}
-		return components - (vertices - edges + n) < 2;
-	}
-
 	/// The genus of a patch, summed over its components, each border closed by a disc.
 	int genusOf(const Patch& patch)
 	{
@@ -303,6 +259,49 @@ private:
 		HandleCutter& cutter;
 		const Patch& patch;
 	};
+
+	/**
+	 * Whether the genus of a patch is 0 by a bound: of c components with b borders it is
+	 * (2 c - chi - b) / 2, and b >= c if each of them has one. Points where several fans of faces
+	 * meet are counted once in chi, which only raises the bound.
+	 */
+	bool isCertainlyPlanar(const Patch& patch, const Marked& marked)
+	{
+		const int n = int(patch.faces.size());
+		int edges = 0, vertices = 0, components = 0;
+		for (int i = 0; i < 3 * n; ++i) {
+			edges += marked.partnerOf(i) < i;
+			int& place = placeOf[size_t(origin(marked.halfEdge(i)))];
+			vertices += place < 0;
+			place = 0;
+		}
+		for (int i = 0; i < 3 * n; ++i)
+			placeOf[size_t(origin(marked.halfEdge(i)))] = -1;
+		reached.assign(size_t(n), 0);
+		for (int first = 0; first < n; ++first) {
+			if (reached[size_t(first)])
+				continue;
+			++components;
+			bool hasBorder = false;
+			reached[size_t(first)] = 1;
+			front.assign(1, first);
+			while (!front.empty()) {
+				const int f = front.back();
+				front.pop_back();
+				for (int i = 3 * f; i < 3 * f + 3; ++i) {
+					const int j = marked.partnerOf(i);
+					hasBorder = hasBorder || j < 0;
+					if (j >= 0 && !reached[size_t(j) / 3]) {
+						reached[size_t(j) / 3] = 1;
+						front.push_back(j / 3);
+					}
+				}
+			}
+			if (!hasBorder)
+				return false;
+		}
+		return components - (vertices - edges + n) < 2;
+	}
 
 	/// The loops of a patch that do not separate it. Its vertices are fans of its faces: where
 	/// several fans meet at one point, each is a vertex.

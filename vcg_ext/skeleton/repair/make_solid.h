@@ -741,11 +741,8 @@ private:
 		const double thin =
 			smallThickness(places, tree, thinPart, widest / ofThickness, progress.part(0.2, 0.25));
 		const double spacing = std::clamp(ofThickness * thin, narrowest, widest);
-		std::vector<char> isClosed;
-		for (char each : isOpen)
-			isClosed.push_back(!each);
 		WrappedSurface made =
-			wrap(tree, winding, isClosed, spacing, maxNodes, progress.part(0.25, 0.8));
+			wrap(tree, winding, isOpen, spacing, maxNodes, progress.part(0.25, 0.8));
 		if (made.triangles.empty())
 			refuse(error, false);
 		solid.report.outcome = SolidReport::Wrapped;

@@ -10,6 +10,7 @@
 #include <skeleton/core/progress.h>
 #include <skeleton/core/ticker.h>
 #include <skeleton/mesh/surface_mesh.h>
+#include <skeleton/spatial/vertical_crossing.h>
 
 #include <vcg/space/box3.h>
 
@@ -123,22 +124,11 @@ inline WindingVolumes windingVolumes(const std::vector<Point3d>& points,
 	std::vector<std::pair<double, int>> crossings; // of a ray: z, and the change of the winding
 	const auto addCrossing = [&](int f, double x, double y) {
 		const Triangle& t = triangles[size_t(f)];
-		const Point3d &a = points[size_t(t[0])], &b = points[size_t(t[1])],
-					  &c = points[size_t(t[2])];
-		const Point3d n = (b - a) ^ (c - a);
-		if (n[2] == 0)
+		const int crossing = detail::verticalCrossing(points, t, x, y);
+		if (crossing == 0)
 			return;
-		// The same for both triangles at an edge: no ray slips through or counts twice.
-		const auto isLeft = [&](int v, int w) {
-			const Point3d &p = points[size_t(std::min(v, w))], &q = points[size_t(std::max(v, w))];
-			const bool left = (q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0]) > 0;
-			return left == (v < w);
-		};
-		const bool left = isLeft(t[0], t[1]);
-		if (isLeft(t[1], t[2]) != left || isLeft(t[2], t[0]) != left)
-			return;
-		const double z = a[2] - (n[0] * (x - a[0]) + n[1] * (y - a[1])) / n[2];
-		crossings.emplace_back(z, n[2] < 0 ? 1 : -1);
+		if (const auto z = detail::heightOfPlane(points, t, x, y))
+			crossings.emplace_back(*z, -crossing);
 	};
 	const auto addVolumes = [&] {
 		std::sort(crossings.begin(), crossings.end());

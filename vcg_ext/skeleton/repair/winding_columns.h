@@ -14,6 +14,7 @@
 #include <skeleton/core/ticker.h>
 #include <skeleton/mesh/surface_mesh.h>
 #include <skeleton/spatial/triangle_tree.h>
+#include <skeleton/spatial/vertical_crossing.h>
 
 #include <algorithm>
 #include <array>
@@ -35,18 +36,18 @@ public:
 	using Place = TetrahedralLattice::Place;
 
 	/**
-	 * @param tree     the triangles. @param isClosed  of each, whether it counts: those that do have
-	 *                 each edge as often in one direction as in the other.
+	 * @param tree     the triangles. @param isOpen  of each, whether it does not count: those that do
+	 *                 have each edge as often in one direction as in the other.
 	 * @param lattice  its origin and spacing are used.
 	 * @throws Cancelled. Complexity: O(F + n log n) for n crossings, about two for each squared
 	 *         spacing of the area seen along z.
 	 */
-	WindingColumns(const TriangleTree& tree, const std::vector<char>& isClosed,
+	WindingColumns(const TriangleTree& tree, const std::vector<char>& isOpen,
 		const TetrahedralLattice& lattice, const Progress& progress = Progress())
 	{
 		detail::Ticker ticker(progress, counting, 2.0 * tree.size());
 		for (int f = 0; f < tree.size(); ++f)
-			if (isClosed[size_t(f)])
+			if (!isOpen[size_t(f)])
 				addCrossings(tree, f, lattice, ticker);
 		detail::sortCancellable(crossings, 0, crossings.size(), progress);
 		// From the top of each column down.
@@ -102,31 +103,10 @@ private:
 	std::vector<Crossing> crossings; ///< by column, and from below in each
 	std::vector<size_t> columns;     ///< the first crossing of each, and the end of the last
 
-	/// Whether (x, y) is on the left of the edge from v to w, seen from above; on the other side
-	/// for w v, exactly. On the line it counts as moved by an infinitesimal step along x, and a yet
-	/// infinitely smaller one along y.
-	static bool isLeft(
-		const Triangle& t, const std::array<Point3d, 3>& corner, int k, double x, double y)
-	{
-		const int v = t[size_t(k)], w = t[size_t((k + 1) % 3)];
-		const Point3d &p = corner[size_t(v < w ? k : (k + 1) % 3)],
-					  &q = corner[size_t(v < w ? (k + 1) % 3 : k)];
-		const double dx = q[0] - p[0], dy = q[1] - p[1];
-		double side = dx * (y - p[1]) - dy * (x - p[0]);
-		if (side == 0)
-			side = dy != 0 ? -dy : dx;
-		return (side > 0) == (v < w);
-	}
-
 	void addCrossings(
 		const TriangleTree& tree, int f, const TetrahedralLattice& lattice, detail::Ticker& ticker)
 	{
-		const Triangle t = tree.triangle(f);
-		const std::array<Point3d, 3> corner = {
-			tree.corner(f, 0), tree.corner(f, 1), tree.corner(f, 2)};
-		const Point3d normal = (corner[1] - corner[0]) ^ (corner[2] - corner[0]);
-		if (normal[2] == 0)
-			return;
+		const Triangle& t = tree.triangle(f);
 		const Point3d origin = lattice.position(Place {0, 0, 0});
 		const double half = lattice.spacing() / 2;
 		const Box3d box = tree.boxOf(f);
@@ -140,15 +120,13 @@ private:
 				low = std::min(low, y);
 				high = std::max(high, y);
 			};
-			for (size_t k = 0; k < 3; ++k) {
-				const Point3d &p = corner[k], &q = corner[(k + 1) % 3];
-				if ((p[0] < x) == (q[0] < x))
-					continue;
-				reach(p[1] + (q[1] - p[1]) * ((x - p[0]) / (q[0] - p[0])));
-			}
-			for (const Point3d& p : corner)
+			for (int k = 0; k < 3; ++k) {
+				const Point3d &p = tree.corner(f, k), &q = tree.corner(f, (k + 1) % 3);
+				if ((p[0] < x) != (q[0] < x))
+					reach(p[1] + (q[1] - p[1]) * ((x - p[0]) / (q[0] - p[0])));
 				if (p[0] == x)
 					reach(p[1]);
+			}
 			if (!(low <= high))
 				continue;
 			const int last = int(std::ceil((high - origin[1]) / half));
@@ -156,13 +134,12 @@ private:
 			for (j -= (i - j) & 1; j <= last; j += 2) {
 				ticker.tick();
 				const double y = lattice.position(Place {0, j, 0})[1];
-				const bool left = isLeft(t, corner, 0, x, y);
-				if (isLeft(t, corner, 1, x, y) != left || isLeft(t, corner, 2, x, y) != left)
+				const int change = detail::verticalCrossing(tree.allPoints(), t, x, y);
+				if (change == 0)
 					continue;
-				const double z = corner[0][2]
-					- (normal[0] * (x - corner[0][0]) + normal[1] * (y - corner[0][1])) / normal[2];
-				crossings.push_back(
-					{{i, j}, left ? 1 : -1, 0, std::clamp(z, box.min[2], box.max[2])});
+				if (const auto z = detail::heightOfPlane(tree.allPoints(), t, x, y))
+					crossings.push_back(
+						{{i, j}, change, 0, std::clamp(*z, box.min[2], box.max[2])});
 			}
 		}
 	}

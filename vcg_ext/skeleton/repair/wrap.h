@@ -50,9 +50,9 @@ class Wrapping
 {
 public:
 	Wrapping(const TriangleTree& tree, const WindingNumber& winding,
-		const std::vector<char>& isClosed, double spacing, int maxNodes) :
+		const std::vector<char>& isOpen, double spacing, int maxNodes) :
 			tree(tree),
-			winding(winding), isClosed(isClosed), maxNodes(maxNodes),
+			winding(winding), isOpen(isOpen), maxNodes(maxNodes),
 			lattice(originOf(tree, spacing), spacing)
 	{
 	}
@@ -74,7 +74,7 @@ private:
 
 	const TriangleTree& tree;
 	const WindingNumber& winding;
-	const std::vector<char>& isClosed; ///< of each triangle; empty: none is
+	const std::vector<char>& isOpen; ///< of each triangle; empty: all are
 	int maxNodes;
 	Lattice lattice;
 	std::optional<WindingColumns> columns; ///< of the closed pieces
@@ -175,12 +175,12 @@ private:
 
 	void prepareWinding(const Progress& progress)
 	{
-		if (std::find(isClosed.begin(), isClosed.end(), 1) == isClosed.end())
+		if (std::find(isOpen.begin(), isOpen.end(), 0) == isOpen.end())
 			return;
-		columns.emplace(tree, isClosed, lattice, progress.part(0, 0.5));
+		columns.emplace(tree, isOpen, lattice, progress.part(0, 0.5));
 		std::vector<double> weights;
 		for (int f = 0; f < tree.size(); ++f)
-			if (!isClosed[size_t(f)]) {
+			if (isOpen[size_t(f)]) {
 				open.triangles.push_back(tree.triangle(f));
 				weights.push_back(winding.weight(f));
 			}
@@ -397,9 +397,9 @@ private:
  * open sheets are left out. Cavities are separate pieces.
  *
  * @param tree      of the triangles. @param winding  their winding number.
- * @param isClosed  of each triangle, whether its piece has no border: of these the winding number is
- *                  taken column by column, see WindingColumns, which takes a hundredth of the time.
- *                  They have weight 1. Empty: none is.
+ * @param isOpen    of each triangle, whether its piece has a border; empty: all have. Pieces
+ *                  without one have weight 1, and their winding number is counted column by column,
+ *                  see WindingColumns, in a hundredth of the time.
  * @param spacing   of the lattice, mesh units, > 0: about the edge length of the result.
  * @param maxNodes  largest number of nodes of the lattice.
  * @throws SolverError if more nodes are needed, or the triangles reach over 1e9 spacings; Cancelled.
@@ -408,10 +408,10 @@ private:
  * Shewchuk, 2007.
  */
 inline WrappedSurface wrap(const TriangleTree& tree, const WindingNumber& winding,
-	const std::vector<char>& isClosed, double spacing, int maxNodes,
+	const std::vector<char>& isOpen, double spacing, int maxNodes,
 	const Progress& progress = Progress())
 {
-	return detail::Wrapping(tree, winding, isClosed, spacing, maxNodes).run(progress);
+	return detail::Wrapping(tree, winding, isOpen, spacing, maxNodes).run(progress);
 }
 
 } // namespace vcg::tri::mcf

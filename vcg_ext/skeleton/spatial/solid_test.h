@@ -8,6 +8,7 @@
 #define VCG_MCF_SOLID_TEST_H
 
 #include "triangle_tree.h"
+#include "vertical_crossing.h"
 
 #include <skeleton/core/progress.h>
 #include <skeleton/core/ticker.h>
@@ -168,35 +169,19 @@ private:
 		return axes[k];
 	}
 
-	/**
-	 * Whether p is on the left of v w in the plane of the first two axes; for w v the answer is
-	 * exactly the opposite. On the line, p counts as moved by an infinitesimal step along the first
-	 * axis, and by a yet infinitely smaller one along the second, so that the answers are
-	 * consistent at a vertex, too.
-	 */
-	bool isLeft(int v, int w, const Point3d& p) const
-	{
-		const Point3d &a = corner[std::min(v, w)], &b = corner[std::max(v, w)];
-		const double x = b[0] - a[0], y = b[1] - a[1];
-		double side = x * (p[1] - a[1]) - y * (p[0] - a[0]);
-		if (side == 0)
-			side = y != 0 ? -y : x;
-		return (side > 0) == (v < w);
-	}
-
 	/// +1 or -1 where the ray from p along the third axis leaves or enters through f, else 0.
 	int crossingAbove(int f, const Point3d& p) const
 	{
 		const Triangle& t = faces[f];
-		const bool left = isLeft(t[0], t[1], p);
-		if (isLeft(t[1], t[2], p) != left || isLeft(t[2], t[0], p) != left)
+		const int crossing = detail::verticalCrossing(corner, t, p[0], p[1]);
+		if (crossing == 0)
 			return 0;
 		const Point3d& a = corner[t[0]];
 		const Point3d n = (corner[t[1]] - a) ^ (corner[t[2]] - a);
 		if (n[2] == 0)
 			return 0;
 		const double height = ((a - p) * n) / n[2];
-		return height > 0 ? (left ? 1 : -1) : 0;
+		return height > 0 ? crossing : 0;
 	}
 };
 
