@@ -208,6 +208,7 @@ public:
 		if (!input.held.empty())
 			held = mcf::selectionOnResampled(*input.mesh, input.held, *mesh, progress);
 		contracted = std::move(mesh);
+		measured.reset();
 	}
 
 	/// Finds the medial pole of each vertex of the surface. @pre Step() was not called.
@@ -215,7 +216,7 @@ public:
 	{
 		Require(!stage, "ComputePoles() comes before Step().");
 		poles = std::make_shared<const mcf::PoleSet>(
-			mcf::medialPoles(*contracted, parameters.poleMethod, progress));
+			mcf::medialPoles(Measured(), parameters.poleMethod, progress));
 	}
 
 	/**
@@ -266,7 +267,7 @@ public:
 		refinement.adaptive = parameters.adaptive;
 		refinement.relativeLength = parameters.relativeLength;
 		refinement.detail = parameters.detail;
-		mcf::Refinement refined = mcf::refineChecked(*curve, *contracted, refinement, progress,
+		mcf::Refinement refined = mcf::refineChecked(*curve, Measured(), refinement, progress,
 			parameters.poleMethod == mcf::PoleMethod::Balls ? poles.get() : nullptr);
 		if (contracted != input.mesh)
 			mcf::bringInsideInput(refined.skeleton, *contracted, *input.mesh,
@@ -377,6 +378,7 @@ private:
 	mcf::Progress progress;
 	Surface input;
 	std::shared_ptr<const mcf::SurfaceMesh> contracted;
+	std::shared_ptr<const mcf::MeasuredSurface> measured; ///< see Measured()
 	std::vector<char> held;
 	std::shared_ptr<const mcf::PoleSet> poles;
 	std::optional<mcf::Stage> stage;
@@ -455,10 +457,18 @@ private:
 			return;
 		if (!poles)
 			ComputePoles();
-		stage = mcf::startOfFlow(*contracted, *poles, held, parameters, progress, params.on_note);
+		stage = mcf::startOfFlow(Measured(), *poles, held, parameters, progress, params.on_note);
 	}
 
 	bool IsDone() const { return mcf::isOver(*stage, parameters); }
+
+	/// The contracted surface with what all stages ask about it; computed by the first of them.
+	const mcf::MeasuredSurface& Measured()
+	{
+		if (!measured)
+			measured = std::make_shared<const mcf::MeasuredSurface>(*contracted, progress);
+		return *measured;
+	}
 
 	template <class SkeletonMesh>
 	static void FillSkeleton(SkeletonMesh& skeleton, const mcf::CurveSkeleton& curve,
