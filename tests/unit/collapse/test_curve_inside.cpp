@@ -88,6 +88,26 @@ std::vector<std::array<int, 2>> closed(int count)
 
 } // namespace
 
+TEST(CurveInside, IsCertainWhereNoTriangleIsOnTheCurve)
+{
+	// A tube around (0, 0, 0) to (10, 0, 0) of radius 1, of long triangles.
+	const SurfaceMesh tube = shapes::revolved({{-1, 0}, {-1, 1}, {11, 1}, {11, 0}}, 12).mesh();
+	const auto isCertain = [&](const std::vector<Point3d>& places,
+							   const std::vector<std::array<int, 2>>& edges) {
+		return detail::isCertainlyInside(
+			places, edges, tube.position, tube.triangles(), Progress());
+	};
+	EXPECT_TRUE(isCertain({{0, 0, 0}, {10, 0, 0}}, {{0, 1}}));
+	EXPECT_TRUE(isCertain({{0, 0, 0}, {10, 0.9, 0}}, {{0, 1}})) << "near the surface";
+	EXPECT_FALSE(isCertain({{0, 0, 0}, {10, 1.1, 0}}, {{0, 1}})) << "its end is outside";
+	EXPECT_FALSE(isCertain({{0, 0, 0}, {5, 3, 0}, {10, 0, 0}}, {{0, 1}, {1, 2}})) << "it leaves";
+	EXPECT_FALSE(isCertain({{0, 0, 3}, {10, 0, 3}}, {{0, 1}})) << "beside the tube";
+	EXPECT_FALSE(isCertain({{0, 0, 0}, {10, 0, 0}, {5, 0, 3}}, {{0, 1}}))
+		<< "a node alone, outside";
+	EXPECT_TRUE(isCertain({{5, 0, 0}}, {})) << "a node alone, inside";
+	EXPECT_TRUE(isCertain({}, {}));
+}
+
 TEST(CurveInside, WhatIsInsideStaysToTheLastBit)
 {
 	Curve curve(shapes::torus(1, 0.3, 60, 20), ring(40, 1), closed(40));

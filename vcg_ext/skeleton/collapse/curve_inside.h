@@ -9,8 +9,10 @@
 
 #include "collapse_to_curve.h"
 
+#include <skeleton/core/disjoint_sets.h>
 #include <skeleton/core/errors.h>
 #include <skeleton/core/progress.h>
+#include <skeleton/core/ticker.h>
 #include <skeleton/flow/stage.h>
 #include <skeleton/graph/curve_skeleton.h>
 #include <skeleton/graph/skeleton_branches.h>
@@ -18,8 +20,10 @@
 #include <skeleton/mesh/component_meshes.h>
 #include <skeleton/mesh/components.h>
 #include <skeleton/mesh/surface_mesh.h>
+#include <skeleton/spatial/empty_balls.h>
 #include <skeleton/spatial/solid_test.h>
 #include <skeleton/spatial/surface_ways.h>
+#include <skeleton/spatial/vertical_crossing.h>
 
 #include <algorithm>
 #include <array>
@@ -493,6 +497,50 @@ private:
 	}
 };
 
+/**
+ * Whether balls that the surface does not enter prove that a curve is inside: they cover its edges,
+ * and the winding number around one node of each connected part is not 0. False as well where the
+ * curve nearly touches the surface, and where too many triangles would have to be looked at.
+ * @param place of each node. @param edges pairs of nodes.
+ * @throws Cancelled. Complexity: O(F + V log V) and O(log V) for each node.
+ */
+inline bool isCertainlyInside(const std::vector<Point3d>& place,
+	const std::vector<std::array<int, 2>>& edges, const std::vector<Point3d>& surface,
+	const std::vector<Triangle>& triangles, const Progress& progress)
+{
+	constexpr int cheapHalvings = 4, halvings = 16;
+	constexpr int minSamples = 10000, samplesOfTriangle = 4; // looked at; then a tree is cheaper
+	EmptyBallsOfSurface balls(surface, triangles, progress);
+	const auto cheaply = [&](const Point3d& p) { return balls.radius(p); };
+	int left = std::max(minSamples, samplesOfTriangle * int(triangles.size()));
+	const auto exactly = [&](const Point3d& p) { return balls.largestRadius(p, left); };
+	std::vector<double> radius;
+	reportedLoop(int(place.size()), progress, "Bringing the curve inside",
+		[&](int A) { radius.push_back(cheaply(place[A])); });
+	MergeForest parts(int(place.size()), progress);
+	for (const auto& [A, B] : edges) {
+		progress.check();
+		parts.join(A, B);
+		const Point3d &a = place[A], &b = place[B];
+		if (isCoveredByBalls(a, radius[A], b, radius[B], cheaply, cheapHalvings))
+			continue;
+		for (int end : {A, B})
+			radius[end] = exactly(place[end]);
+		if (!isCoveredByBalls(a, radius[A], b, radius[B], exactly, halvings))
+			return false;
+	}
+	for (size_t A = 0; A < place.size(); ++A) {
+		if (parts.find(int(A)) != int(A))
+			continue;
+		int winding = 0;
+		for (const Triangle& t : triangles)
+			winding += crossingAbove(surface, t, place[A]);
+		if (winding == 0 || (radius[A] <= 0 && exactly(place[A]) <= 0))
+			return false;
+	}
+	return true;
+}
+
 } // namespace detail
 
 /// How many components have lost parts of their curves, see TooFarOutside::CutOff.
@@ -563,13 +611,22 @@ inline CurveSkeleton broughtInside(CurveSkeleton skeleton, const std::vector<Poi
 	std::vector<std::array<int, 2>> all;
 	for (int c = 0; c < components; ++c) {
 		const Progress part = progress.part(double(c) / components, double(c + 1) / components);
-		std::vector<Point3d> points;
+		std::vector<Point3d> points, given;
 		for (int s : vertices.ids[c])
 			points.push_back(surface[s]);
-		const SolidTest solid(points, faces[c], part.part(0, 0.5));
-		std::vector<Point3d> place;
 		for (int A : nodes[c])
-			place.push_back(solid.in(skeleton.position[A]));
+			given.push_back(skeleton.position[A]);
+		if (detail::isCertainlyInside(
+				given, edges[c], points, faces[c], part.part(0, 0.25).cancelOnly())) {
+			for (const auto& [i, j] : edges[c])
+				all.push_back(
+					{std::min(nodes[c][i], nodes[c][j]), std::max(nodes[c][i], nodes[c][j])});
+			continue;
+		}
+		const SolidTest solid(points, faces[c], part.part(0.25, 0.5));
+		std::vector<Point3d> place;
+		for (const Point3d& p : given)
+			place.push_back(solid.in(p));
 		const Progress bending = part.part(0.5, 1);
 		using Curve = detail::CurveIntoSolid;
 		Curve curve(solid, place, edges[c], bending);

@@ -15,6 +15,8 @@
 #include <skeleton/graph/curve_skeleton.h>
 #include <skeleton/mesh/surface_mesh.h>
 #include <skeleton/spatial/closest_surface.h>
+#include <skeleton/spatial/empty_balls.h>
+#include <skeleton/spatial/vertical_crossing.h>
 
 #include <algorithm>
 #include <cmath>
@@ -106,28 +108,33 @@ public:
 	 */
 	bool holds(const CurveSkeleton& curve, const Progress& progress) const
 	{
-		if (!curve.position.empty())
-			closest.prepareExact(progress);
 		std::vector<double> empty; // radii of balls that the surface does not enter
 		empty.reserve(curve.position.size());
 		detail::reportedLoop(int(curve.position.size()), progress, what,
 			[&](int v) { empty.push_back(closest.emptyRadius(curve.position[v])); });
-		const auto measured = [&](int v) {
-			return empty[v] = closest.closestExactly(curve.position[v]).distance;
+		constexpr int samplesOfVertex = 8; // then a tree of the triangles is cheaper
+		int left = samplesOfVertex * int(component.vertices.size());
+		const auto exactly = [&](const Point3d& p) {
+			const double distance = left >= 0 ? closest.distanceNearby(p, left) : 0;
+			return left >= 0 ? distance : closest.closestExactly(p).distance;
 		};
+		const auto cheaply = [&](const Point3d& p) { return closest.emptyRadius(p); };
+		constexpr int halvings = 4;
 		for (const auto& [a, b] : curve.edges) {
-			const Point3d &from = curve.position[a], &to = curve.position[b];
-			if (Distance(from, to) <= empty[a] + empty[b])
-				continue;
 			progress.report(0, what);
-			if (!isCovered(from, measured(a), to, measured(b), progress)
+			const Point3d &from = curve.position[a], &to = curve.position[b];
+			if (isCoveredByBalls(from, empty[a], to, empty[b], cheaply, halvings))
+				continue;
+			for (int end : {a, b})
+				empty[end] = exactly(curve.position[end]);
+			if (!isCovered(from, empty[a], to, empty[b], exactly, progress)
 				&& !isEnclosed(from, to, progress))
 				return false;
 		}
 		const std::vector<Point3d> firsts = firstNodes(curve);
 		return std::all_of(firsts.begin(), firsts.end(), [&](const Point3d& p) {
 			progress.report(0, what);
-			return closest.exactClearance(p, progress) > 0 || windingNumber(p) > half;
+			return windingNumber(p) > 0 || closest.exactClearance(p, progress) > 0;
 		});
 	}
 
@@ -146,35 +153,26 @@ public:
 
 private:
 	static constexpr const char* what = "Checking the skeleton";
-	static constexpr double half = 0.5;
 
 	const ClosestSurface& closest;
 	SurfaceComponent component; ///< refers to what the caller keeps
 
 	/// Whether empty balls cover the segment; false as well if it comes nearer to the surface than
 	/// its length / 2^16, or if the closest points would take longer than isEnclosed().
+	template <class DistanceAt>
 	bool isCovered(const Point3d& a, double radiusA, const Point3d& b, double radiusB,
-		const Progress& progress) const
+		const DistanceAt& distanceAt, const Progress& progress) const
 	{
-		constexpr int minimum = 64, verticesOfQuery = 8;
+		constexpr int minimum = 64, verticesOfQuery = 8, halvings = 16;
 		int queries = minimum + int(component.vertices.size()) / verticesOfQuery;
-		return isCovered(a, radiusA, b, radiusB, progress, 0, queries);
-	}
-	/// @param queries that are left.
-	bool isCovered(const Point3d& a, double radiusA, const Point3d& b, double radiusB,
-		const Progress& progress, int depth, int& queries) const
-	{
-		constexpr int deepest = 16;
-		if (!(radiusA > 0) || !(radiusB > 0) || depth > deepest || --queries < 0)
-			return false;
-		if (Distance(a, b) <= radiusA + radiusB)
-			return true;
-		if (queries % int(nodesPerCheck) == 0)
-			progress.report(0, what);
-		const Point3d middle = (a + b) / 2;
-		const double radius = closest.closestExactly(middle).distance;
-		return isCovered(a, radiusA, middle, radius, progress, depth + 1, queries)
-			&& isCovered(middle, radius, b, radiusB, progress, depth + 1, queries);
+		const auto counted = [&](const Point3d& p) {
+			if (--queries < 0)
+				return 0.0;
+			if (queries % int(nodesPerCheck) == 0)
+				progress.report(0, what);
+			return distanceAt(p);
+		};
+		return isCoveredByBalls(a, radiusA, b, radiusB, counted, halvings);
 	}
 
 	/// The first node of each connected component of the curve.
@@ -204,38 +202,32 @@ private:
 	template <class Visitor>
 	void forEachTriangle(Visitor&& visit) const
 	{
-		const SurfaceMesh& mesh = component.mesh;
 		for (int v : component.vertices)
-			mesh.forEachOwnFace(v, [&](int f) {
-				const Triangle t = mesh.triangle(f);
-				visit(mesh.position[t[0]], mesh.position[t[1]], mesh.position[t[2]]);
-			});
+			component.mesh.forEachOwnFace(v, [&](int f) { visit(component.mesh.triangle(f)); });
 	}
 
-	/// How many times the surface goes around a point (van Oosterom and Strackee, "The solid angle
-	/// of a plane triangle", IEEE Trans. Biomed. Eng. 30(2), 1983).
-	double windingNumber(const Point3d& p) const
+	/// How many times the surface goes around a point.
+	int windingNumber(const Point3d& p) const
 	{
-		double sum = 0;
-		forEachTriangle([&](const Point3d& u, const Point3d& v, const Point3d& w) {
-			const Point3d a = u - p, b = v - p, c = w - p;
-			const double la = a.Norm(), lb = b.Norm(), lc = c.Norm();
-			sum +=
-				std::atan2(a * (b ^ c), la * lb * lc + (a * b) * lc + (b * c) * la + (c * a) * lb);
+		int winding = 0;
+		forEachTriangle([&](const Triangle& t) {
+			winding += detail::crossingAbove(component.mesh.position, t, p);
 		});
-		return sum / (2 * M_PI);
+		return winding;
 	}
 
-	/// Whether each part of a segment between two crossings of the surface has a winding number of
-	/// 1/2 or more in its middle.
+	/// Whether the winding number in the middle of each part of a segment between two crossings of
+	/// the surface is positive.
 	bool isEnclosed(const Point3d& a, const Point3d& b, const Progress& progress) const
 	{
 		constexpr double shortest =
 			1e-6; // parts of the segment; shorter ones are where triangles meet
 		const Point3d segment = b - a;
 		std::vector<double> ends = {0, 1};
-		forEachTriangle([&](const Point3d& u, const Point3d& v, const Point3d& w) {
-			const Point3d e1 = v - u, e2 = w - u, across = segment ^ e2;
+		forEachTriangle([&](const Triangle& t) {
+			const Point3d& u = component.mesh.position[t[0]];
+			const Point3d e1 = component.mesh.position[t[1]] - u;
+			const Point3d e2 = component.mesh.position[t[2]] - u, across = segment ^ e2;
 			const double determinant = e1 * across;
 			if (determinant == 0)
 				return;
@@ -249,7 +241,7 @@ private:
 		for (size_t i = 1; i < ends.size(); ++i) {
 			progress.report(0, what);
 			if (ends[i] - ends[i - 1] > shortest
-				&& windingNumber(a + segment * ((ends[i - 1] + ends[i]) / 2)) < half)
+				&& windingNumber(a + segment * ((ends[i - 1] + ends[i]) / 2)) <= 0)
 				return false;
 		}
 		return true;

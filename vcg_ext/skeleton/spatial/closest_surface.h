@@ -7,6 +7,7 @@
 #ifndef VCG_MCF_CLOSEST_SURFACE_H
 #define VCG_MCF_CLOSEST_SURFACE_H
 
+#include "empty_balls.h"
 #include "maximal_ball.h"
 #include "point_tree.h"
 #include "solid_test.h"
@@ -19,6 +20,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <optional>
 #include <vector>
@@ -66,8 +68,9 @@ public:
 	ClosestSurface(const SurfaceMesh& surface, const std::vector<int>& vertices, double spacing,
 		const Progress& progress = Progress()) :
 			surface(surface),
-			vertexCount(int(vertices.size())),
-			tree(samples(vertices, spacing, progress.part(0, 0.3)), progress.part(0.3, 1))
+			vertices(vertices),
+			tree(samples(vertices, spacing, progress.part(0, 0.3)), progress.part(0.3, 1)),
+			empty(std::move(covering))
 	{
 		detail::cancellableLoop(
 			int(vertices.size()), progress, [&](int i) { box.Add(surface.position[vertices[i]]); });
@@ -127,11 +130,30 @@ public:
 	}
 	bool isExact() const { return alwaysExact; }
 
-	/// A lower bound of the distance to the surface, inside or outside: the distance to the nearest
-	/// sample less what triangles reach beyond their samples. Cheap; 0 near the surface.
-	double emptyRadius(const Point3d& query) const
+	/// A lower bound of the distance to the surface, inside or outside, see EmptyBalls. Cheap; 0 near
+	/// the surface.
+	double emptyRadius(const Point3d& query) const { return empty.radius(tree, query); }
+
+	/// The exact distance to the surface, without what prepareExact() builds: for a few queries near
+	/// the surface. @param left  see EmptyBalls::largestRadius(); below 0, the result is 0.
+	double distanceNearby(const Point3d& query, int& left) const
 	{
-		return std::max(tree.distance(query) - covering, 0.0);
+		const auto distanceAround = [&](int sample) {
+			double squared = std::numeric_limits<double>::max();
+			const auto toFace = [&](int f) {
+				const Triangle t = surface.triangle(f);
+				squared = std::min(squared,
+					detail::closestOnTriangle(surface.position[t[0]], surface.position[t[1]],
+						surface.position[t[2]], query)
+						.squaredDistance);
+			};
+			if (size_t(sample) < vertices.size())
+				surface.forEachOutgoing(vertices[size_t(sample)], [&](int h) { toFace(h / 3); });
+			else
+				toFace(faceOfSample[size_t(sample)]);
+			return std::sqrt(squared);
+		};
+		return empty.largestRadius(tree, query, distanceAround, left);
 	}
 
 	/// Indices into the constructor's `vertices`, ordered so that neighbours are near each other.
@@ -139,9 +161,9 @@ public:
 	std::vector<int> vertexOrder(const Cancellation& cancel = Cancellation()) const
 	{
 		std::vector<int> order;
-		order.reserve(vertexCount);
+		order.reserve(vertices.size());
 		detail::cancellableLoop(tree.size(), cancel, [&](int slot) {
-			if (const int sample = tree.order()[slot]; sample < vertexCount)
+			if (const int sample = tree.order()[slot]; sample < int(vertices.size()))
 				order.push_back(sample);
 		});
 		return order;
@@ -262,12 +284,12 @@ private:
 	static constexpr const char* sorting = "Sorting the surface";
 
 	const SurfaceMesh& surface;
-	int vertexCount; ///< the first samples are the vertices
+	std::vector<int> vertices; ///< the first samples
 	std::vector<int> faceOfSample;
 	std::vector<int> faces;
-	/// No point of a triangle is farther than this from the nearest of the triangle's own samples.
-	double covering = 0;
+	std::vector<double> covering; ///< of each sample, while there is no `empty`
 	PointTree tree;
+	EmptyBalls empty;
 	Box3d box;
 	bool alwaysExact = false;
 	/// What only exact queries need; made by the first.
@@ -305,10 +327,17 @@ private:
 	{
 		std::vector<Point3d> points;
 		points.reserve(vertices.size());
+		covering.reserve(vertices.size());
 		faceOfSample.reserve(vertices.size());
 		const int count = int(vertices.size());
 		detail::reportedLoop(count, progress.part(0, 0.3), sorting, [&](int i) {
 			points.push_back(surface.position[vertices[i]]);
+			double squared = 0; // of the longest edge around
+			surface.forEachOutgoing(vertices[i], [&](int h) {
+				squared = std::max(
+					{squared, surface.squaredLength(h), surface.squaredLength(surface.next(h))});
+			});
+			covering.push_back(coveringOf(std::sqrt(squared), spacing));
 			faceOfSample.push_back(surface.outgoing(vertices[i]) / 3);
 		});
 		detail::reportedLoop(count, progress.part(0.3, 1), sorting, [&](int i) {
@@ -318,6 +347,13 @@ private:
 			});
 		});
 		return points;
+	}
+
+	/// How far from its own samples a triangle may reach; does not fall with its longest edge.
+	static double coveringOf(double longest, double spacing)
+	{
+		// Farthest from corners: see coveringOfTriangle(); from rows: midway.
+		return longest > spacing ? std::sqrt(1.25) * spacing : coveringOfTriangle(longest);
 	}
 
 	/// Samples in rows parallel to the longest edge, that edge included, the corners left out.
@@ -331,11 +367,7 @@ private:
 		const Point3d ab = surface.position[surface.target(base)] - a;
 		const Point3d ac = surface.position[surface.apex(base)] - a;
 		const double length = ab.Norm();
-		const bool isSampled = length > spacing;
-		// Farthest from corners: the centre of an equilateral triangle; from rows: midway.
-		covering =
-			std::max(covering, isSampled ? std::sqrt(1.25) * spacing : length / std::sqrt(3));
-		if (!isSampled)
+		if (length <= spacing)
 			return;
 		const int rows = std::max(1, int(std::ceil((ab ^ ac).Norm() / length / spacing)));
 		for (int row = 0; row < rows; ++row) {
@@ -343,6 +375,7 @@ private:
 			const int pieces = std::max(1, int(std::ceil((1 - up) * length / spacing)));
 			for (int i = row == 0 ? 1 : 0; i <= (row == 0 ? pieces - 1 : pieces); ++i) {
 				points.push_back(a + ac * up + ab * ((1 - up) * i / pieces));
+				covering.push_back(coveringOf(length, spacing));
 				faceOfSample.push_back(face);
 			}
 		}

@@ -88,7 +88,8 @@ public:
 		Box3d ray;
 		ray.Add(p);
 		ray.Add(Point3d(p[0], p[1], box.max[2]));
-		tree->forEachFaceIn(ray, [&](int f) { winding += crossingAbove(f, p); });
+		tree->forEachFaceIn(
+			ray, [&](int f) { winding += detail::crossingAbove(corner, faces[f], p); });
 		return winding != 0;
 	}
 
@@ -167,21 +168,6 @@ private:
 			return turned;
 		}();
 		return axes[k];
-	}
-
-	/// +1 or -1 where the ray from p along the third axis leaves or enters through f, else 0.
-	int crossingAbove(int f, const Point3d& p) const
-	{
-		const Triangle& t = faces[f];
-		const int crossing = detail::verticalCrossing(corner, t, p[0], p[1]);
-		if (crossing == 0)
-			return 0;
-		const Point3d& a = corner[t[0]];
-		const Point3d n = (corner[t[1]] - a) ^ (corner[t[2]] - a);
-		if (n[2] == 0)
-			return 0;
-		const double height = ((a - p) * n) / n[2];
-		return height > 0 ? crossing : 0;
 	}
 };
 

@@ -42,6 +42,21 @@ inline int verticalCrossing(
 	return left ? 1 : -1;
 }
 
+/// +1 or -1 where the ray upwards from p leaves or enters through a triangle, else 0: the sum over a
+/// closed surface is its winding number around p.
+inline int crossingAbove(const std::vector<Point3d>& points, const Triangle& t, const Point3d& p)
+{
+	const int crossing = verticalCrossing(points, t, p[0], p[1]);
+	if (crossing == 0)
+		return 0;
+	const Point3d& a = points[size_t(t[0])];
+	const Point3d n = (points[size_t(t[1])] - a) ^ (points[size_t(t[2])] - a);
+	if (n[2] == 0)
+		return 0;
+	const double height = ((a - p) * n) / n[2];
+	return height > 0 ? crossing : 0;
+}
+
 /// The height of a triangle's plane at (x, y); nothing if the plane is vertical.
 inline std::optional<double> heightOfPlane(
 	const std::vector<Point3d>& points, const Triangle& t, double x, double y)

@@ -1,0 +1,195 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief Balls that a surface does not enter, and curves that such balls cover: a cheap proof that
+/// a curve is inside.
+
+#ifndef VCG_MCF_EMPTY_BALLS_H
+#define VCG_MCF_EMPTY_BALLS_H
+
+#include "point_tree.h"
+
+#include <skeleton/core/progress.h>
+#include <skeleton/mesh/closest_point_walk.h>
+#include <skeleton/mesh/surface_mesh.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace vcg::tri::mcf {
+
+/// No point of a triangle is farther from its nearest corner than this: of equilateral triangles
+/// the centre. @param longest  its longest edge.
+inline double coveringOfTriangle(double longest) { return longest / std::sqrt(3.0); }
+
+/**
+ * Lower bounds of the distance from a surface, by samples of it: min |p - s| - c(s) over the
+ * samples s, where the part of the surface that is nearest to s is no farther from it than c(s).
+ */
+class EmptyBalls
+{
+public:
+	/// @param covering  c of each sample.
+	explicit EmptyBalls(std::vector<double> covering) : covering(std::move(covering))
+	{
+		for (const double c : this->covering)
+			largest = std::max(largest, c);
+	}
+
+	/// The radius of a ball around p that the surface does not enter; 0 near the surface.
+	/// @param samples  the ids are indices into the coverings.
+	/// Complexity: O(log S) where the samples are about evenly spaced.
+	double radius(const PointTree& samples, const Point3d& p) const
+	{
+		return std::max(minimum(samples, p, [&](int sample, double distance) {
+			return distance - covering[size_t(sample)];
+		}),
+			0.0);
+	}
+
+	/**
+	 * The radius of the largest such ball: the distance from the surface.
+	 * @param distanceAround  gives the distance of p from the triangles around a sample, those of
+	 *                        which it is the nearest sample to some point.
+	 * @param left            how many samples may still be looked at; the result is 0 if they do not
+	 *                        suffice.
+	 * Complexity: O(n) for the n samples no farther away than the surface and the largest covering.
+	 */
+	template <class DistanceAround>
+	double largestRadius(const PointTree& samples, const Point3d& p,
+		const DistanceAround& distanceAround, int& left) const
+	{
+		const double distance = minimum(samples, p, [&](int sample, double) {
+			return --left < 0 ? -largest : distanceAround(sample);
+		});
+		return std::max(distance, 0.0);
+	}
+
+private:
+	std::vector<double> covering;
+	double largest = 0;
+
+	/// The minimum of a function of samples that is at least their distance less the largest covering.
+	template <class Function>
+	double minimum(const PointTree& samples, const Point3d& p, const Function& function) const
+	{
+		struct Search
+		{
+			const PointTree& samples;
+			const Point3d& p;
+			const Function& function;
+			double largest;
+			double minimum = std::numeric_limits<double>::max() / 2;
+
+			const Point3d& centre() const { return p; }
+			double reach() const { return std::max(minimum + largest, 0.0); }
+			void visit(int slot, const Point3d& sample)
+			{
+				minimum = std::min(
+					minimum, function(samples.order()[size_t(slot)], Distance(sample, p)));
+			}
+		};
+		Search search {samples, p, function, largest};
+		samples.search<true>(search);
+		return search.minimum;
+	}
+};
+
+/// EmptyBalls of a surface whose vertices are the samples, and its exact distances.
+class EmptyBallsOfSurface
+{
+public:
+	/// @param points, triangles are kept by reference. @throws Cancelled. Complexity: O(V log V + F).
+	EmptyBallsOfSurface(const std::vector<Point3d>& points, const std::vector<Triangle>& triangles,
+		const Progress& progress) :
+			points(points),
+			triangles(triangles), samples(points, progress), balls(coverings())
+	{
+	}
+
+	/// @see EmptyBalls::radius()
+	double radius(const Point3d& p) const { return balls.radius(samples, p); }
+
+	/// @see EmptyBalls::largestRadius()
+	double largestRadius(const Point3d& p, int& left)
+	{
+		if (begin.empty())
+			findFans();
+		const auto distanceAround = [&](int v) {
+			double squared = std::numeric_limits<double>::max();
+			for (int i = begin[size_t(v)]; i < begin[size_t(v) + 1]; ++i) {
+				const Triangle& t = triangles[size_t(fans[size_t(i)])];
+				squared = std::min(squared,
+					detail::closestOnTriangle(points[t[0]], points[t[1]], points[t[2]], p)
+						.squaredDistance);
+			}
+			return std::sqrt(squared);
+		};
+		return balls.largestRadius(samples, p, distanceAround, left);
+	}
+
+private:
+	const std::vector<Point3d>& points;
+	const std::vector<Triangle>& triangles;
+	PointTree samples;
+	EmptyBalls balls;
+	std::vector<int> begin, fans; ///< the triangles around each vertex; empty until they are needed
+
+	std::vector<double> coverings() const
+	{
+		std::vector<double> covering(points.size(), 0);
+		for (const Triangle& t : triangles) {
+			double longest = 0;
+			for (int i = 0; i < 3; ++i)
+				longest = std::max(longest, Distance(points[t[i]], points[t[(i + 1) % 3]]));
+			for (int v : t)
+				covering[v] = std::max(covering[v], coveringOfTriangle(longest));
+		}
+		return covering;
+	}
+
+	void findFans()
+	{
+		begin.assign(points.size() + 1, 0);
+		for (const Triangle& t : triangles)
+			for (int v : t)
+				++begin[size_t(v) + 1];
+		std::partial_sum(begin.begin(), begin.end(), begin.begin());
+		std::vector<int> next(begin.begin(), begin.end() - 1);
+		fans.resize(3 * triangles.size());
+		for (size_t f = 0; f < triangles.size(); ++f)
+			for (int v : triangles[f])
+				fans[size_t(next[size_t(v)]++)] = int(f);
+	}
+};
+
+/**
+ * Whether balls that a surface does not enter cover the segment from a to b, so that no point of
+ * the surface is on it: those around its ends or, if they do not reach, those of each half.
+ * @param radiusAt  gives the radius of such a ball around a point; 0 gives up.
+ * @param halvings  the most.
+ */
+template <class RadiusAt>
+bool isCoveredByBalls(const Point3d& a, double radiusA, const Point3d& b, double radiusB,
+	const RadiusAt& radiusAt, int halvings)
+{
+	if (!(radiusA > 0) || !(radiusB > 0))
+		return false;
+	if (Distance(a, b) <= radiusA + radiusB)
+		return true;
+	if (halvings == 0)
+		return false;
+	const Point3d middle = (a + b) / 2;
+	const double radius = radiusAt(middle);
+	return isCoveredByBalls(a, radiusA, middle, radius, radiusAt, halvings - 1)
+		&& isCoveredByBalls(middle, radius, b, radiusB, radiusAt, halvings - 1);
+}
+
+} // namespace vcg::tri::mcf
+
+#endif
