@@ -193,6 +193,29 @@ TEST(SizingField, OneThatIsKnownIsTakenForItsBoundOnly)
 			<< bound;
 }
 
+TEST(SizingField, ThinPlacesServeEveryBoundAboveWhatCountsAsSmall)
+{
+	const SurfaceMesh mesh = bottle().mesh();
+	const MeasuredSurface surface(mesh);
+	const PoleSet poles = medialPoles(surface, PoleMethod::Balls);
+	const double small = neutralLength * surface.diagonal(0);
+	const ThinPlaces places =
+		thinPlaces(surface, poles, 0.2 * relative, smallLengths(surface, {1}));
+	EXPECT_EQ(places.below, std::vector<double>(1, small));
+	ASSERT_FALSE(places.seeds.empty());
+	for (const auto& [length, v] : places.seeds) {
+		EXPECT_LT(length, small);
+		EXPECT_EQ(length, places.length[size_t(v)]);
+	}
+	for (const double bound : {small, 2 * small, 5 * small}) {
+		const SizingField field = gradedField(surface, places, {bound});
+		EXPECT_EQ(field, sizingField(surface, poles, 0.2 * relative, {bound})) << bound;
+		for (const double length : field)
+			EXPECT_TRUE(length < bound || std::isinf(length));
+	}
+	EXPECT_TRUE(gradedField(surface, ThinPlaces(), {small}).empty()) << "nothing is thin";
+}
+
 TEST(SizingField, NoiseIsNotThin)
 {
 	// The balls between the spikes are as small as those of a thin tube, on a ball that is nowhere thin.
@@ -302,7 +325,7 @@ TEST(SizingField, AMeshBeyondTheBudgetResolvesWhatItCanAndSaysWhatItDoesNot)
 	std::string said;
 	const auto fieldOfNeck = [&](const SurfaceMesh& mesh) {
 		said.clear();
-		return fieldOfResampling(MeasuredSurface(mesh), length, Parameters(), nullptr,
+		return fieldOfResampling(MeasuredSurface(mesh), length, Parameters(), nullptr, nullptr,
 			budgetOf(mesh), Progress(), [&](const std::string& text) { said += text + "\n"; });
 	};
 	constexpr int sides = 5; // few vertices, and thirty edges for each

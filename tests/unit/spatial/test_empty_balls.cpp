@@ -37,7 +37,8 @@ std::vector<Point3d> randomPoints(const SurfaceMesh& mesh, int count)
 /// A fine sphere beside a box of twelve long triangles.
 SurfaceMesh fineAndCoarse()
 {
-	return shapes::joined({shapes::moved(shapes::sphere(5), Point3d(10, 0, 0)), shapes::box(2, 2, 2)})
+	return shapes::joined(
+		{shapes::moved(shapes::sphere(5), Point3d(10, 0, 0)), shapes::box(2, 2, 2)})
 		.mesh();
 }
 

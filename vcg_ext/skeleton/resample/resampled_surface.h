@@ -41,17 +41,23 @@ struct ResampledSurface
 	bool isTooThin = false;
 };
 
-/// The local thickness at each vertex of a surface, mesh units; infinite where sizingField() is not
-/// below neutralLength of the diagonal, and empty if that is so everywhere.
-/// @param poles of all vertices. @throws Cancelled. Complexity: as sizingField().
-inline std::vector<double> localThickness(const MeasuredSurface& surface, const PoleSet& poles,
+/// Where a surface is thinner than neutralLength of the diagonal. @throws Cancelled
+inline ThinPlaces thinnerThanNeutral(const MeasuredSurface& surface, const PoleSet& poles,
 	const Parameters& parameters, const Progress& progress = Progress())
 {
-	std::vector<double> bound;
-	for (double diagonal : surface.diagonals())
-		bound.push_back(neutralLength * diagonal);
-	std::vector<double> thickness =
-		sizingField(surface, poles, parameters.relativeLength, bound, progress);
+	const std::vector<double> any(
+		size_t(surface.components()), std::numeric_limits<double>::infinity());
+	return thinPlaces(
+		surface, poles, parameters.relativeLength, smallLengths(surface, any), progress);
+}
+
+/// The local thickness at each vertex of a surface, mesh units; infinite where gradedField() is not
+/// below neutralLength of the diagonal, and empty if that is so everywhere.
+/// @param places see thinnerThanNeutral(). @throws Cancelled. Complexity: as gradedField().
+inline std::vector<double> localThickness(const MeasuredSurface& surface, const ThinPlaces& places,
+	const Parameters& parameters, const Progress& progress = Progress())
+{
+	std::vector<double> thickness = gradedField(surface, places, places.below, progress);
 	for (double& length : thickness)
 		length /= parameters.relativeLength;
 	return thickness;
@@ -146,12 +152,13 @@ inline double resolvedPart(const MeasuredSurface& surface, const SizingField& fi
  * @param length of each component, see defaultTargetLength().
  * @param budget see budgetOf() and budgetWithSamples().
  * @param poles  of all vertices, where they are known already; null: they are computed.
+ * @param known  see thinnerThanNeutral(); null: computed where it is needed.
  * @param onNote receives what is resolved less; may be empty.
  * @throws Cancelled. Complexity: as medialPoles().
  */
 inline std::optional<SizingField> fieldOfResampling(const MeasuredSurface& surface,
 	const std::vector<double>& length, const Parameters& parameters, const PoleSet* poles,
-	const VertexBudget& budget, const Progress& progress = Progress(),
+	const ThinPlaces* known, const VertexBudget& budget, const Progress& progress = Progress(),
 	const NoteCallback& onNote = {})
 {
 	const double anyway = expectedVertices(surface, length, SizingField());
@@ -162,8 +169,14 @@ inline std::optional<SizingField> fieldOfResampling(const MeasuredSurface& surfa
 		found = medialPoles(surface, PoleMethod::Balls, progress.part(0, 0.8));
 		poles = &found;
 	}
-	SizingField field =
-		sizingField(surface, *poles, parameters.relativeLength, length, progress.part(0.8, 1));
+	std::vector<double> below = smallLengths(surface, length);
+	ThinPlaces places;
+	if (!known || known->below != below) {
+		places = thinPlaces(
+			surface, *poles, parameters.relativeLength, std::move(below), progress.part(0.8, 0.95));
+		known = &places;
+	}
+	SizingField field = gradedField(surface, *known, length, progress.part(0.95, 1));
 	if (field.empty())
 		return field;
 	double expected = expectedVertices(surface, length, field);
@@ -253,15 +266,19 @@ inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Paramete
 	const Parameters parameters = sharedAmong(given, surface.diagonals());
 	ResampledSurface result;
 	PoleSet poles;
+	ThinPlaces places;
 	std::vector<double> thickness;
 	if (parameters.adaptive) {
 		poles = medialPoles(surface, PoleMethod::Balls, progress.part(0.05, 0.15));
-		thickness = localThickness(surface, poles, parameters, progress.part(0.15, 0.2));
+		places = thinnerThanNeutral(surface, poles, parameters, progress.part(0.15, 0.19));
+		thickness = localThickness(surface, places, parameters, progress.part(0.19, 0.2));
 	}
 	result.noise = measureNoise(surface, progress.part(0.2, 0.25), thickness);
 	const bool smooth = parameters.denoise && result.noise.isNoisy();
 	tellNoise(result.noise, smooth, onNote);
-	const auto resampled = [&](const MeasuredSurface& calm, const PoleSet* own) {
+	// Poles and thin places are those of the given surface: null where it was smoothed.
+	const auto resampled = [&](const MeasuredSurface& calm, const PoleSet* own,
+							   const ThinPlaces* thin) {
 		const double from = smooth ? 0.35 : 0.25;
 		const std::vector<double> length = defaultTargetLength(calm, parameters);
 		const bool isAdaptive = parameters.adaptive && parameters.resampleIterations > 0;
@@ -271,7 +288,7 @@ inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Paramete
 				const MeasuredSurface dense(*sampled, progress.cancelOnly());
 				std::vector<std::string> notes;
 				const std::optional<SizingField> field = fieldOfResampling(dense, length,
-					parameters, nullptr, budgetWithSamples(calm.mesh(), *sampled),
+					parameters, nullptr, nullptr, budgetWithSamples(calm.mesh(), *sampled),
 					progress.cancelOnly(), [&](const std::string& note) { notes.push_back(note); });
 				if (field && !field->empty()) {
 					for (const std::string& note : notes)
@@ -284,7 +301,7 @@ inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Paramete
 		}
 		std::optional<SizingField> field = SizingField();
 		if (isAdaptive)
-			field = fieldOfResampling(calm, length, parameters, own, budgetOf(calm.mesh()),
+			field = fieldOfResampling(calm, length, parameters, own, thin, budgetOf(calm.mesh()),
 				progress.part(from, from + 0.15), onNote);
 		result.isTooThin = !field;
 		return resample(calm, length, parameters.resampleIterations, progress.part(from + 0.15, 1),
@@ -295,9 +312,11 @@ inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Paramete
 			resampled({smoothed(surface, result.noise.ofVertices(surface.component(), thickness),
 						   progress.part(0.25, 0.3)),
 						  progress.part(0.3, 0.35)},
-				nullptr);
+				nullptr, nullptr);
+	else if (parameters.adaptive)
+		result.mesh = resampled(surface, &poles, &places);
 	else
-		result.mesh = resampled(surface, parameters.adaptive ? &poles : nullptr);
+		result.mesh = resampled(surface, nullptr, nullptr);
 	if (onNote)
 		onNote(detail::sentence(6, "Resampled to ", result.mesh.vertexCount(),
 			" vertices, mean edge length ", meanEdgeLength(result.mesh), " mesh units",

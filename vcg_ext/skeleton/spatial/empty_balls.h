@@ -25,7 +25,10 @@ namespace vcg::tri::mcf {
 
 /// No point of a triangle is farther from its nearest corner than this: of equilateral triangles
 /// the centre. @param longest  its longest edge.
-inline double coveringOfTriangle(double longest) { return longest / std::sqrt(3.0); }
+inline double coveringOfTriangle(double longest)
+{
+	return longest / std::sqrt(3.0);
+}
 
 /**
  * Lower bounds of the distance from a surface, by samples of it: min |p - s| - c(s) over the
@@ -46,9 +49,9 @@ public:
 	/// Complexity: O(log S) where the samples are about evenly spaced.
 	double radius(const PointTree& samples, const Point3d& p) const
 	{
-		return std::max(minimum(samples, p, [&](int sample, double distance) {
-			return distance - covering[size_t(sample)];
-		}),
+		return std::max(
+			minimum(samples, p,
+				[&](int sample, double distance) { return distance - covering[size_t(sample)]; }),
 			0.0);
 	}
 
@@ -64,9 +67,8 @@ public:
 	double largestRadius(const PointTree& samples, const Point3d& p,
 		const DistanceAround& distanceAround, int& left) const
 	{
-		const double distance = minimum(samples, p, [&](int sample, double) {
-			return --left < 0 ? -largest : distanceAround(sample);
-		});
+		const double distance = minimum(samples, p,
+			[&](int sample, double) { return --left < 0 ? -largest : distanceAround(sample); });
 		return std::max(distance, 0.0);
 	}
 
@@ -90,8 +92,8 @@ private:
 			double reach() const { return std::max(minimum + largest, 0.0); }
 			void visit(int slot, const Point3d& sample)
 			{
-				minimum = std::min(
-					minimum, function(samples.order()[size_t(slot)], Distance(sample, p)));
+				minimum =
+					std::min(minimum, function(samples.order()[size_t(slot)], Distance(sample, p)));
 			}
 		};
 		Search search {samples, p, function, largest};
