@@ -23,6 +23,7 @@
 #include <skeleton/core/ticker.h>
 #include <skeleton/input/check_input.h>
 #include <skeleton/mesh/surface_rounding.h>
+#include <skeleton/spatial/integer_winding.h>
 #include <skeleton/spatial/nearest_points.h>
 #include <skeleton/spatial/transferred_nodes.h>
 #include <skeleton/spatial/triangle_tree.h>
@@ -236,7 +237,9 @@ struct Enclosure
 	double enclosing = 0; ///< part of the area that is not like an open sheet
 };
 
-inline Enclosure enclosureOf(const std::vector<SurfacePlace>& places, const WindingNumber& winding,
+/// @param winding  gives the winding number at a point.
+template <class Winding>
+Enclosure enclosureOf(const std::vector<SurfacePlace>& places, const Winding& winding,
 	double diagonal, const Progress& progress)
 {
 	constexpr double close = 1e-6; // of the diagonal
@@ -278,19 +281,16 @@ inline double sharedWalls(const std::vector<Point3d>& points,
 {
 	constexpr int samples = 2000;
 	constexpr double close = 1e-6; // of the diagonal
-	const WindingNumber winding(tree, progress.part(0, 0.5));
 	const double step = close * tree.allNodes()[0].box.Diag();
 	const std::vector<SurfacePlace> places = placesByArea(points, triangles, samples);
-	const auto isOne = [](double w) { return w > 0.75 && w < 1.25; };
 	std::vector<char> shared(places.size(), 0);
-	forEachBlock(
-		int(places.size()), progress.part(0.5, 1), "Looking for walls", [&](int begin, int end) {
-			for (int i = begin; i < end; ++i) {
-				const SurfacePlace& at = places[size_t(i)];
-				shared[size_t(i)] = isOne(winding(at.point + at.normal * step))
-					&& isOne(winding(at.point - at.normal * step));
-			}
-		});
+	forEachBlock(int(places.size()), progress, "Looking for walls", [&](int begin, int end) {
+		for (int i = begin; i < end; ++i) {
+			const SurfacePlace& at = places[size_t(i)];
+			shared[size_t(i)] = integerWinding(tree, at.point + at.normal * step) == 1
+				&& integerWinding(tree, at.point - at.normal * step) == 1;
+		}
+	});
 	return double(std::count(shared.begin(), shared.end(), 1)) / double(places.size());
 }
 
@@ -720,11 +720,16 @@ private:
 		const std::vector<char> isOpen = isOfOpenPiece(given, faces, progress.cancelOnly());
 		const std::vector<double> weights =
 			layerWeights(tree, isOpen, layersApart * box.Diag(), progress.cancelOnly());
-		Enclosure enclosure;
-		{
-			const WindingNumber winding(tree, progress.part(0.1, 0.12), weights);
-			enclosure = enclosureOf(places, winding, box.Diag(), progress.part(0.12, 0.15));
-		}
+		const bool isClosed = std::find(isOpen.begin(), isOpen.end(), 1) == isOpen.end();
+		const auto enclosureNow = [&](const Progress& part) {
+			if (isClosed)
+				return enclosureOf(
+					places, [&](const Point3d& p) { return double(integerWinding(tree, p)); },
+					box.Diag(), part);
+			const WindingNumber winding(tree, part.part(0, 0.4), weights);
+			return enclosureOf(places, winding, box.Diag(), part.part(0.4, 1));
+		};
+		Enclosure enclosure = enclosureNow(progress.part(0.1, 0.15));
 		if (enclosure.outward < 0) {
 			for (Triangle& t : faces)
 				std::swap(t[1], t[2]);
@@ -733,7 +738,7 @@ private:
 		}
 		const WindingNumber winding(tree, progress.part(0.15, 0.17), weights);
 		if (enclosure.outward < 0)
-			enclosure = enclosureOf(places, winding, box.Diag(), progress.part(0.17, 0.2));
+			enclosure = enclosureNow(progress.part(0.17, 0.2));
 		if (enclosure.enclosing < 0.1)
 			refuse(error, isFlat(given, faces));
 		const double widest = std::sqrt(area / usualSquares),

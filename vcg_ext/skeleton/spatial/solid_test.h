@@ -7,8 +7,8 @@
 #ifndef VCG_MCF_SOLID_TEST_H
 #define VCG_MCF_SOLID_TEST_H
 
+#include "integer_winding.h"
 #include "triangle_tree.h"
-#include "vertical_crossing.h"
 
 #include <skeleton/core/progress.h>
 #include <skeleton/core/ticker.h>
@@ -51,11 +51,8 @@ public:
 		middle = given.Center();
 		unit = given.Diag() > 0 ? given.Diag() : 1;
 		corner.reserve(points.size());
-		detail::reportedLoop(
-			int(points.size()), progress.part(0, 0.2), "Sorting the surface", [&](int v) {
-				corner.push_back(in(points[v]));
-				box.Add(corner.back());
-			});
+		detail::reportedLoop(int(points.size()), progress.part(0, 0.2), "Sorting the surface",
+			[&](int v) { corner.push_back(in(points[v])); });
 		tree.emplace(corner, faces, progress.part(0.2, 1));
 	}
 	SolidTest(const SolidTest&) = delete;
@@ -75,23 +72,8 @@ public:
 	const std::vector<Point3d>& vertices() const { return corner; }
 	const std::vector<Triangle>& triangles() const { return faces; }
 
-	/**
-	 * Whether the winding number at p is not 0: the sum of the signed crossings of a ray along the
-	 * third axis. Two triangles decide alike on which side of their common edge the ray is.
-	 * Complexity: about O(log F + n) for n triangles whose boxes the ray meets.
-	 */
-	bool isInside(const Point3d& p) const
-	{
-		if (!box.IsIn(p))
-			return false;
-		int winding = 0;
-		Box3d ray;
-		ray.Add(p);
-		ray.Add(Point3d(p[0], p[1], box.max[2]));
-		tree->forEachFaceIn(
-			ray, [&](int f) { winding += detail::crossingAbove(corner, faces[f], p); });
-		return winding != 0;
-	}
+	/// Whether the winding number at p is not 0. Complexity: that of integerWinding().
+	bool isInside(const Point3d& p) const { return integerWinding(*tree, p) != 0; }
 
 	/// As above; points no farther outside than `tolerance` count, too.
 	bool isInside(const Point3d& p, double tolerance) const
@@ -150,7 +132,6 @@ private:
 	std::vector<Point3d> corner;
 	Point3d middle;
 	double unit = 1;
-	Box3d box;
 	std::optional<TriangleTree> tree; ///< of `corner` and `faces`
 
 	/// Axes turned about (1, 2, 3) by 1 rad: oblique to shapes aligned with the mesh's axes.
