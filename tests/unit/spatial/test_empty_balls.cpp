@@ -19,7 +19,7 @@ using vcg::Point3d;
 
 namespace {
 
-std::vector<Point3d> randomPoints(const SurfaceMesh& mesh, int count)
+std::vector<Point3d> scatteredPoints(const SurfaceMesh& mesh, int count)
 {
 	std::mt19937 random(7);
 	const vcg::Box3d box = mesh.bounds();
@@ -50,7 +50,7 @@ TEST(EmptyBalls, TheSurfaceDoesNotEnterThem)
 	const std::vector<Triangle> triangles = mesh.triangles();
 	const TriangleTree tree(mesh.position, triangles);
 	const EmptyBallsOfSurface balls(mesh.position, triangles, Progress());
-	for (const Point3d& p : randomPoints(mesh, 500))
+	for (const Point3d& p : scatteredPoints(mesh, 500))
 		EXPECT_LE(balls.radius(p), tree.closest(p).distance + 1e-12);
 	EXPECT_GT(balls.radius({10, 0, 0}), 0.7) << "in the middle of the sphere of small triangles";
 }
@@ -62,7 +62,7 @@ TEST(EmptyBalls, TheLargestReachesTheSurface)
 	const TriangleTree tree(mesh.position, triangles);
 	EmptyBallsOfSurface balls(mesh.position, triangles, Progress());
 	int left = 1000000;
-	for (const Point3d& p : randomPoints(mesh, 500))
+	for (const Point3d& p : scatteredPoints(mesh, 500))
 		EXPECT_NEAR(balls.largestRadius(p, left), tree.closest(p).distance, 1e-12);
 	EXPECT_GT(left, 0);
 	left = 3;

@@ -448,6 +448,18 @@ inline std::vector<char> openPieces(
 	return open;
 }
 
+/// Whether two triangles cross that share no vertex.
+inline bool areCrossing(
+	const std::vector<Point3d>& points, const Triangle& t, const Triangle& other)
+{
+	for (int v : other)
+		if (std::find(t.begin(), t.end(), v) != t.end())
+			return false;
+	const auto at = [&](const Triangle& of, size_t k) { return points[size_t(of[k])]; };
+	return vcg::NoDivTriTriIsect<double>(
+		at(t, 0), at(t, 1), at(t, 2), at(other, 0), at(other, 1), at(other, 2));
+}
+
 /// Whether a triangle crosses others of `triangles` with which it shares no vertex. @param counts
 /// counts(face): whether that face is considered.
 template <class Counts>
@@ -459,15 +471,7 @@ bool crossesOthers(const TriangleTree& tree, const std::vector<Triangle>& triang
 		box.Add(points[size_t(v)]);
 	bool crosses = false;
 	tree.forEachFaceIn(box, [&](int f) {
-		const Triangle& other = triangles[size_t(f)];
-		for (int v : other)
-			if (std::find(t.begin(), t.end(), v) != t.end())
-				return;
-		const auto at = [&](const Triangle& of, size_t k) { return points[size_t(of[k])]; };
-		crosses = crosses
-			|| (counts(f)
-				&& vcg::NoDivTriTriIsect<double>(
-					at(t, 0), at(t, 1), at(t, 2), at(other, 0), at(other, 1), at(other, 2)));
+		crosses = crosses || (counts(f) && areCrossing(points, t, triangles[size_t(f)]));
 	});
 	return crosses;
 }

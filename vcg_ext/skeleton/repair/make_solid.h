@@ -163,11 +163,27 @@ constexpr double usualSquares = 30000, maxSquares = 150000;
 inline int selfIntersections(const std::vector<Point3d>& points,
 	const std::vector<Triangle>& triangles, const TriangleTree& tree, const Progress& progress)
 {
+	constexpr int together = 16; // neighbours, which meet the same triangles
 	std::vector<char> crosses(triangles.size(), 0);
+	const std::vector<int> groups = tree.nodesOfAtMost(together);
 	forEachBlock(
-		int(triangles.size()), progress, "Looking for self-intersections", [&](int begin, int end) {
-			for (int f = begin; f < end; ++f)
-				crosses[size_t(f)] = crossesOthers(tree, triangles, points, triangles[size_t(f)]);
+		int(groups.size()), progress, "Looking for self-intersections", [&](int begin, int end) {
+			std::vector<std::pair<Box3d, int>> near;
+			for (int i = begin; i < end; ++i) {
+				const TriangleTree::Node& group = tree.allNodes()[size_t(groups[size_t(i)])];
+				near.clear();
+				tree.forEachFaceIn(group.box, [&](int f) { near.emplace_back(tree.boxOf(f), f); });
+				for (int k = group.begin; k < group.end; ++k) {
+					const int f = tree.order()[size_t(k)];
+					const Box3d box = tree.boxOf(f);
+					crosses[size_t(f)] =
+						std::any_of(near.begin(), near.end(), [&](const auto& other) {
+							return TriangleTree::meet(other.first, box)
+								&& areCrossing(
+									points, triangles[size_t(f)], triangles[size_t(other.second)]);
+						});
+				}
+			}
 		});
 	return int(std::count(crosses.begin(), crosses.end(), 1));
 }

@@ -31,8 +31,8 @@ inline int integerWinding(const TriangleTree& tree, const Point3d& p)
 	Box3d ray;
 	ray.Add(p);
 	ray.Add(Point3d(p[0], p[1], all.max[2]));
-	tree.forEachFaceIn(
-		ray, [&](int f) { winding += detail::crossingAbove(tree.allPoints(), tree.triangle(f), p); });
+	tree.forEachFaceIn(ray,
+		[&](int f) { winding += detail::crossingAbove(tree.allPoints(), tree.triangle(f), p); });
 	return winding;
 }
 

@@ -164,6 +164,36 @@ public:
 			});
 	}
 
+	/// The nodes of at most so many triangles whose parents have more: together of all triangles.
+	/// Complexity: O(F / most).
+	std::vector<int> nodesOfAtMost(int most) const
+	{
+		std::vector<int> found;
+		std::vector<int> stack;
+		if (!nodes.empty())
+			stack.push_back(0);
+		while (!stack.empty()) {
+			const int at = stack.back();
+			stack.pop_back();
+			const Node& node = nodes[size_t(at)];
+			if (node.isLeaf() || node.end - node.begin <= most) {
+				found.push_back(at);
+				continue;
+			}
+			stack.push_back(node.right);
+			stack.push_back(at + 1);
+		}
+		return found;
+	}
+
+	static bool meet(const Box3d& a, const Box3d& b)
+	{
+		for (int k = 0; k < 3; ++k)
+			if (a.min[k] > b.max[k] || b.min[k] > a.max[k])
+				return false;
+		return true;
+	}
+
 	Box3d boxOf(int f) const
 	{
 		Box3d box;
@@ -180,14 +210,6 @@ private:
 	const std::vector<Triangle>& triangles;
 	std::vector<int> ids;
 	std::vector<Node> nodes;
-
-	static bool meet(const Box3d& a, const Box3d& b)
-	{
-		for (int k = 0; k < 3; ++k)
-			if (a.min[k] > b.max[k] || b.min[k] > a.max[k])
-				return false;
-		return true;
-	}
 
 	/// The segment p + t step, t in [0, 1], against boxes.
 	class Segment
