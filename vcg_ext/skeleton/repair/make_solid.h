@@ -299,15 +299,24 @@ inline double sharedWalls(const std::vector<Point3d>& points,
 	constexpr double close = 1e-6; // of the diagonal
 	const double step = close * tree.allNodes()[0].box.Diag();
 	const std::vector<SurfacePlace> places = placesByArea(points, triangles, samples);
-	std::vector<char> shared(places.size(), 0);
-	forEachBlock(int(places.size()), progress, "Looking for walls", [&](int begin, int end) {
-		for (int i = begin; i < end; ++i) {
-			const SurfacePlace& at = places[size_t(i)];
-			shared[size_t(i)] = integerWinding(tree, at.point + at.normal * step) == 1
-				&& integerWinding(tree, at.point - at.normal * step) == 1;
-		}
-	});
-	return double(std::count(shared.begin(), shared.end(), 1)) / double(places.size());
+	const auto isShared = [&](const SurfacePlace& at, const auto& isOne) {
+		return isOne(at.point + at.normal * step) && isOne(at.point - at.normal * step);
+	};
+	std::vector<SurfacePlace> shared;
+	progress.report(0, "Looking for walls");
+	for (const SurfacePlace& at : places)
+		if (isShared(at, [&](const Point3d& p) { return integerWinding(tree, p) == 1; }))
+			shared.push_back(at);
+	if (shared.empty())
+		return 0;
+	// A place on an edge has one of its sides on the other face of the edge: that is no wall.
+	const WindingNumber winding(tree, progress);
+	const auto isOne = [&](const Point3d& p) {
+		const double w = winding(p);
+		return w > 0.75 && w < 1.25;
+	};
+	const auto isWall = [&](const SurfacePlace& at) { return isShared(at, isOne); };
+	return double(std::count_if(shared.begin(), shared.end(), isWall)) / double(places.size());
 }
 
 /// The thickness below which the fraction `part` of the area lies, measured inwards along the
