@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <set>
 #include <string>
 #include <utility>
@@ -22,6 +23,22 @@ namespace checks {
 
 using namespace vcg::tri::mcf;
 using vcg::Point3d;
+
+/// Points in a box a tenth larger than the mesh's on each side, the same in each run.
+inline std::vector<Point3d> randomPoints(const SurfaceMesh& mesh, int count)
+{
+	std::mt19937 random(5);
+	const vcg::Box3d box = mesh.bounds();
+	std::vector<Point3d> points;
+	for (int i = 0; i < count; ++i) {
+		Point3d p;
+		for (int k = 0; k < 3; ++k)
+			p[k] = box.min[k]
+				+ (1.2 * random() / double(std::mt19937::max()) - 0.1) * (box.max[k] - box.min[k]);
+		points.push_back(p);
+	}
+	return points;
+}
 
 /// Empty if the corner table is a closed two-manifold without double edges, in every detail.
 inline std::string structureError(const SurfaceMesh& mesh)

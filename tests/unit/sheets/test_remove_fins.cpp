@@ -17,7 +17,7 @@ namespace {
 /// Where the sheets of these tests are thick.
 constexpr double thickness = 1.5;
 
-int addPlace(MesoSkeleton& skeleton, const Point3d& p)
+int addSheetNode(MesoSkeleton& skeleton, const Point3d& p)
 {
 	skeleton.position.push_back(p);
 	skeleton.radius.push_back(thickness);
@@ -38,7 +38,7 @@ MesoSkeleton sheet(int n)
 	MesoSkeleton skeleton;
 	for (int y = 0; y <= n; ++y)
 		for (int x = 0; x <= n; ++x)
-			addPlace(skeleton, Point3d(x, y, 0));
+			addSheetNode(skeleton, Point3d(x, y, 0));
 	const auto at = [&](int x, int y) { return x + (n + 1) * y; };
 	for (int y = 0; y < n; ++y)
 		for (int x = 0; x < n; ++x) {
@@ -62,7 +62,7 @@ MesoSkeleton sheetWithWall(double height)
 	const int foot = 2 * 5 + 1;
 	std::vector<int> top;
 	for (int x = 1; x <= 3; ++x)
-		top.push_back(addPlace(skeleton, Point3d(x, 2, height)));
+		top.push_back(addSheetNode(skeleton, Point3d(x, 2, height)));
 	for (int x = 0; x < 2; ++x) {
 		addFace(skeleton, {foot + x, foot + x + 1, top[size_t(x)]});
 		addFace(skeleton, {foot + x + 1, top[size_t(x)], top[size_t(x) + 1]});
@@ -76,7 +76,7 @@ TEST(RemoveFins, AFaceThatStandsOnASheetGoes)
 {
 	const MesoSkeleton plain = sheet(4);
 	MesoSkeleton skeleton = plain;
-	const int tip = addPlace(skeleton, Point3d(1.2, 2, 1));
+	const int tip = addSheetNode(skeleton, Point3d(1.2, 2, 1));
 	addFace(skeleton, {11, 12, tip});
 	ASSERT_EQ(seams(skeleton), 1u);
 	removeFins(skeleton);
@@ -100,7 +100,8 @@ TEST(RemoveFins, AWallGoesIfItIsLowerThanTheThickness)
 TEST(RemoveFins, WhatHoldsVerticesStaysInItsPlace)
 {
 	MesoSkeleton skeleton = sheet(4);
-	const int fin = addPlace(skeleton, Point3d(1.2, 2, 1)), whisker = addPlace(skeleton, {3, 3, 1});
+	const int fin = addSheetNode(skeleton, Point3d(1.2, 2, 1)),
+			  whisker = addSheetNode(skeleton, {3, 3, 1});
 	const int inside = 2 + 5, atWhisker = 3 + 5 * 3;
 	addFace(skeleton, {11, 12, fin});
 	skeleton.edges.push_back({atWhisker, whisker});
@@ -126,7 +127,7 @@ TEST(RemoveFins, WhatHoldsVerticesStaysInItsPlace)
 TEST(RemoveFins, AFinOnAFinGoesToo)
 {
 	MesoSkeleton skeleton = sheetWithWall(0.5);
-	const int tip = addPlace(skeleton, Point3d(1.5, 1.5, 0.5)), inside = 4 * 4 * 2;
+	const int tip = addSheetNode(skeleton, Point3d(1.5, 1.5, 0.5)), inside = 4 * 4 * 2;
 	const FaceOfComplex wall = skeleton.faces[size_t(inside) + 1];
 	addFace(skeleton, {wall[0], wall[1], tip}); // on an edge between two faces of the wall
 	ASSERT_EQ(seams(skeleton), 3u);
@@ -140,7 +141,8 @@ TEST(RemoveFins, APatchThatClosesALoopOrHoldsACurveStays)
 {
 	// A roof over two squares, open at both ends: a tunnel.
 	MesoSkeleton roof = sheet(4);
-	const int a = addPlace(roof, Point3d(1, 2, 0.5)), b = addPlace(roof, Point3d(2, 2, 0.5));
+	const int a = addSheetNode(roof, Point3d(1, 2, 0.5)),
+			  b = addSheetNode(roof, Point3d(2, 2, 0.5));
 	const int front = 5 + 1, back = 3 * 5 + 1;
 	for (int foot : {front, back}) {
 		addFace(roof, {foot, foot + 1, a});
@@ -152,8 +154,8 @@ TEST(RemoveFins, APatchThatClosesALoopOrHoldsACurveStays)
 	EXPECT_EQ(roof.faces, before.faces);
 
 	MesoSkeleton withCurve = sheet(4);
-	const int tip = addPlace(withCurve, Point3d(1, 2, 1));
-	const int end = addPlace(withCurve, Point3d(1, 2, 9));
+	const int tip = addSheetNode(withCurve, Point3d(1, 2, 1));
+	const int end = addSheetNode(withCurve, Point3d(1, 2, 9));
 	addFace(withCurve, {11, 12, tip});
 	withCurve.edges.push_back({tip, end});
 	before = withCurve;
@@ -166,8 +168,8 @@ TEST(OpenFolds, OneFaceGoesWhereTheRimLiesOnTheSheet)
 {
 	// Beyond the rim, y = 0, the sheet goes on to both sides of (1, 0) - (2, 0), and overlaps there.
 	MesoSkeleton skeleton = sheet(4);
-	const int u = addPlace(skeleton, Point3d(1.2, -1, 0.1));
-	const int w = addPlace(skeleton, Point3d(1.8, -0.9, -0.1));
+	const int u = addSheetNode(skeleton, Point3d(1.2, -1, 0.1));
+	const int w = addSheetNode(skeleton, Point3d(1.8, -0.9, -0.1));
 	addFace(skeleton, {0, 1, u});
 	addFace(skeleton, {1, 2, u});
 	addFace(skeleton, {1, 2, w});
@@ -187,7 +189,7 @@ TEST(RemoveFins, TwoThatMeetInANodeKeepTheLoopBetweenThem)
 {
 	// Faces on the sheet with a tip in common.
 	MesoSkeleton skeleton = sheet(4);
-	const int tip = addPlace(skeleton, Point3d(2, 2.5, 0.3));
+	const int tip = addSheetNode(skeleton, Point3d(2, 2.5, 0.3));
 	addFace(skeleton, {11, 12, tip});
 	addFace(skeleton, {17, 18, tip});
 	const BettiNumbers betti = skeleton.betti();
@@ -196,9 +198,9 @@ TEST(RemoveFins, TwoThatMeetInANodeKeepTheLoopBetweenThem)
 
 	// Walls of two faces, with a node of the rim in common that nothing else has.
 	MesoSkeleton walls = sheet(4);
-	const int shared = addPlace(walls, Point3d(2, 2.5, 0.4));
-	const int left = addPlace(walls, Point3d(1.5, 2, 0.4)),
-			  right = addPlace(walls, Point3d(1.5, 3, 0.4));
+	const int shared = addSheetNode(walls, Point3d(2, 2.5, 0.4));
+	const int left = addSheetNode(walls, Point3d(1.5, 2, 0.4)),
+			  right = addSheetNode(walls, Point3d(1.5, 3, 0.4));
 	addFace(walls, {11, 12, left});
 	addFace(walls, {12, left, shared});
 	addFace(walls, {16, 17, right});
@@ -212,13 +214,15 @@ TEST(OpenFolds, OfTwoThatShareAnEdgeOneIsLeft)
 {
 	// Faces a b c and b c d, with seams of three faces a b and c d, and rims a c and b d.
 	MesoSkeleton skeleton;
-	const int a = addPlace(skeleton, Point3d(0, 0, 0)), b = addPlace(skeleton, Point3d(1, 0, 0));
-	const int c = addPlace(skeleton, Point3d(0, 1, 0)), d = addPlace(skeleton, Point3d(1, 1, 0));
+	const int a = addSheetNode(skeleton, Point3d(0, 0, 0)),
+			  b = addSheetNode(skeleton, Point3d(1, 0, 0));
+	const int c = addSheetNode(skeleton, Point3d(0, 1, 0)),
+			  d = addSheetNode(skeleton, Point3d(1, 1, 0));
 	addFace(skeleton, {a, b, c});
 	addFace(skeleton, {b, c, d});
 	for (double z : {-1.0, 1.0}) {
-		addFace(skeleton, {a, b, addPlace(skeleton, Point3d(0.5, -1, z))});
-		addFace(skeleton, {c, d, addPlace(skeleton, Point3d(0.5, 2, z))});
+		addFace(skeleton, {a, b, addSheetNode(skeleton, Point3d(0.5, -1, z))});
+		addFace(skeleton, {c, d, addSheetNode(skeleton, Point3d(0.5, 2, z))});
 	}
 	const BettiNumbers betti = skeleton.betti();
 	ASSERT_EQ(seams(skeleton), 2u);

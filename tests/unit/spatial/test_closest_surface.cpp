@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <random>
 #include <vector>
 
 using namespace vcg::tri::mcf;
@@ -39,21 +38,6 @@ double distanceByBruteForce(const SurfaceMesh& mesh, const Point3d& x)
 	return std::sqrt(minimum);
 }
 
-std::vector<Point3d> randomPoints(const SurfaceMesh& mesh, int count)
-{
-	std::mt19937 random(5);
-	const vcg::Box3d box = mesh.bounds();
-	std::vector<Point3d> points;
-	for (int i = 0; i < count; ++i) {
-		Point3d p;
-		for (int k = 0; k < 3; ++k)
-			p[k] = box.min[k]
-				+ (1.2 * random() / double(std::mt19937::max()) - 0.1) * (box.max[k] - box.min[k]);
-		points.push_back(p);
-	}
-	return points;
-}
-
 class OnShapes : public testing::TestWithParam<shapes::Soup>
 {
 };
@@ -63,7 +47,7 @@ TEST_P(OnShapes, DistanceIsThatOfBruteForceButForTheSamplesSpacing)
 	const SurfaceMesh mesh = GetParam().mesh();
 	const double spacing = mesh.bounds().Diag() / 50;
 	const ClosestSurface closest(mesh, allVertices(mesh), spacing);
-	for (const Point3d& x : randomPoints(mesh, 200)) {
+	for (const Point3d& x : checks::randomPoints(mesh, 200)) {
 		const double exact = distanceByBruteForce(mesh, x);
 		const ClosestSurface::Hit hit = closest.closest(x);
 		EXPECT_GE(hit.distance, exact - 1e-12);
@@ -81,7 +65,7 @@ TEST_P(OnShapes, ExactDistanceIsThatOfBruteForce)
 	const SurfaceMesh mesh = GetParam().mesh();
 	for (double part : {50, 5}) {
 		const ClosestSurface closest(mesh, allVertices(mesh), mesh.bounds().Diag() / part);
-		for (const Point3d& x : randomPoints(mesh, 200)) {
+		for (const Point3d& x : checks::randomPoints(mesh, 200)) {
 			const double exact = distanceByBruteForce(mesh, x);
 			EXPECT_NEAR(closest.closestExactly(x).distance, exact, 1e-12);
 			EXPECT_LE(closest.emptyRadius(x), exact + 1e-12);
@@ -94,7 +78,7 @@ TEST_P(OnShapes, InsideIsThatOfTheWindingNumber)
 	const SurfaceMesh mesh = GetParam().mesh();
 	const ClosestSurface closest(mesh, allVertices(mesh), mesh.bounds().Diag() / 50);
 	int inside = 0, outside = 0;
-	for (const Point3d& x : randomPoints(mesh, 200)) {
+	for (const Point3d& x : checks::randomPoints(mesh, 200)) {
 		if (distanceByBruteForce(mesh, x) < 1e-3)
 			continue;
 		const bool isInside = checks::windingNumber(mesh, x) > 0.5;
@@ -110,7 +94,7 @@ TEST_P(OnShapes, MaximalBallIsEmptyAndTouchesTwice)
 	const SurfaceMesh mesh = GetParam().mesh();
 	const double spacing = mesh.bounds().Diag() / 50;
 	const ClosestSurface closest(mesh, allVertices(mesh), spacing);
-	for (const Point3d& x : randomPoints(mesh, 200)) {
+	for (const Point3d& x : checks::randomPoints(mesh, 200)) {
 		const ClosestSurface::Hit hit = closest.closest(x);
 		if (hit.distance < spacing || !closest.isInside(x, hit))
 			continue;

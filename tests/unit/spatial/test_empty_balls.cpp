@@ -3,6 +3,7 @@
 
 // Balls that a surface does not enter, against distances by a tree of the triangles.
 
+#include "mesh_checks.h"
 #include "shapes.h"
 
 #include <skeleton/spatial/empty_balls.h>
@@ -11,28 +12,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <random>
 #include <vector>
 
 using namespace vcg::tri::mcf;
 using vcg::Point3d;
 
 namespace {
-
-std::vector<Point3d> scatteredPoints(const SurfaceMesh& mesh, int count)
-{
-	std::mt19937 random(7);
-	const vcg::Box3d box = mesh.bounds();
-	std::vector<Point3d> points;
-	for (int i = 0; i < count; ++i) {
-		Point3d p;
-		for (int k = 0; k < 3; ++k)
-			p[k] = box.min[k]
-				+ (1.4 * random() / double(std::mt19937::max()) - 0.2) * (box.max[k] - box.min[k]);
-		points.push_back(p);
-	}
-	return points;
-}
 
 /// A fine sphere beside a box of twelve long triangles.
 SurfaceMesh fineAndCoarse()
@@ -50,7 +35,7 @@ TEST(EmptyBalls, TheSurfaceDoesNotEnterThem)
 	const std::vector<Triangle> triangles = mesh.triangles();
 	const TriangleTree tree(mesh.position, triangles);
 	const EmptyBallsOfSurface balls(mesh.position, triangles, Progress());
-	for (const Point3d& p : scatteredPoints(mesh, 500))
+	for (const Point3d& p : checks::randomPoints(mesh, 500))
 		EXPECT_LE(balls.radius(p), tree.closest(p).distance + 1e-12);
 	EXPECT_GT(balls.radius({10, 0, 0}), 0.7) << "in the middle of the sphere of small triangles";
 }
@@ -62,7 +47,7 @@ TEST(EmptyBalls, TheLargestReachesTheSurface)
 	const TriangleTree tree(mesh.position, triangles);
 	EmptyBallsOfSurface balls(mesh.position, triangles, Progress());
 	int left = 1000000;
-	for (const Point3d& p : scatteredPoints(mesh, 500))
+	for (const Point3d& p : checks::randomPoints(mesh, 500))
 		EXPECT_NEAR(balls.largestRadius(p, left), tree.closest(p).distance, 1e-12);
 	EXPECT_GT(left, 0);
 	left = 3;

@@ -609,6 +609,10 @@ inline CurveSkeleton broughtInside(CurveSkeleton skeleton, const std::vector<Poi
 	std::iota(heir.begin(), heir.end(), 0);
 	CutCurves found;
 	std::vector<std::array<int, 2>> all;
+	const auto take = [&](int c, const std::vector<std::array<int, 2>>& ofComponent) {
+		for (const auto& [i, j] : ofComponent)
+			all.push_back({std::min(nodes[c][i], nodes[c][j]), std::max(nodes[c][i], nodes[c][j])});
+	};
 	for (int c = 0; c < components; ++c) {
 		const Progress part = progress.part(double(c) / components, double(c + 1) / components);
 		std::vector<Point3d> points, given;
@@ -618,9 +622,7 @@ inline CurveSkeleton broughtInside(CurveSkeleton skeleton, const std::vector<Poi
 			given.push_back(skeleton.position[A]);
 		if (detail::isCertainlyInside(
 				given, edges[c], points, faces[c], part.part(0, 0.25).cancelOnly())) {
-			for (const auto& [i, j] : edges[c])
-				all.push_back(
-					{std::min(nodes[c][i], nodes[c][j]), std::max(nodes[c][i], nodes[c][j])});
+			take(c, edges[c]);
 			continue;
 		}
 		const SolidTest solid(points, faces[c], part.part(0.25, 0.5));
@@ -659,8 +661,7 @@ inline CurveSkeleton broughtInside(CurveSkeleton skeleton, const std::vector<Poi
 			for (size_t i = 0; i < ofComponent.size(); ++i)
 				heir[nodes[c][i]] = nodes[c][ofComponent[i]];
 		}
-		for (const auto& [i, j] : remaining)
-			all.push_back({std::min(nodes[c][i], nodes[c][j]), std::max(nodes[c][i], nodes[c][j])});
+		take(c, remaining);
 	}
 	std::sort(all.begin(), all.end());
 	skeleton.edges = std::move(all);

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace vcg::tri::mcf::detail {
@@ -80,6 +81,12 @@ public:
 		forEachRange(progress, what, [&](int g, size_t from, size_t to) {
 			visit(g, entries.data() + from, entries.data() + to);
 		});
+	}
+
+	/// The entries of a group, from the first to the end.
+	std::pair<const Entry*, const Entry*> of(int group) const
+	{
+		return {entries.data() + start[size_t(group)], entries.data() + start[size_t(group) + 1]};
 	}
 
 private:

@@ -9,6 +9,8 @@
 
 #include "surface_mesh.h"
 
+#include <vector>
+
 namespace vcg::tri::mcf {
 
 namespace detail {
@@ -61,6 +63,13 @@ inline TrianglePoint closestOnTriangle(
 		return along(b, c, acB - abB, (acB - abB) + (abC - acC), 4);
 	const double sum = areaA + areaB + areaC;
 	return at(a + ab * (areaB / sum) + ac * (areaC / sum), TrianglePoint::interior);
+}
+
+/// The squared distance of q from a triangle of these points.
+inline double squaredDistance(
+	const std::vector<Point3d>& points, const Triangle& t, const Point3d& q)
+{
+	return closestOnTriangle(points[t[0]], points[t[1]], points[t[2]], q).squaredDistance;
 }
 
 } // namespace detail

@@ -290,16 +290,16 @@ std::vector<double> partBackToBack(const Seeds& seeds, const std::vector<int>& a
 
 } // namespace detail
 
-/// The vertices where a shape is thin, and how thick it is there. All lengths are in mesh units, and
-/// times the relative length of an edge: what it is there, but for the grading.
+/// The vertices where a shape is thin. Lengths are relativeLength times the local thickness, mesh
+/// units: those of the sizing field before it is graded.
 struct ThinPlaces
 {
-	/// Of each component, the lengths that count as small are below this.
+	/// Of each component: lengths below this count as small.
 	std::vector<double> below;
-	/// Of each vertex where it may be small, else infinite; empty if there are no seeds.
+	/// Of each vertex where the length may be small, else infinite; empty if there are no seeds.
 	std::vector<double> length;
-	/// Where it is small because the shape is thin: the length, at least shortestLength of the
-	/// diagonal, and the vertex.
+	/// Length and vertex where the shape is thin; lengths are at least shortestLength times the
+	/// diagonal.
 	std::vector<std::pair<double, int>> seeds;
 };
 
@@ -315,8 +315,7 @@ inline std::vector<double> smallLengths(
 }
 
 /**
- * Where a shape is thin: relativeLength times the local thickness is small there, and not for
- * another reason.
+ * Finds where a shape is thin.
  *
  * The local thickness at a vertex is the median radius of the maximal inner balls around it. Balls
  * that are small only because of sharp edges, corners and bumps do not count, see detail::isThin()

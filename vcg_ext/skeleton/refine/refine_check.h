@@ -116,7 +116,10 @@ public:
 		int left = samplesOfVertex * int(component.vertices.size());
 		const auto exactly = [&](const Point3d& p) {
 			const double distance = left >= 0 ? closest.distanceNearby(p, left) : 0;
-			return left >= 0 ? distance : closest.closestExactly(p).distance;
+			if (left >= 0)
+				return distance;
+			closest.prepareExact(progress);
+			return closest.closestExactly(p).distance;
 		};
 		const auto cheaply = [&](const Point3d& p) { return closest.emptyRadius(p); };
 		constexpr int halvings = 4;

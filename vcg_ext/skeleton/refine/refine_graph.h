@@ -454,8 +454,7 @@ inline std::vector<double> spacingsAlong(const BallChain& line, const ClosestSur
 	}
 	const auto boundBy = [&](size_t i, size_t near) {
 		spacings[i] = std::min(spacings[i],
-			spacings[near]
-				+ vcg::tri::mcf::sizingSlope * Distance(line.points[i], line.points[near]));
+			spacings[near] + sizingSlope * Distance(line.points[i], line.points[near]));
 	};
 	for (size_t i = 1; i < spacings.size(); ++i)
 		boundBy(i, i - 1);

@@ -303,10 +303,11 @@ inline double sharedWalls(const std::vector<Point3d>& points,
 		return isOne(at.point + at.normal * step) && isOne(at.point - at.normal * step);
 	};
 	std::vector<SurfacePlace> shared;
-	progress.report(0, "Looking for walls");
-	for (const SurfacePlace& at : places)
+	for (const SurfacePlace& at : places) {
+		progress.report(0, "Looking for walls");
 		if (isShared(at, [&](const Point3d& p) { return integerWinding(tree, p) == 1; }))
 			shared.push_back(at);
+	}
 	if (shared.empty())
 		return 0;
 	// A place on an edge has one of its sides on the other face of the edge: that is no wall.

@@ -41,19 +41,28 @@ struct ResampledSurface
 	bool isTooThin = false;
 };
 
-/// Where a surface is thinner than neutralLength of the diagonal. @throws Cancelled
-inline ThinPlaces thinnerThanNeutral(const MeasuredSurface& surface, const PoleSet& poles,
-	const Parameters& parameters, const Progress& progress = Progress())
+/// The poles of a surface, and where it is thin.
+struct MeasuredThickness
 {
-	const std::vector<double> any(
-		size_t(surface.components()), std::numeric_limits<double>::infinity());
-	return thinPlaces(
-		surface, poles, parameters.relativeLength, smallLengths(surface, any), progress);
+	PoleSet poles;
+	ThinPlaces places;
+};
+
+/// @param bound  see smallLengths(). @throws Cancelled. Complexity: as medialPoles().
+inline MeasuredThickness measuredThickness(const MeasuredSurface& surface,
+	const Parameters& parameters, const std::vector<double>& bound,
+	const Progress& progress = Progress())
+{
+	MeasuredThickness measured;
+	measured.poles = medialPoles(surface, PoleMethod::Balls, progress.part(0, 0.7));
+	measured.places = thinPlaces(surface, measured.poles, parameters.relativeLength,
+		smallLengths(surface, bound), progress.part(0.7, 1));
+	return measured;
 }
 
 /// The local thickness at each vertex of a surface, mesh units; infinite where gradedField() is not
 /// below neutralLength of the diagonal, and empty if that is so everywhere.
-/// @param places see thinnerThanNeutral(). @throws Cancelled. Complexity: as gradedField().
+/// @param places see MeasuredThickness. @throws Cancelled. Complexity: as gradedField().
 inline std::vector<double> localThickness(const MeasuredSurface& surface, const ThinPlaces& places,
 	const Parameters& parameters, const Progress& progress = Progress())
 {
@@ -151,32 +160,31 @@ inline double resolvedPart(const MeasuredSurface& surface, const SizingField& fi
  * an even mesh alone exceeds the budget.
  * @param length of each component, see defaultTargetLength().
  * @param budget see budgetOf() and budgetWithSamples().
- * @param poles  of all vertices, where they are known already; null: they are computed.
- * @param known  see thinnerThanNeutral(); null: computed where it is needed.
+ * @param known  what is known already; null: it is computed.
  * @param onNote receives what is resolved less; may be empty.
  * @throws Cancelled. Complexity: as medialPoles().
  */
 inline std::optional<SizingField> fieldOfResampling(const MeasuredSurface& surface,
-	const std::vector<double>& length, const Parameters& parameters, const PoleSet* poles,
-	const ThinPlaces* known, const VertexBudget& budget, const Progress& progress = Progress(),
+	const std::vector<double>& length, const Parameters& parameters, const MeasuredThickness* known,
+	const VertexBudget& budget, const Progress& progress = Progress(),
 	const NoteCallback& onNote = {})
 {
 	const double anyway = expectedVertices(surface, length, SizingField());
 	if (anyway > budget.vertices)
 		return std::nullopt;
-	PoleSet found;
-	if (!poles) {
-		found = medialPoles(surface, PoleMethod::Balls, progress.part(0, 0.8));
-		poles = &found;
+	MeasuredThickness found;
+	if (!known) {
+		found = measuredThickness(surface, parameters, length, progress.part(0, 0.9));
+		known = &found;
 	}
-	std::vector<double> below = smallLengths(surface, length);
-	ThinPlaces places;
-	if (!known || known->below != below) {
-		places = thinPlaces(
-			surface, *poles, parameters.relativeLength, std::move(below), progress.part(0.8, 0.95));
-		known = &places;
+	ThinPlaces smaller; // where `length` is below what counts as small in `known`
+	const ThinPlaces* places = &known->places;
+	if (std::vector<double> below = smallLengths(surface, length); below != places->below) {
+		smaller = thinPlaces(surface, known->poles, parameters.relativeLength, std::move(below),
+			progress.part(0.9, 0.95));
+		places = &smaller;
 	}
-	SizingField field = gradedField(surface, *known, length, progress.part(0.95, 1));
+	SizingField field = gradedField(surface, *places, length, progress.part(0.95, 1));
 	if (field.empty())
 		return field;
 	double expected = expectedVertices(surface, length, field);
@@ -265,20 +273,18 @@ inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Paramete
 	const MeasuredSurface surface(mesh, progress.part(0, 0.05));
 	const Parameters parameters = sharedAmong(given, surface.diagonals());
 	ResampledSurface result;
-	PoleSet poles;
-	ThinPlaces places;
+	MeasuredThickness measured;
 	std::vector<double> thickness;
 	if (parameters.adaptive) {
-		poles = medialPoles(surface, PoleMethod::Balls, progress.part(0.05, 0.15));
-		places = thinnerThanNeutral(surface, poles, parameters, progress.part(0.15, 0.19));
-		thickness = localThickness(surface, places, parameters, progress.part(0.19, 0.2));
+		const std::vector<double> any(
+			size_t(surface.components()), std::numeric_limits<double>::infinity());
+		measured = measuredThickness(surface, parameters, any, progress.part(0.05, 0.19));
+		thickness = localThickness(surface, measured.places, parameters, progress.part(0.19, 0.2));
 	}
 	result.noise = measureNoise(surface, progress.part(0.2, 0.25), thickness);
 	const bool smooth = parameters.denoise && result.noise.isNoisy();
 	tellNoise(result.noise, smooth, onNote);
-	// Poles and thin places are those of the given surface: null where it was smoothed.
-	const auto resampled = [&](const MeasuredSurface& calm, const PoleSet* own,
-							   const ThinPlaces* thin) {
+	const auto resampled = [&](const MeasuredSurface& calm, const MeasuredThickness* own) {
 		const double from = smooth ? 0.35 : 0.25;
 		const std::vector<double> length = defaultTargetLength(calm, parameters);
 		const bool isAdaptive = parameters.adaptive && parameters.resampleIterations > 0;
@@ -288,7 +294,7 @@ inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Paramete
 				const MeasuredSurface dense(*sampled, progress.cancelOnly());
 				std::vector<std::string> notes;
 				const std::optional<SizingField> field = fieldOfResampling(dense, length,
-					parameters, nullptr, nullptr, budgetWithSamples(calm.mesh(), *sampled),
+					parameters, nullptr, budgetWithSamples(calm.mesh(), *sampled),
 					progress.cancelOnly(), [&](const std::string& note) { notes.push_back(note); });
 				if (field && !field->empty()) {
 					for (const std::string& note : notes)
@@ -301,7 +307,7 @@ inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Paramete
 		}
 		std::optional<SizingField> field = SizingField();
 		if (isAdaptive)
-			field = fieldOfResampling(calm, length, parameters, own, thin, budgetOf(calm.mesh()),
+			field = fieldOfResampling(calm, length, parameters, own, budgetOf(calm.mesh()),
 				progress.part(from, from + 0.15), onNote);
 		result.isTooThin = !field;
 		return resample(calm, length, parameters.resampleIterations, progress.part(from + 0.15, 1),
@@ -312,11 +318,9 @@ inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Paramete
 			resampled({smoothed(surface, result.noise.ofVertices(surface.component(), thickness),
 						   progress.part(0.25, 0.3)),
 						  progress.part(0.3, 0.35)},
-				nullptr, nullptr);
-	else if (parameters.adaptive)
-		result.mesh = resampled(surface, &poles, &places);
+				nullptr);
 	else
-		result.mesh = resampled(surface, nullptr, nullptr);
+		result.mesh = resampled(surface, parameters.adaptive ? &measured : nullptr);
 	if (onNote)
 		onNote(detail::sentence(6, "Resampled to ", result.mesh.vertexCount(),
 			" vertices, mean edge length ", meanEdgeLength(result.mesh), " mesh units",

@@ -263,10 +263,7 @@ public:
 		if (int(piece.normal * normal > opposite) | int(std::abs(d * piece.normal) > height)
 			| int(d.SquaredNorm() > squaredReach))
 			return false;
-		const Triangle t = mesh.triangle(piece.face);
-		const std::vector<Point3d>& corner = mesh.position;
-		return closestOnTriangle(corner[t[0]], corner[t[1]], corner[t[2]], place).squaredDistance
-			<= limit * limit;
+		return squaredDistance(mesh.position, mesh.triangle(piece.face), place) <= limit * limit;
 	}
 
 	/// A piece of these cells that is such a wall; -1 if there is none.

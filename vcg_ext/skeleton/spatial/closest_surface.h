@@ -70,7 +70,7 @@ public:
 			surface(surface),
 			vertices(vertices),
 			tree(samples(vertices, spacing, progress.part(0, 0.3)), progress.part(0.3, 1)),
-			empty(std::move(covering))
+			empty(coverings(spacing, progress))
 	{
 		detail::cancellableLoop(
 			int(vertices.size()), progress, [&](int i) { box.Add(surface.position[vertices[i]]); });
@@ -141,11 +141,8 @@ public:
 		const auto distanceAround = [&](int sample) {
 			double squared = std::numeric_limits<double>::max();
 			const auto toFace = [&](int f) {
-				const Triangle t = surface.triangle(f);
-				squared = std::min(squared,
-					detail::closestOnTriangle(surface.position[t[0]], surface.position[t[1]],
-						surface.position[t[2]], query)
-						.squaredDistance);
+				squared = std::min(
+					squared, detail::squaredDistance(surface.position, surface.triangle(f), query));
 			};
 			if (size_t(sample) < vertices.size())
 				surface.forEachOutgoing(vertices[size_t(sample)], [&](int h) { toFace(h / 3); });
@@ -287,7 +284,6 @@ private:
 	std::vector<int> vertices; ///< the first samples
 	std::vector<int> faceOfSample;
 	std::vector<int> faces;
-	std::vector<double> covering; ///< of each sample, while there is no `empty`
 	PointTree tree;
 	EmptyBalls empty;
 	Box3d box;
@@ -327,17 +323,10 @@ private:
 	{
 		std::vector<Point3d> points;
 		points.reserve(vertices.size());
-		covering.reserve(vertices.size());
 		faceOfSample.reserve(vertices.size());
 		const int count = int(vertices.size());
 		detail::reportedLoop(count, progress.part(0, 0.3), sorting, [&](int i) {
 			points.push_back(surface.position[vertices[i]]);
-			double squared = 0; // of the longest edge around
-			surface.forEachOutgoing(vertices[i], [&](int h) {
-				squared = std::max(
-					{squared, surface.squaredLength(h), surface.squaredLength(surface.next(h))});
-			});
-			covering.push_back(coveringOf(std::sqrt(squared), spacing));
 			faceOfSample.push_back(surface.outgoing(vertices[i]) / 3);
 		});
 		detail::reportedLoop(count, progress.part(0.3, 1), sorting, [&](int i) {
@@ -349,11 +338,22 @@ private:
 		return points;
 	}
 
-	/// How far from its own samples a triangle may reach; does not fall with its longest edge.
-	static double coveringOf(double longest, double spacing)
+	/// How far a triangle may reach from its own samples, for each sample the maximum around it.
+	std::vector<double> coverings(double spacing, const Cancellation& cancel) const
 	{
-		// Farthest from corners: see coveringOfTriangle(); from rows: midway.
-		return longest > spacing ? std::sqrt(1.25) * spacing : coveringOfTriangle(longest);
+		const double betweenRows = std::sqrt(1.25) * spacing; // midway; that of samples inside
+		std::vector<double> covering(faceOfSample.size(), betweenRows);
+		detail::cancellableLoop(int(vertices.size()), cancel, [&](int i) {
+			double squared = 0; // of the longest edge around
+			surface.forEachOutgoing(vertices[i], [&](int h) {
+				squared = std::max(
+					{squared, surface.squaredLength(h), surface.squaredLength(surface.next(h))});
+			});
+			const double longest = std::sqrt(squared);
+			if (longest <= spacing)
+				covering[i] = coveringOfTriangle(longest);
+		});
+		return covering;
 	}
 
 	/// Samples in rows parallel to the longest edge, that edge included, the corners left out.
@@ -375,7 +375,6 @@ private:
 			const int pieces = std::max(1, int(std::ceil((1 - up) * length / spacing)));
 			for (int i = row == 0 ? 1 : 0; i <= (row == 0 ? pieces - 1 : pieces); ++i) {
 				points.push_back(a + ac * up + ab * ((1 - up) * i / pieces));
-				covering.push_back(coveringOf(length, spacing));
 				faceOfSample.push_back(face);
 			}
 		}

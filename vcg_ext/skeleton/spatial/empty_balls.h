@@ -10,14 +10,16 @@
 
 #include "point_tree.h"
 
+#include <skeleton/core/grouped_sort.h>
 #include <skeleton/core/progress.h>
+#include <skeleton/core/ticker.h>
 #include <skeleton/mesh/closest_point_walk.h>
 #include <skeleton/mesh/surface_mesh.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -106,30 +108,33 @@ private:
 class EmptyBallsOfSurface
 {
 public:
-	/// @param points, triangles are kept by reference. @throws Cancelled. Complexity: O(V log V + F).
+	/// @param points, triangles  are kept by reference.
+	/// @param progress  also cancels largestRadius(). @throws Cancelled. Complexity: O(V log V + F).
 	EmptyBallsOfSurface(const std::vector<Point3d>& points, const std::vector<Triangle>& triangles,
 		const Progress& progress) :
 			points(points),
-			triangles(triangles), samples(points, progress), balls(coverings())
+			triangles(triangles), cancel(progress.cancelOnly()), samples(points, progress),
+			balls(coverings())
 	{
 	}
 
 	/// @see EmptyBalls::radius()
 	double radius(const Point3d& p) const { return balls.radius(samples, p); }
 
-	/// @see EmptyBalls::largestRadius()
+	/// @see EmptyBalls::largestRadius() @throws Cancelled
 	double largestRadius(const Point3d& p, int& left)
 	{
-		if (begin.empty())
-			findFans();
+		if (!fans)
+			fans.emplace(
+				3 * int(triangles.size()), points.size(),
+				[&](int i) { return triangles[size_t(i) / 3][size_t(i) % 3]; },
+				[](int i) { return i / 3; }, cancel, sorting);
 		const auto distanceAround = [&](int v) {
 			double squared = std::numeric_limits<double>::max();
-			for (int i = begin[size_t(v)]; i < begin[size_t(v) + 1]; ++i) {
-				const Triangle& t = triangles[size_t(fans[size_t(i)])];
-				squared = std::min(squared,
-					detail::closestOnTriangle(points[t[0]], points[t[1]], points[t[2]], p)
-						.squaredDistance);
-			}
+			const auto [begin, end] = fans->of(v);
+			for (const int* f = begin; f != end; ++f)
+				squared =
+					std::min(squared, detail::squaredDistance(points, triangles[size_t(*f)], p));
 			return std::sqrt(squared);
 		};
 		return balls.largestRadius(samples, p, distanceAround, left);
@@ -138,35 +143,25 @@ public:
 private:
 	const std::vector<Point3d>& points;
 	const std::vector<Triangle>& triangles;
+	Progress cancel;
 	PointTree samples;
 	EmptyBalls balls;
-	std::vector<int> begin, fans; ///< the triangles around each vertex; empty until they are needed
+	std::optional<detail::SortedGroups<int>> fans; ///< triangles around each vertex, when needed
+
+	static constexpr const char* sorting = "Sorting the surface";
 
 	std::vector<double> coverings() const
 	{
 		std::vector<double> covering(points.size(), 0);
-		for (const Triangle& t : triangles) {
+		detail::cancellableLoop(int(triangles.size()), cancel, [&](int f) {
+			const Triangle& t = triangles[size_t(f)];
 			double longest = 0;
 			for (int i = 0; i < 3; ++i)
 				longest = std::max(longest, Distance(points[t[i]], points[t[(i + 1) % 3]]));
 			for (int v : t)
 				covering[v] = std::max(covering[v], coveringOfTriangle(longest));
-		}
+		});
 		return covering;
-	}
-
-	void findFans()
-	{
-		begin.assign(points.size() + 1, 0);
-		for (const Triangle& t : triangles)
-			for (int v : t)
-				++begin[size_t(v) + 1];
-		std::partial_sum(begin.begin(), begin.end(), begin.begin());
-		std::vector<int> next(begin.begin(), begin.end() - 1);
-		fans.resize(3 * triangles.size());
-		for (size_t f = 0; f < triangles.size(); ++f)
-			for (int v : triangles[f])
-				fans[size_t(next[size_t(v)]++)] = int(f);
 	}
 };
 

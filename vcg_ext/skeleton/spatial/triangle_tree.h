@@ -164,12 +164,11 @@ public:
 			});
 	}
 
-	/// The nodes of at most so many triangles whose parents have more: together of all triangles.
+	/// The topmost nodes that hold at most so many triangles, and leaves; together they hold all.
 	/// Complexity: O(F / most).
 	std::vector<int> nodesOfAtMost(int most) const
 	{
-		std::vector<int> found;
-		std::vector<int> stack;
+		std::vector<int> found, stack;
 		if (!nodes.empty())
 			stack.push_back(0);
 		while (!stack.empty()) {
