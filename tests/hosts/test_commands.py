@@ -345,8 +345,8 @@ class TestFailures:
 
 
 def test_a_curve_that_is_not_refined_is_told(tmp_path):
-    """A needle too thin for that; the command says it without --verbose."""
-    vertices, faces = box((1, 1e-6, 1e-6))
+    """A needle thinner than its coordinates tell; the command says it without --verbose."""
+    vertices, faces = box((1, 1e-8, 1e-8))
     layers = document((vertices, faces))
     layers.save_current_mesh(str(tmp_path / "needle.off"))
     run = skeletonize(tmp_path / "needle.off", tmp_path, "--no-resample", "--no-picture")
