@@ -40,11 +40,17 @@ std::vector<Point3d> queries(const shapes::Soup& soup, int count)
 	return points;
 }
 
+/// As a fraction of the full sphere.
+double windingOfTriangle(const Point3d& a, const Point3d& b, const Point3d& c, const Point3d& q)
+{
+	return detail::halfSolidAngle(a, b, c, q).angle() / (2 * M_PI);
+}
+
 double sumOfSolidAngles(const shapes::Soup& soup, const Point3d& q)
 {
 	double sum = 0;
 	for (const Triangle& t : soup.triangles)
-		sum += detail::windingOfTriangle(
+		sum += windingOfTriangle(
 			soup.points[size_t(t[0])], soup.points[size_t(t[1])], soup.points[size_t(t[2])], q);
 	return sum;
 }
@@ -52,9 +58,28 @@ double sumOfSolidAngles(const shapes::Soup& soup, const Point3d& q)
 TEST(WindingNumber, AFaceOfATetrahedronSeenFromItsMiddleIsAQuarter)
 {
 	const Point3d a(1, 1, 1), b(1, -1, -1), c(-1, 1, -1);
-	const double w = detail::windingOfTriangle(a, b, c, Point3d(0, 0, 0));
+	const double w = windingOfTriangle(a, b, c, Point3d(0, 0, 0));
 	EXPECT_NEAR(std::abs(w), 0.25, 1e-14);
-	EXPECT_NEAR(detail::windingOfTriangle(a, c, b, Point3d(0, 0, 0)), -w, 1e-14);
+	EXPECT_NEAR(windingOfTriangle(a, c, b, Point3d(0, 0, 0)), -w, 1e-14);
+}
+
+TEST(AngleSum, CountsTurns)
+{
+	std::mt19937 random(3);
+	const auto part = [&] { return double(random()) / double(std::mt19937::max()); };
+	for (int run = 0; run < 100; ++run) {
+		detail::AngleSum sum;
+		double expected = 0;
+		for (int i = 0; i < 300; ++i) {
+			// Mostly of one sign, so that there are many turns; of lengths far apart.
+			const double angle = (2 * part() - (run % 2 ? 0.5 : 1.5)) * (run % 3 ? M_PI / 2 : 2);
+			const double length = std::pow(10, 60 * part() - 30);
+			const double y = length * std::sin(angle), x = length * std::cos(angle);
+			expected += std::atan2(y, x);
+			sum.add({x, y});
+		}
+		EXPECT_NEAR(sum.sum(), expected, 1e-10);
+	}
 }
 
 TEST(WindingNumber, IsOneInsideAndZeroOutsideOfAClosedSurface)

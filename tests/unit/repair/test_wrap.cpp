@@ -25,7 +25,7 @@ WrappedSurface wrapped(const shapes::Soup& soup, double spacing)
 {
 	const TriangleTree tree(soup.points, soup.triangles);
 	const WindingNumber winding(tree);
-	return wrap(tree, winding, {}, spacing, 2000000);
+	return wrap(tree, winding, spacing, 2000000);
 }
 
 double volumeOf(const std::vector<Point3d>& points, const std::vector<Triangle>& triangles)
@@ -185,7 +185,7 @@ TEST(Wrap, SaysWhereItIsTooMuch)
 	const shapes::Soup soup = shapes::sphere(3);
 	const TriangleTree tree(soup.points, soup.triangles);
 	const WindingNumber winding(tree);
-	EXPECT_THROW(wrap(tree, winding, {}, 0.01, 1000), SolverError);
+	EXPECT_THROW(wrap(tree, winding, 0.01, 1000), SolverError);
 }
 
 /// A sphere with a triangle without area that reaches far.
@@ -206,7 +206,7 @@ TEST(Wrap, OfALongSliverEndsAtTheLimit)
 		const shapes::Soup soup = sphereWithASliver(length);
 		const TriangleTree tree(soup.points, soup.triangles);
 		const WindingNumber winding(tree);
-		EXPECT_THROW(wrap(tree, winding, {}, 0.1, 20000), SolverError) << length;
+		EXPECT_THROW(wrap(tree, winding, 0.1, 20000), SolverError) << length;
 	}
 }
 
@@ -217,7 +217,7 @@ TEST(Wrap, IsCancelledWithinALongSliver)
 	const WindingNumber winding(tree);
 	int asked = 0;
 	const Progress progress([&](int, const char*) { return ++asked < 4; });
-	EXPECT_THROW(wrap(tree, winding, {}, 0.1, 1 << 30, progress), Cancelled);
+	EXPECT_THROW(wrap(tree, winding, 0.1, 1 << 30, progress), Cancelled);
 }
 
 } // namespace

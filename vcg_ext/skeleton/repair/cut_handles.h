@@ -336,9 +336,12 @@ private:
 			// Each non-separating loop meets a basis loop through any one vertex of its component:
 			// the shortest passes through a vertex of one of these.
 			std::vector<char> seen(size_t(3 * faces), 0), isSource(size_t(3 * faces), 0);
+			double minimum = infinity;
 			for (int i = 0; i < 3 * faces; ++i)
 				if (const int fan = start(i); !seen[size_t(fan)]) {
-					const std::vector<int> ends = growFrom(fan);
+					const std::vector<int> ends = growFrom(fan, infinity);
+					if (!ends.empty())
+						minimum = std::min(minimum, sizeOver(ends.back()));
 					for (int e : ends)
 						for (int way : wayOver(e))
 							isSource[size_t(start(way < 0 ? ~way : way))] =
@@ -346,13 +349,15 @@ private:
 					for (int k = 0; k < 3 * faces; ++k)
 						seen[size_t(k)] |= distance[size_t(k)] < infinity;
 				}
-			double minimum = infinity;
 			std::vector<int> best;
 			for (int i = 0; i < 3 * faces; ++i)
 				if (isSource[size_t(i)]) {
-					const std::vector<int> ends = growFrom(i);
-					if (!ends.empty() && sizeOver(ends.back()) < minimum) {
-						minimum = sizeOver(ends.back());
+					const std::vector<int> ends = growFrom(i, minimum);
+					if (ends.empty())
+						continue;
+					const double size = sizeOver(ends.back());
+					if (best.empty() ? size <= minimum : size < minimum) {
+						minimum = size;
 						best = wayOver(ends.back());
 					}
 				}
@@ -383,13 +388,14 @@ private:
 		}
 
 		/**
-		 * Grows the tree of shortest paths from a fan. @return the edges that close it to a basis
-		 * of the non-separating loops, that of the shortest loop last.
+		 * Grows the tree of shortest paths from a fan, up to half of `longest`. @return the edges that
+		 * close it to a basis of the non-separating loops, those of longer loops left out, that of the
+		 * shortest one last.
 		 * Source: Erickson and Whittlesey, "Greedy optimal homotopy and homology generators", SODA
 		 * 2005: the edges neither in that tree nor crossed by the tree of faces and borders that
 		 * prefers edges with long loops.
 		 */
-		std::vector<int> growFrom(int source)
+		std::vector<int> growFrom(int source, double longest)
 		{
 			distance.assign(3 * size_t(faces), infinity);
 			from.assign(3 * size_t(faces), -1);
@@ -405,26 +411,33 @@ private:
 				for (int e : around[size_t(at)]) {
 					const int other = start(e) == at ? end(e) : start(e);
 					const double there = far + lengths[size_t(e)];
-					if (there < distance[size_t(other)]) {
+					if (there <= longest / 2 && there < distance[size_t(other)]) {
 						distance[size_t(other)] = there;
 						from[size_t(other)] = e;
 						queue.emplace(there, other);
 					}
 				}
 			}
-			std::vector<Entry> loops; // of the edges that are not in the tree, longest first
-			for (int i = 0; i < 3 * faces; ++i)
-				if (marked.partnerOf(i) < i && distance[size_t(start(i))] < infinity
-					&& from[size_t(start(i))] != i && from[size_t(end(i))] != i)
-					loops.emplace_back(-sizeOver(i), i);
-			std::sort(loops.begin(), loops.end());
 			MergeForest dual(faces + borders);
-			std::vector<int> left;
-			for (const auto& [minus, i] : loops) {
+			const auto join = [&](int i) {
 				const int j = marked.partnerOf(i);
-				if (!dual.join(i / 3, j >= 0 ? j / 3 : faces + loopOf[size_t(i)]))
-					left.push_back(i);
+				return dual.join(i / 3, j >= 0 ? j / 3 : faces + loopOf[size_t(i)]);
+			};
+			std::vector<Entry> loops; // of the edges that are not in the tree, longest first
+			for (int i = 0; i < 3 * faces; ++i) {
+				if (marked.partnerOf(i) >= i || from[size_t(start(i))] == i
+					|| from[size_t(end(i))] == i)
+					continue;
+				if (const double size = sizeOver(i); size <= longest && size < infinity)
+					loops.emplace_back(-size, i);
+				else
+					join(i);
 			}
+			std::sort(loops.begin(), loops.end());
+			std::vector<int> left;
+			for (const auto& [minus, i] : loops)
+				if (!join(i))
+					left.push_back(i);
 			return left;
 		}
 

@@ -772,8 +772,7 @@ private:
 		const double thin =
 			smallThickness(places, tree, thinPart, widest / ofThickness, progress.part(0.2, 0.25));
 		const double spacing = std::clamp(ofThickness * thin, narrowest, widest);
-		WrappedSurface made =
-			wrap(tree, winding, isOpen, spacing, maxNodes, progress.part(0.25, 0.8));
+		WrappedSurface made = wrap(tree, winding, spacing, maxNodes, progress.part(0.25, 0.8));
 		if (made.triangles.empty())
 			refuse(error, false);
 		solid.report.outcome = SolidReport::Wrapped;

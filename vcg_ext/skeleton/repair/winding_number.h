@@ -8,6 +8,8 @@
 #ifndef VCG_MCF_WINDING_NUMBER_H
 #define VCG_MCF_WINDING_NUMBER_H
 
+#include "harmonic_forms.h"
+
 #include <skeleton/core/progress.h>
 #include <skeleton/mesh/surface_mesh.h>
 #include <skeleton/spatial/triangle_tree.h>
@@ -24,22 +26,55 @@ namespace vcg::tri::mcf {
 
 namespace detail {
 
+/// A complex number of any length, for its angle.
+struct Direction
+{
+	double x, y;
+
+	double angle() const { return std::atan2(y, x); }
+};
+
 /**
- * The solid angle of a triangle seen from q, as a fraction of the full sphere: positive if q is
- * behind the triangle, on the side that its normal points away from.
+ * The angle of half of the solid angle of a triangle seen from q: positive if q is behind the
+ * triangle, on the side that its normal points away from.
  * Source: van Oosterom and Strackee, "The solid angle of a plane triangle", 1983.
  */
-inline double windingOfTriangle(
+inline Direction halfSolidAngle(
 	const Point3d& p0, const Point3d& p1, const Point3d& p2, const Point3d& q)
 {
 	const Point3d a = p0 - q, b = p1 - q, c = p2 - q;
 	const double la = a.Norm(), lb = b.Norm(), lc = c.Norm();
 	const double volume = a * (b ^ c);
 	const double base = la * lb * lc + (a * b) * lc + (b * c) * la + (c * a) * lb;
-	if (volume == 0 && base >= 0)
-		return 0;
-	return std::atan2(volume, base) / (2 * M_PI);
+	if (volume == 0 && base >= 0) // in the triangle's plane, outside of it
+		return {1, 0};
+	return {base, volume};
 }
+
+/// A sum of angles, by a product of complex numbers: one arc tangent for all of them.
+class AngleSum
+{
+public:
+	/// Adds the angle of a direction, in [-pi, pi].
+	void add(const Direction& d)
+	{
+		constexpr double large = 1e100;
+		const double x = product.x * d.x - product.y * d.y, y = product.x * d.y + product.y * d.x;
+		if (product.y >= 0 && d.y >= 0)
+			turns += y < 0;
+		else if (product.y < 0 && d.y < 0)
+			turns -= y >= 0;
+		const double size = std::abs(x) + std::abs(y);
+		const double scale = size > large || size < 1 / large ? 1 / size : 1;
+		product = {x * scale, y * scale};
+	}
+
+	double sum() const { return 2 * M_PI * turns + product.angle(); }
+
+private:
+	Direction product = {1, 0};
+	int turns = 0;
+};
 
 } // namespace detail
 
@@ -50,9 +85,9 @@ inline double windingOfTriangle(
  *
  *     w(q) = 1 / (4 pi) sum over the triangles of weight times solid angle, seen from q
  *
- * The triangles of a tree node that is far from q, see `farness`, are approximated by their moments
- * about the centroid of their area: the sum of the area normals, and the first moment of these.
- * Complexity: O(F) to build, about O(log F) for a point.
+ * The triangles of a tree node that is far from q, see `farness`, are approximated by the moments of
+ * their area normals about the centroid of their area, up to the second.
+ * Complexity: O(F log F) to build, about O(log F) for a point.
  * Source: Barill, Dickson, Schmidt, Levin, Jacobson, "Fast winding numbers for soups and clouds",
  * 2018.
  */
@@ -78,6 +113,9 @@ public:
 		if (moments.empty())
 			return 0;
 		double sum = 0;
+		detail::AngleSum angles; // of triangles of one weight in a row
+		double weightOfAngles = 1;
+		const auto addAngles = [&] { sum += weightOfAngles * angles.sum() / (2 * M_PI); };
 		std::array<int, 128> stack;
 		int top = 0;
 		stack[size_t(top++)] = 0;
@@ -89,44 +127,57 @@ public:
 			if (squared > m.squaredReach) {
 				const double inverse = 1 / squared;
 				const double cubic = inverse / std::sqrt(squared);
-				const double varying =
-					r * Point3d(m.varying[0] * r, m.varying[1] * r, m.varying[2] * r);
-				sum += cubic * (r * m.normal + m.trace - 3 * inverse * varying) / (4 * M_PI);
+				sum += cubic
+					* (r * m.linear
+						+ inverse
+							* (7.5 * inverse * detail::valueAt(m.cubic, r)
+								- 3 * detail::valueAt(m.quadratic, r)))
+					/ (4 * M_PI);
 				continue;
 			}
 			const TriangleTree::Node& node = tree.allNodes()[size_t(at)];
 			if (node.isLeaf()) {
 				for (int i = node.begin; i < node.end; ++i) {
 					const int f = tree.order()[size_t(i)];
-					sum += weight(f)
-						* detail::windingOfTriangle(
-							tree.corner(f, 0), tree.corner(f, 1), tree.corner(f, 2), q);
+					const detail::Direction half = detail::halfSolidAngle(
+						tree.corner(f, 0), tree.corner(f, 1), tree.corner(f, 2), q);
+					const double w = weight(f);
+					if (std::abs(w) != weightOfAngles) {
+						addAngles();
+						angles = detail::AngleSum();
+						weightOfAngles = std::abs(w);
+					}
+					angles.add({half.x, w < 0 ? -half.y : half.y});
 				}
 				continue;
 			}
 			stack[size_t(top++)] = node.right;
 			stack[size_t(top++)] = at + 1;
 		}
+		addAngles();
 		return sum;
 	}
+
+	/// Of the triangles; empty: 1 each.
+	const std::vector<double>& allWeights() const { return weights; }
 
 	/// The jump of the field across a triangle.
 	double weight(int f) const { return weights.empty() ? 1 : weights[size_t(f)]; }
 
 private:
-	/// Of the triangles of a node, mesh units.
+	/// Of the triangles of a node, mesh units. With the area normals n dA at d from the centre, as
+	/// forms of a vector r, made harmonic:
 	struct Moments
 	{
 		Point3d centre = Point3d(0, 0, 0);
 		double area = 0;
-		Point3d normal = Point3d(0, 0, 0); ///< sum of area normals
-		/// Row i: sum over the triangles of (area normal)_i (centroid - centre).
-		std::array<Point3d, 3> varying = {Point3d(0, 0, 0), Point3d(0, 0, 0), Point3d(0, 0, 0)};
-		double trace = 0;        ///< of `varying`
-		double squaredReach = 0; ///< beyond, the moments replace the triangles
+		double squaredReach = 0;              ///< beyond, the moments replace the triangles
+		Point3d linear = Point3d(0, 0, 0);    ///< the integral of n . r
+		detail::QuadraticForm quadratic = {}; ///< of (n . r) (d . r)
+		detail::CubicForm cubic = {};         ///< of (n . r) (d . r)^2
 	};
 
-	static constexpr double farness = 3; ///< in distances of the farthest box corner from `centre`
+	static constexpr double farness = 2; ///< in distances of the farthest vertex from `centre`
 
 	const TriangleTree& tree;
 	std::vector<double> weights;
@@ -153,32 +204,54 @@ private:
 			}
 		if (m.area > 0)
 			m.centre = weighted / m.area;
-		const auto add = [&](const Point3d& from, const Point3d& normal) {
-			m.normal += normal;
-			for (int i = 0; i < 3; ++i)
-				m.varying[size_t(i)] += (from - m.centre) * normal[i];
-		};
 		if (node.isLeaf())
-			for (int i = node.begin; i < node.end; ++i) {
-				const auto [middle, normal] = placed(tree.order()[size_t(i)]);
-				add(middle, normal);
-			}
+			for (int i = node.begin; i < node.end; ++i)
+				addTriangle(tree.order()[size_t(i)], m);
 		else
-			for (const Moments* child : children(at)) {
-				add(child->centre, child->normal);
-				for (size_t i = 0; i < 3; ++i)
-					m.varying[i] += child->varying[i];
-			}
-		m.trace = m.varying[0][0] + m.varying[1][1] + m.varying[2][2];
-		double farthest = 0; // corner of the box
-		for (int corner = 0; corner < 8; ++corner)
-			farthest = std::max(farthest, SquaredDistance(node.box.P(corner), m.centre));
+			for (const Moments* child : children(at))
+				addMoments(*child, m);
+		detail::makeHarmonic(m.quadratic);
+		detail::makeHarmonic(m.cubic);
+		double farthest = 0;
+		for (int i = node.begin; i < node.end; ++i)
+			for (int k = 0; k < 3; ++k)
+				farthest = std::max(
+					farthest, SquaredDistance(tree.corner(tree.order()[size_t(i)], k), m.centre));
 		m.squaredReach = farness * farness * farthest;
 	}
 
 	std::array<const Moments*, 2> children(size_t at) const
 	{
 		return {&moments[at + 1], &moments[size_t(tree.allNodes()[at].right)]};
+	}
+
+	void addTriangle(int f, Moments& m) const
+	{
+		const auto [middle, normal] = placed(f);
+		const Point3d to = middle - m.centre;
+		const detail::QuadraticForm quadratic = detail::product(normal, to);
+		m.linear += normal;
+		detail::addTo(m.quadratic, quadratic, 1);
+		// The integral of d d^T over a triangle of unit area: (a a^T + b b^T + c c^T + 9 m m^T) / 12.
+		detail::addTo(m.cubic, detail::product(quadratic, to), 9.0 / 12);
+		for (int k = 0; k < 3; ++k) {
+			const Point3d corner = tree.corner(f, k) - m.centre;
+			detail::addTo(
+				m.cubic, detail::product(detail::product(normal, corner), corner), 1.0 / 12);
+		}
+	}
+
+	/// What is harmonic stays so: multiples of |r|^2 that are left out here have no harmonic part.
+	static void addMoments(const Moments& child, Moments& m)
+	{
+		const Point3d to = child.centre - m.centre;
+		const detail::QuadraticForm moved = detail::product(child.linear, to);
+		m.linear += child.linear;
+		detail::addTo(m.quadratic, child.quadratic, 1);
+		detail::addTo(m.quadratic, moved, 1);
+		detail::addTo(m.cubic, child.cubic, 1);
+		detail::addTo(m.cubic, detail::product(child.quadratic, to), 2);
+		detail::addTo(m.cubic, detail::product(moved, to), 1);
 	}
 
 	struct Placed

@@ -7,6 +7,7 @@
 #ifndef VCG_MCF_WRAP_H
 #define VCG_MCF_WRAP_H
 
+#include "boundary_cones.h"
 #include "tetrahedral_lattice.h"
 #include "winding_columns.h"
 #include "winding_number.h"
@@ -41,7 +42,7 @@ namespace detail {
 /**
  * Extracts the surface { w = 1/2 } from the tetrahedra of a lattice, without its fins.
  *
- * w is evaluated at the nodes near the triangles, where it jumps, and then, until there are no new
+ * w is found at the nodes near the triangles, where it jumps, see WindingColumns, and then, until there are no new
  * ones, at those of all tetrahedra around edges where w - 1/2 changes its sign: so the surface is
  * followed across holes. All tetrahedra around such edges are then complete, and the surface
  * through them is closed and two-manifold.
@@ -49,10 +50,8 @@ namespace detail {
 class Wrapping
 {
 public:
-	Wrapping(const TriangleTree& tree, const WindingNumber& winding,
-		const std::vector<char>& isOpen, double spacing, int maxNodes) :
-			tree(tree),
-			winding(winding), isOpen(isOpen), maxNodes(maxNodes),
+	Wrapping(const TriangleTree& tree, const WindingNumber& winding, double spacing, int maxNodes) :
+			tree(tree), winding(winding), maxNodes(maxNodes),
 			lattice(originOf(tree, spacing), spacing)
 	{
 	}
@@ -74,18 +73,12 @@ private:
 
 	const TriangleTree& tree;
 	const WindingNumber& winding;
-	const std::vector<char>& isOpen; ///< of each triangle; empty: all are
 	int maxNodes;
 	Lattice lattice;
-	std::optional<WindingColumns> columns; ///< of the closed pieces
-	/// The other triangles by themselves, if there are closed ones, too.
-	struct OpenPieces
-	{
-		std::vector<Triangle> triangles;
-		std::optional<TriangleTree> tree;
-		std::optional<WindingNumber> winding;
-	};
-	OpenPieces open;
+	BoundaryCones cones;
+	std::optional<WindingColumns> columns; ///< of the triangles and the cones, if these are few
+	std::optional<TriangleTree> coneTree;
+	std::optional<WindingNumber> coneWinding;
 	std::vector<double> value;    ///< of w, for each node
 	std::vector<int> firstVertex; ///< of those on the edges forward from each node
 	WrappedSurface surface;
@@ -175,27 +168,22 @@ private:
 
 	void prepareWinding(const Progress& progress)
 	{
-		if (std::find(isOpen.begin(), isOpen.end(), 0) == isOpen.end())
+		const std::vector<Triangle>& triangles = tree.allTriangles();
+		cones =
+			boundaryCones(tree.allPoints(), triangles, winding.allWeights(), progress.part(0, 0.2));
+		if (cones.triangles.size() >= triangles.size()) // loose triangles
 			return;
-		columns.emplace(tree, isOpen, lattice, progress.part(0, 0.5));
-		std::vector<double> weights;
-		for (int f = 0; f < tree.size(); ++f)
-			if (isOpen[size_t(f)]) {
-				open.triangles.push_back(tree.triangle(f));
-				weights.push_back(winding.weight(f));
-			}
-		if (open.triangles.empty())
-			return;
-		open.tree.emplace(tree.allPoints(), open.triangles, progress.part(0.5, 0.9));
-		open.winding.emplace(*open.tree, progress.part(0.9, 1), std::move(weights));
+		columns.emplace(triangles, winding.allWeights(), cones, lattice, progress.part(0.2, 0.8));
+		coneTree.emplace(cones.points, cones.triangles, progress.part(0.8, 0.9));
+		coneWinding.emplace(*coneTree, progress.part(0.9, 1), cones.weights);
 	}
 
 	double windingAt(int node) const
 	{
 		const Point3d p = lattice.position(node);
 		if (columns)
-			if (const std::optional<int> ofClosed = columns->at(lattice, lattice.place(node)))
-				return *ofClosed + (open.winding ? (*open.winding)(p) : 0);
+			if (const std::optional<double> ofAll = columns->at(lattice, lattice.place(node)))
+				return *ofAll - (*coneWinding)(p);
 		return winding(p);
 	}
 
@@ -397,9 +385,6 @@ private:
  * open sheets are left out. Cavities are separate pieces.
  *
  * @param tree      of the triangles. @param winding  their winding number.
- * @param isOpen    of each triangle, whether its piece has a border; empty: all have. Pieces
- *                  without one have weight 1, and their winding number is counted column by column,
- *                  see WindingColumns, in a hundredth of the time.
  * @param spacing   of the lattice, mesh units, > 0: about the edge length of the result.
  * @param maxNodes  largest number of nodes of the lattice.
  * @throws SolverError if more nodes are needed, or the triangles reach over 1e9 spacings; Cancelled.
@@ -407,11 +392,10 @@ private:
  * Source: ours; marching tetrahedra after Doi and Koide, 1991, on the lattice of Labelle and
  * Shewchuk, 2007.
  */
-inline WrappedSurface wrap(const TriangleTree& tree, const WindingNumber& winding,
-	const std::vector<char>& isOpen, double spacing, int maxNodes,
-	const Progress& progress = Progress())
+inline WrappedSurface wrap(const TriangleTree& tree, const WindingNumber& winding, double spacing,
+	int maxNodes, const Progress& progress = Progress())
 {
-	return detail::Wrapping(tree, winding, isOpen, spacing, maxNodes).run(progress);
+	return detail::Wrapping(tree, winding, spacing, maxNodes).run(progress);
 }
 
 } // namespace vcg::tri::mcf

@@ -73,6 +73,7 @@ public:
 	const std::vector<Node>& allNodes() const { return nodes; }
 	const std::vector<int>& order() const { return ids; }
 	const std::vector<Point3d>& allPoints() const { return points; }
+	const std::vector<Triangle>& allTriangles() const { return triangles; }
 	const Point3d& corner(int f, int k) const
 	{
 		return points[size_t(triangles[size_t(f)][size_t(k)])];
