@@ -19,8 +19,8 @@ using vcg::Point3d;
 namespace {
 
 /// The weights of the edges of triangles and cones together, those of opposite edges subtracted.
-std::map<std::pair<int, int>, double> edgeSums(const shapes::Soup& soup,
-	const std::vector<double>& weights, const BoundaryCones& cones)
+std::map<std::pair<int, int>, double> edgeSums(
+	const shapes::Soup& soup, const std::vector<double>& weights, const BoundaryCones& cones)
 {
 	std::map<std::pair<int, int>, double> sums;
 	const auto add = [&](const Triangle& t, double weight) {
@@ -51,7 +51,8 @@ shapes::Soup partOfSphere(const IsKept& isKept)
 	shapes::Soup soup = shapes::sphere(4);
 	std::vector<Triangle> kept;
 	for (const Triangle& t : soup.triangles)
-		if (isKept((soup.points[size_t(t[0])] + soup.points[size_t(t[1])] + soup.points[size_t(t[2])])
+		if (isKept(
+				(soup.points[size_t(t[0])] + soup.points[size_t(t[1])] + soup.points[size_t(t[2])])
 				/ 3.0))
 			kept.push_back(t);
 	soup.triangles = kept;
@@ -97,7 +98,8 @@ TEST(BoundaryCones, LieAroundTheBorder)
 	expectClosed(soup, {}, cones);
 	for (const Triangle& t : cones.triangles)
 		for (size_t k = 0; k < 3; ++k)
-			EXPECT_LT(Distance(cones.points[size_t(t[k])], cones.points[size_t(t[(k + 1) % 3])]), 0.6);
+			EXPECT_LT(
+				Distance(cones.points[size_t(t[k])], cones.points[size_t(t[(k + 1) % 3])]), 0.6);
 }
 
 TEST(BoundaryCones, AreFewerThanAFewForEachEdgeOfTheBorder)

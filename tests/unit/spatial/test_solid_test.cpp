@@ -5,6 +5,7 @@
 #include "mesh_checks.h"
 #include "shapes.h"
 
+#include <skeleton/spatial/integer_winding.h>
 #include <skeleton/spatial/solid_test.h>
 
 #include <gtest/gtest.h>
@@ -108,5 +109,31 @@ TEST(SolidTest, SizeAndPlaceDoNotMatter)
 			solidOf(shapes::moved(shapes::scaled(shapes::sphere(2), size), {9 * size, 0, 0}));
 		EXPECT_TRUE(solid.isInside(solid.in(Point3d(9.5 * size, 0, 0))));
 		EXPECT_FALSE(solid.isInside(solid.in(Point3d(10.5 * size, 0, 0))));
+	}
+}
+
+TEST(TrianglesAbove, GiveTheWindingNumbersAlongASegment)
+{
+	for (const std::string& family : shapes::hostileFamilies()) {
+		SCOPED_TRACE(family);
+		const shapes::Soup soup = shapes::hostileBody(family, 4);
+		const TriangleTree tree(soup.points, soup.triangles);
+		const vcg::Box3d box = soup.mesh().bounds();
+		shapes::Dice dice(4);
+		const auto place = [&](double margin) {
+			Point3d p;
+			for (int k = 0; k < 3; ++k)
+				p[k] = dice.between(box.min[k] - margin, box.max[k] + margin);
+			return p;
+		};
+		for (int i = 0; i < 50; ++i) {
+			const Point3d p = place(0.1 * box.Diag());
+			const Point3d q = p + (place(0) - p) * (i % 2 ? 0.02 : 1);
+			const TrianglesAbove above(tree, p, q);
+			for (int k = 0; k <= 8; ++k) {
+				const Point3d at = p + (q - p) * (k / 8.0);
+				ASSERT_EQ(above.winding(at), integerWinding(tree, at));
+			}
+		}
 	}
 }

@@ -36,7 +36,7 @@ namespace vcg::tri::mcf {
  */
 struct BoundaryCones
 {
-	std::vector<Point3d> points; ///< those of the triangles, then those that only cones have
+	std::vector<Point3d> points;     ///< those of the triangles, then those that only cones have
 	std::vector<Triangle> triangles; ///< of the cones
 	std::vector<double> weights;     ///< of `triangles`
 };
@@ -67,7 +67,8 @@ public:
 		for (const Edge& edge : border) {
 			for (int v : {edge.from, edge.to})
 				box.Add(cones.points[size_t(v)]);
-			lengths.push_back(Distance(cones.points[size_t(edge.from)], cones.points[size_t(edge.to)]));
+			lengths.push_back(
+				Distance(cones.points[size_t(edge.from)], cones.points[size_t(edge.to)]));
 		}
 		if (border.empty())
 			return std::move(cones);
@@ -124,8 +125,8 @@ private:
 				weights.empty() ? 1 : weights[size_t(i) / 3]);
 		};
 		const SortedGroups<Edge> edges(
-			3 * int(triangles.size()), cones.points.size(),
-			[&](int i) { return edge(i).from; }, edge, progress, "Closing holes by cones");
+			3 * int(triangles.size()), cones.points.size(), [&](int i) { return edge(i).from; },
+			edge, progress, "Closing holes by cones");
 		cancellableLoop(int(cones.points.size()), cancel, [&](int v) {
 			const auto [begin, end] = edges.of(v);
 			forEachSum(begin, end, [&](const Edge& sum) { border.push_back(sum); });

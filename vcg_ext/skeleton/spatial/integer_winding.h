@@ -12,6 +12,9 @@
 
 #include <vcg/space/box3.h>
 
+#include <algorithm>
+#include <vector>
+
 namespace vcg::tri::mcf {
 
 /**
@@ -35,6 +38,39 @@ inline int integerWinding(const TriangleTree& tree, const Point3d& p)
 		[&](int f) { winding += detail::crossingAbove(tree.allPoints(), tree.triangle(f), p); });
 	return winding;
 }
+
+/// integerWinding() of points near each other.
+class TrianglesAbove
+{
+public:
+	/// @param tree  kept by reference. @param p, q  the points are on the segment between them.
+	/// Complexity: that of integerWinding(), for n triangles above the box of the segment.
+	TrianglesAbove(const TriangleTree& tree, const Point3d& p, const Point3d& q) : tree(tree)
+	{
+		if (tree.size() == 0)
+			return;
+		const double rounding = 1e-12 * tree.allNodes()[0].box.Diag();
+		Box3d box;
+		box.Add(p);
+		box.Add(q);
+		box.Offset(rounding);
+		box.max[2] = std::max(box.max[2], tree.allNodes()[0].box.max[2]);
+		tree.forEachFaceIn(box, [&](int f) { faces.push_back(f); });
+	}
+
+	/// @param at  on the segment. Complexity: O(n).
+	int winding(const Point3d& at) const
+	{
+		int sum = 0;
+		for (int f : faces)
+			sum += detail::crossingAbove(tree.allPoints(), tree.triangle(f), at);
+		return sum;
+	}
+
+private:
+	const TriangleTree& tree;
+	std::vector<int> faces;
+};
 
 } // namespace vcg::tri::mcf
 

@@ -89,6 +89,7 @@ public:
 	{
 		constexpr double negligible = 1e-9; // part of the segment
 		constexpr int samples = 16;         // in a triangle's plane a crossing may be missed
+		constexpr double isShort = 0.01;    // triangles above it are looked for once
 		std::vector<double> at;
 		for (int i = 0; i <= samples; ++i)
 			at.push_back(double(i) / samples);
@@ -97,10 +98,17 @@ public:
 				at.push_back(t);
 		});
 		std::sort(at.begin(), at.end());
-		for (size_t i = 1; i < at.size(); ++i)
-			if (at[i] - at[i - 1] > negligible
-				&& !isInside(p + (q - p) * ((at[i] + at[i - 1]) / 2), tolerance))
+		std::optional<TrianglesAbove> above;
+		if (Distance(p, q) <= isShort)
+			above.emplace(*tree, p, q);
+		for (size_t i = 1; i < at.size(); ++i) {
+			if (at[i] - at[i - 1] <= negligible)
+				continue;
+			const Point3d middle = p + (q - p) * ((at[i] + at[i - 1]) / 2);
+			const int winding = above ? above->winding(middle) : integerWinding(*tree, middle);
+			if (winding == 0 && closest(middle).distance > tolerance)
 				return false;
+		}
 		return true;
 	}
 
