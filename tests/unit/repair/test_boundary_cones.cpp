@@ -90,6 +90,14 @@ TEST(BoundaryCones, CloseWhatHasWeightsAndEdgesOfManyFaces)
 	expectClosed(soup, weights, boundaryCones(soup.points, soup.triangles, weights));
 }
 
+TEST(BoundaryCones, CloseABorderInOnePlace)
+{
+	shapes::Soup soup;
+	soup.points.assign(3, Point3d(0.3, 0.4, 0.5));
+	soup.triangles = {{0, 1, 2}};
+	expectClosed(soup, {}, boundaryCones(soup.points, soup.triangles, {}));
+}
+
 TEST(BoundaryCones, LieAroundTheBorder)
 {
 	// Small holes far apart: no cone leads from one to another.

@@ -75,7 +75,9 @@ public:
 		constexpr double finest = 1e-6; // of the border's diagonal
 		const auto middle = lengths.begin() + std::ptrdiff_t(lengths.size() / 2);
 		std::nth_element(lengths.begin(), middle, lengths.end());
-		for (double cell = std::max(2 * *middle, finest * box.Diag()); !border.empty(); cell *= 2)
+		const double smallest = std::max(2 * *middle, finest * box.Diag());
+		// A border all in one place is swept at once, with any cells.
+		for (double cell = smallest > 0 ? smallest : 1; !border.empty(); cell *= 2)
 			sweep(box.min, cell);
 		return std::move(cones);
 	}
