@@ -8,7 +8,6 @@
 #define VCG_MCF_BOUNDARY_CONES_H
 
 #include <skeleton/core/grouped_sort.h>
-#include <skeleton/core/large_arrays.h>
 #include <skeleton/core/progress.h>
 #include <skeleton/core/ticker.h>
 #include <skeleton/mesh/surface_mesh.h>
@@ -44,10 +43,10 @@ struct BoundaryCones
 namespace detail {
 
 /**
- * Makes BoundaryCones: level by level the vertices of the border in each cell of a grid are drawn to
- * their mean, and the border follows, until there is none left in cells twice as large at each level.
- * The triangles that it sweeps are the cones. They are as small as the border is fine, so that a tree
- * of dipoles sees most of them from afar, as it would not see cones to a single apex.
+ * Makes BoundaryCones. The border is collapsed level by level: all of its vertices in a cell of a grid
+ * move to their mean, and the cells double until no edge is left. The triangles that the edges sweep
+ * are the cones. Fine borders give small cones, most of which a tree of moments approximates; cones
+ * with a single apex would be long, and near every point.
  */
 class ConeMaker
 {
@@ -62,6 +61,8 @@ public:
 
 	BoundaryCones run()
 	{
+		if (border.empty())
+			return std::move(cones);
 		Box3d box;
 		std::vector<double> lengths;
 		for (const Edge& edge : border) {
@@ -70,8 +71,6 @@ public:
 			lengths.push_back(
 				Distance(cones.points[size_t(edge.from)], cones.points[size_t(edge.to)]));
 		}
-		if (border.empty())
-			return std::move(cones);
 		constexpr double finest = 1e-6; // of the border's diagonal
 		const auto middle = lengths.begin() + std::ptrdiff_t(lengths.size() / 2);
 		std::nth_element(lengths.begin(), middle, lengths.end());
@@ -135,7 +134,7 @@ private:
 		});
 	}
 
-	/// Draws the border to the means of its vertices in each cell of a grid.
+	/// Moves the vertices of the border in each cell of a grid to their mean.
 	void sweep(const Point3d& origin, double size)
 	{
 		using Cell = std::array<long long, 3>;

@@ -42,10 +42,10 @@ namespace detail {
 /**
  * Extracts the surface { w = 1/2 } from the tetrahedra of a lattice, without its fins.
  *
- * w is found at the nodes near the triangles, where it jumps, see WindingColumns, and then, until there are no new
- * ones, at those of all tetrahedra around edges where w - 1/2 changes its sign: so the surface is
- * followed across holes. All tetrahedra around such edges are then complete, and the surface
- * through them is closed and two-manifold.
+ * w is found at the nodes near the triangles, where it jumps, and then, until there are no new ones,
+ * at those of all tetrahedra around edges where w - 1/2 changes its sign: so the surface is followed
+ * across holes. All tetrahedra around such edges are then complete, and the surface through them is
+ * closed and two-manifold. w is counted in columns, less that of the cones: see BoundaryCones.
  */
 class Wrapping
 {
