@@ -265,9 +265,8 @@ void addDerivedSkeleton(FilterRun& run, const CurveLayer& curve, mcf::CurveSkele
 	const bool fits = remembered && own.mesh->position.size() == skeleton.node.size();
 	if (fits && measureRadius) {
 		const std::vector<double> before = skeleton.radius;
-		skeleton.radius = mcf::meanSurfaceDistance(
-			skeleton.position, own.mesh->position, skeleton.node, progress.part(0.3, 0.5));
-		mcf::fillUnknownRadii(skeleton.radius, skeleton.neighbours());
+		skeleton.radius =
+			mcf::curveThickness(skeleton, own.mesh->position, progress.part(0.3, 0.5));
 		for (size_t v = 0; v < before.size(); ++v)
 			if (skeleton.radius[v] < 0)
 				skeleton.radius[v] = before[v];

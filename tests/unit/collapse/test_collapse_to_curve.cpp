@@ -6,10 +6,12 @@
 #include "shapes.h"
 
 #include <skeleton/collapse/collapse_to_curve.h>
+#include <skeleton/core/segment.h>
 #include <skeleton/flow/flow.h>
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 #include <set>
 #include <vector>
@@ -141,15 +143,20 @@ TEST(CollapseToCurve, CorrespondenceFollowsTheMesoSkeleton)
 	}
 }
 
-TEST(CollapseToCurve, RadiusIsTheMeanDistanceOfTheMergedSurface)
+TEST(CollapseToCurve, RadiusIsTheMeanDistanceOfTheMergedSurfaceFromTheEdges)
 {
 	const Stage stage = stageAfter(shapes::capsule(4, 0.35, 24), 100);
 	const CurveSkeleton skeleton = collapseToCurve(stage);
 	std::vector<double> sum(skeleton.position.size(), 0);
 	std::vector<int> count(skeleton.position.size(), 0);
+	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
 	for (size_t s = 0; s < skeleton.node.size(); ++s) {
-		sum[skeleton.node[s]] +=
-			vcg::Distance((*stage.surface)[s], skeleton.position[skeleton.node[s]]);
+		const vcg::Point3d &p = (*stage.surface)[s], &node = skeleton.position[skeleton.node[s]];
+		double nearest = vcg::Distance(p, node);
+		for (int w : neighbours[skeleton.node[s]])
+			nearest = std::min(
+				nearest, vcg::Distance(p, closestOnSegment(node, skeleton.position[w], p).point));
+		sum[skeleton.node[s]] += nearest;
 		++count[skeleton.node[s]];
 	}
 	for (size_t v = 0; v < sum.size(); ++v) {

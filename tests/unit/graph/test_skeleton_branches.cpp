@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <random>
 #include <set>
@@ -153,6 +154,32 @@ TEST(FillUnknownRadii, SpreadsFromTheKnownOnes)
 	EXPECT_DOUBLE_EQ(radius[2], 4);
 	EXPECT_DOUBLE_EQ(radius[3], 4);
 	EXPECT_LT(radius[4], 0) << "nothing is known there";
+}
+
+TEST(CurveThickness, OfATubeIsItsRadiusHoweverFarApartTheNodesAre)
+{
+	// Nodes at 0, 4, 8, 12 on the axis of a tube of radius 1.
+	CurveSkeleton s = graph(4, {{0, 1}, {1, 2}, {2, 3}});
+	std::vector<Point3d> surface;
+	for (Point3d& p : s.position)
+		p *= 4;
+	for (int i = 0; i <= 120; ++i)
+		for (int k = 0; k < 6; ++k) {
+			const double x = i / 10.0, angle = k * M_PI / 3;
+			surface.emplace_back(x, std::cos(angle), std::sin(angle));
+			s.node.push_back(int(std::lround(x / 4)));
+		}
+	for (const double radius : curveThickness(s, surface))
+		EXPECT_NEAR(radius, 1, 1e-12);
+}
+
+TEST(CurveThickness, IsTheMeanOfTheNeighboursWhereNothingHasMerged)
+{
+	CurveSkeleton s = graph(3, {{0, 1}, {1, 2}});
+	s.node = {0, 2, -1};
+	const std::vector<double> radius =
+		curveThickness(s, {Point3d(0, 2, 0), Point3d(2, 0, 4), Point3d(9, 9, 9)});
+	EXPECT_EQ(radius, (std::vector<double> {2, 3, 4}));
 }
 
 } // namespace

@@ -226,10 +226,7 @@ inline CurveSkeleton collapseToCurve(Stage stage, double shortestEdge = 1e-4,
 		skeleton = detail::withoutSpurs(
 			std::move(skeleton), stage, component, held, spurProminence, progress.part(0.95, 1));
 
-	// A node of split vertices only has no surface vertex: it takes its neighbours' mean radius.
-	skeleton.radius =
-		meanSurfaceDistance(skeleton.position, *stage.surface, skeleton.node, progress);
-	fillUnknownRadii(skeleton.radius, skeleton.neighbours());
+	skeleton.radius = curveThickness(skeleton, *stage.surface, progress);
 	progress.report(1, what);
 	return skeleton;
 }

@@ -755,8 +755,7 @@ inline void bringInsideInput(CurveSkeleton& curve, const SurfaceMesh& surface,
 				std::min(endOfWay(int(v), neighbours[v][0]), endOfWay(int(v), neighbours[v][1])));
 		curve.significance.insert(curve.significance.end(), added.begin(), added.end());
 	}
-	curve.radius = meanSurfaceDistance(curve.position, surface.position, curve.node, progress);
-	fillUnknownRadii(curve.radius, neighbours);
+	curve.radius = curveThickness(curve, surface.position, progress);
 }
 
 /**
@@ -794,10 +793,8 @@ inline CurveSkeleton collapseInside(Stage stage, double shortestEdge = 1e-4,
 	const std::vector<Point3d> before = curve.position;
 	curve = broughtInside(std::move(curve), *surface, *triangles, component, components, ofNode,
 		progress.part(0.95, 1), TooFarOutside::CutOff, cut);
-	if (curve.position != before) {
-		curve.radius = meanSurfaceDistance(curve.position, *surface, curve.node, progress);
-		fillUnknownRadii(curve.radius, curve.neighbours());
-	}
+	if (curve.position != before)
+		curve.radius = curveThickness(curve, *surface, progress);
 	return curve;
 }
 

@@ -204,8 +204,8 @@ inline Stage initialStage(
 }
 
 /**
- * Local thickness: for each vertex (or skeleton node) the mean distance to the surface vertices
- * that have merged into it; -1 where there are none.
+ * Local thickness of a stage: for each vertex the mean distance to the surface vertices that have
+ * merged into it; -1 where there are none.
  * @param position of each vertex; node: for each surface vertex its vertex, -1 if it has none.
  * @throws Cancelled
  */

@@ -23,7 +23,7 @@ struct CurveSkeleton
 {
 	/// Nodes, mesh units.
 	std::vector<Point3d> position;
-	/// Local thickness at each node, mesh units: mean distance to its surface vertices.
+	/// Local thickness at each node, mesh units: mean distance of its surface vertices from its edges.
 	std::vector<double> radius;
 	/// Pairs of nodes, lower id first, in ascending order.
 	std::vector<std::array<int, 2>> edges;

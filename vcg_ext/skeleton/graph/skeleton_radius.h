@@ -2,11 +2,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief The radius of skeleton nodes into which no surface vertex has merged.
+/// @brief The radius of skeleton nodes: how far the curve is from the surface that merged into it.
 
 #ifndef VCG_MCF_SKELETON_RADIUS_H
 #define VCG_MCF_SKELETON_RADIUS_H
 
+#include <skeleton/core/large_arrays.h>
+#include <skeleton/core/progress.h>
+#include <skeleton/core/segment.h>
+#include <skeleton/core/ticker.h>
+#include <skeleton/graph/curve_skeleton.h>
+
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -54,6 +62,45 @@ inline void fillUnknownRadii(
 		for (int v : last)
 			addUnknownBeside(size_t(v));
 	}
+}
+
+/**
+ * Local thickness: for each node of a curve or meso-skeleton the mean distance of the surface
+ * vertices that have merged into it from the edges that end at it. (From the node itself it would be
+ * too large where the nodes are farther apart than the curve is thick.) A node without such vertices
+ * takes the mean of its neighbours, see fillUnknownRadii().
+ * @param neighbours of each node. @param node  of each surface vertex, -1: none.
+ * @throws Cancelled. Complexity: O(S + N + E) for S surface vertices, and bounded degrees.
+ */
+inline std::vector<double> thicknessAlong(const std::vector<Point3d>& position,
+	const std::vector<std::vector<int>>& neighbours, const std::vector<int>& node,
+	const std::vector<Point3d>& surface, const Cancellation& cancel = Cancellation())
+{
+	std::vector<double> sum = detail::filledArray(position.size(), 0.0, cancel);
+	std::vector<int> count = detail::filledArray(position.size(), 0, cancel);
+	detail::cancellableLoop(int(node.size()), cancel, [&](int s) {
+		if (node[size_t(s)] < 0)
+			return;
+		const size_t v = size_t(node[size_t(s)]);
+		const Point3d& p = surface[size_t(s)];
+		double squared = SquaredDistance(p, position[v]);
+		for (int w : neighbours[v])
+			squared = std::min(squared,
+				SquaredDistance(p, closestOnSegment(position[v], position[size_t(w)], p).point));
+		sum[v] += std::sqrt(squared);
+		++count[v];
+	});
+	for (size_t v = 0; v < sum.size(); ++v)
+		sum[v] = count[v] ? sum[v] / count[v] : -1;
+	fillUnknownRadii(sum, neighbours);
+	return sum;
+}
+
+/// thicknessAlong() of a curve whose `node` refers to the vertices of `surface`. @throws Cancelled
+inline std::vector<double> curveThickness(const CurveSkeleton& skeleton,
+	const std::vector<Point3d>& surface, const Cancellation& cancel = Cancellation())
+{
+	return thicknessAlong(skeleton.position, skeleton.neighbours(), skeleton.node, surface, cancel);
 }
 
 } // namespace vcg::tri::mcf

@@ -14,6 +14,7 @@
 #include "vertex_kind.h"
 
 #include <skeleton/collapse/collapse_to_curve.h>
+#include <skeleton/graph/skeleton_radius.h>
 #include <skeleton/mesh/component_meshes.h>
 #include <skeleton/mesh/marked_regions.h>
 
@@ -223,13 +224,13 @@ inline SheetCollapse collapseOneKeepingSheets(
 		result.skeleton = withoutSheets(collapseToCurve(stage, epsilon, progress)).skeleton;
 	}
 	MesoSkeleton& skeleton = result.skeleton;
-	skeleton.radius = meanSurfaceDistance(skeleton.position, *stage.surface, skeleton.node);
 	std::vector<std::vector<int>> neighbours(skeleton.position.size());
 	for (const auto& [a, b] : allEdges(skeleton.edges, skeleton.faces)) {
 		neighbours[a].push_back(b);
 		neighbours[b].push_back(a);
 	}
-	fillUnknownRadii(skeleton.radius, neighbours);
+	skeleton.radius =
+		thicknessAlong(skeleton.position, neighbours, skeleton.node, *stage.surface, progress);
 	// Where walls were joined badly a step may cut or close a loop: then it is left out.
 	const BettiNumbers before = skeleton.betti();
 	for (void (*tidied)(MesoSkeleton&) : {&removeFins, &openFolds, &removeWhiskers}) {

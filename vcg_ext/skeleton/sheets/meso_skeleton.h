@@ -31,7 +31,7 @@ struct MesoSkeleton
 {
 	/// Nodes, mesh units.
 	std::vector<Point3d> position;
-	/// Local thickness at each node, mesh units: mean distance to its surface vertices.
+	/// Local thickness at each node, mesh units: mean distance of its surface vertices from its edges.
 	std::vector<double> radius;
 	/// Curve edges: those that belong to no face. Ascending.
 	std::vector<EdgeOfComplex> edges;
