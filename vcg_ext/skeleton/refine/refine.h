@@ -7,6 +7,7 @@
 #ifndef VCG_MCF_REFINE_H
 #define VCG_MCF_REFINE_H
 
+#include "blade_ends.h"
 #include "local_scale.h"
 #include "refine_centre.h"
 #include "refine_check.h"
@@ -57,7 +58,8 @@ struct RefineParameters
 	double spacing = 0.005;
 	/// A terminal branch whose end ball sticks out of the ball at its junction by less than this
 	/// part of the latter's radius is a spur and is removed; in [0, 1]. If it is above 0, so are
-	/// twin tips and stubs, see withoutTwinTips(), withoutStubs() and withoutStubsInPlates().
+	/// twin tips, forked ends and stubs, see withoutTwinTips(), withoutForkedEnds(), withoutStubs()
+	/// and withoutStubsInPlates().
 	double spurProminence = 0.1;
 	/// Two junctions are one where the smaller ball sticks out of the larger one by less than this
 	/// part of its own radius; in [0, 1].
@@ -213,8 +215,11 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 	const auto tidy = [&](double spurProminence, double tipDistinctness) {
 		measureBranchEnds(skeleton, clearances);
 		skeleton = withoutSpurs(skeleton, spurProminence, cancel);
-		if (spurProminence > 0)
+		if (spurProminence > 0) {
 			skeleton = withoutTwinTips(withoutStubs(skeleton, cancel), cancel);
+			skeleton = withoutForkedEnds(skeleton, surface, clearances, cancel);
+			skeleton = withStraightEnds(std::move(skeleton), surface, clearances, cancel);
+		}
 		if (tipDistinctness > 0) {
 			skeleton = withoutCornerBranches(skeleton, clearances, tipDistinctness, cancel);
 			skeleton = withoutCornerEnds(skeleton, clearances, tipDistinctness);
@@ -306,7 +311,9 @@ inline std::optional<CurveSkeleton> madeSymmetric(const CurveSkeleton& curve,
 	if (!whole)
 		return std::nullopt;
 	CurveSkeleton skeleton =
-		withWholeJunctions(*std::move(whole), parameters.junctionProminence, cancel);
+		withStraightEnds(withoutForkedEnds(*std::move(whole), surface, clearances, cancel), surface,
+			clearances, cancel);
+	skeleton = withWholeJunctions(std::move(skeleton), parameters.junctionProminence, cancel);
 	const auto sample = [&] {
 		skeleton = evenlySampled(skeleton, surface, parameters.spacing, scale, cancel);
 	};
@@ -617,7 +624,7 @@ inline Defect refineChecked(CurveSkeleton& refined, ClosestSurface& surface,
  * of less detail is a part of one of more. The result depends on the shape of each component only,
  * not on its size and place. Each surface vertex goes to a nearest node, by descent along the graph
  * from what its node has become; one whose node belongs to another component goes to the nearest of
- * its own. The radius is measured anew, as the mean distance to these vertices.
+ * its own. The radius is measured anew, see curveThickness().
  *
  * @param curve       its `node` has an entry for each vertex of `surface`.
  * @param measured    closed triangle mesh of any number of components, compact.
@@ -745,9 +752,7 @@ inline Refinement refineChecked(const CurveSkeleton& curve, const MeasuredSurfac
 		for (const auto& [a, b] : part.edges)
 			refined.edges.push_back({first + a, first + b});
 	}
-	refined.radius =
-		meanSurfaceDistance(refined.position, surface.position, refined.node, progress);
-	fillUnknownRadii(refined.radius, refined.neighbours());
+	refined.radius = curveThickness(refined, surface.position, progress);
 	for (const auto& [node, before] : kept)
 		if (before < int(curve.radius.size()))
 			refined.radius[node] = curve.radius[before];

@@ -1,0 +1,310 @@
+// SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/// @file
+/// @brief Refinement, the ends of blades: a limb that ends in an edge has one tip, in its middle.
+
+#ifndef VCG_MCF_BLADE_ENDS_H
+#define VCG_MCF_BLADE_ENDS_H
+
+#include "refine_centre.h"
+#include "refine_graph.h"
+
+#include <skeleton/core/progress.h>
+#include <skeleton/graph/curve_skeleton.h>
+#include <skeleton/graph/prune.h>
+#include <skeleton/graph/skeleton_branches.h>
+#include <skeleton/spatial/closest_surface.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace vcg::tri::mcf::refining {
+
+/**
+ * A limb ends in an edge, not in a plate, if the middle of its end is no longer than so many radii
+ * of the limb. Of a bar whose section is s times as wide as thick it is 2 (s - 1) radii long: a bar
+ * twice as wide as thick has one tip; beyond s = 2.3 it is a plate, whose corners may have tips.
+ */
+constexpr double longestEnd = 2.6;
+
+/// The distance from tips, as a part of that between them, at which areOnOneRidge() is asked: at a
+/// sharp edge itself, balls are smaller than the triangles.
+constexpr double behindTips = 0.25;
+
+/// Whether the way from p to q runs within the medial axis, and the distance from the surface hardly
+/// changes on it, as along the edge of a blade. It falls between two limbs, and rises on the way
+/// through a body from one side to the other; close under the surface of a body there is no medial
+/// axis.
+inline bool areOnOneRidge(
+	const ClosestSurface& surface, const Point3d& p, const Point3d& q, KnownClearances& clearances)
+{
+	constexpr int pieces = 8;
+	constexpr double lowest = 0.5, highest = 1.5; // of the distances at the ends
+	constexpr double small = 0.2; // of the length: of the edge of a wedge of 90 degrees
+	constexpr double aside = 0.75; // radii
+	const double one = clearances.at(p), other = clearances.at(q);
+	const double low = lowest * std::min(one, other);
+	const double high = std::min(highest * std::max(one, other),
+		std::max(highest * std::min(one, other), small * Distance(p, q)));
+	if (!(low > 0) || std::max(one, other) > high)
+		return false;
+	for (const int i : {4, 2, 6, 1, 3, 5, 7}) {
+		const Point3d x = p + (q - p) * (double(i) / pieces);
+		const ClosestSurface::Hit hit = surface.closest(x);
+		if (hit.distance < low || hit.distance > high || !surface.isInside(x, hit))
+			return false;
+		const ClosestSurface::Ball ball = medialBall(surface, x, hit);
+		if (!isMedial(ball) || Distance(ball.centre, x) > aside * hit.distance)
+			return false;
+	}
+	return true;
+}
+
+/// The largest distance from the surface of the nodes that are connected with a node by a way of
+/// the curve no longer than `farthest`.
+inline double largestRadiusAround(const CurveSkeleton& skeleton,
+	const std::vector<std::vector<int>>& neighbours, KnownClearances& clearances, int node,
+	double farthest)
+{
+	std::vector<std::pair<int, double>> reached {{node, 0}}; // node, way
+	std::set<int> seen {node};
+	double largest = 0;
+	for (size_t i = 0; i < reached.size(); ++i) {
+		const auto [v, way] = reached[i];
+		const Point3d& p = skeleton.position[size_t(v)];
+		largest = std::max(largest, clearances.at(p));
+		for (int w : neighbours[size_t(v)])
+			if (const double there = way + Distance(p, skeleton.position[size_t(w)]);
+				there <= farthest && seen.insert(w).second)
+				reached.emplace_back(w, there);
+	}
+	return largest;
+}
+
+/**
+ * Of two terminal branches into the same edge, as into both corners of the edge of a wedge, removes
+ * the longer one: their tips are on one ridge, see areOnOneRidge(), side by side as seen from the
+ * junction, no farther apart than longestEnd radii of the limb, whose largest ball near the junction
+ * tells how thick it is, and the shape ends ahead of them. Near an edge the balls are too small to
+ * tell tips apart by them.
+ * @pre the radius of tips is their distance from the surface. @throws Cancelled
+ * Complexity: O(T^2) for T tips, and some distances for each pair that is near.
+ */
+inline CurveSkeleton withoutForkedEnds(const CurveSkeleton& skeleton, const ClosestSurface& surface,
+	KnownClearances& clearances, const Progress& progress = Progress())
+{
+	constexpr double opposite = -0.7;          // cosine
+	constexpr double ahead = 0.75, around = 2; // distances of the tips
+	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
+	const auto endTogether = [&](const Branch& fromJunction, int other) {
+		const Point3d &p = skeleton.position[size_t(fromJunction.last())],
+					  &q = skeleton.position[size_t(other)],
+					  &joint = skeleton.position[size_t(fromJunction.first())];
+		const double apart = Distance(p, q);
+		if ((p - joint) * (q - joint) < opposite * Distance(p, joint) * Distance(q, joint))
+			return false;
+		const auto behind = [&](const Point3d& end) {
+			const Point3d back = joint - end;
+			return end + back * std::min(1.0, behindTips * apart / std::max(back.Norm(), 1e-300));
+		};
+		const Point3d middle = (p + q) / 2;
+		const double way = Distance(middle, joint);
+		return way > 0 && surface.clearance(middle + (middle - joint) * (ahead * apart / way)) <= 0
+			&& areOnOneRidge(surface, behind(p), behind(q), clearances)
+			&& apart <= longestEnd
+				* largestRadiusAround(
+					skeleton, neighbours, clearances, fromJunction.first(), around * apart);
+	};
+	return withoutTerminalBranches(
+		skeleton, 0,
+		[&](const CurveSkeleton& s, const Branch& fromJunction, const std::set<int>& tips) {
+			return std::any_of(tips.begin(), tips.end(),
+					   [&](int other) {
+						   return other != fromJunction.last() && endTogether(fromJunction, other);
+					   })
+				? -branchLength(s, fromJunction)
+				: 0.0;
+		},
+		progress);
+}
+
+/// A section across a limb that is wider than thick.
+struct Section
+{
+	Point3d middle, side; ///< the latter of unit length, the direction in which it is wide
+	double radius, width; ///< distance of the middle from the surface
+};
+
+/**
+ * The section of a limb at a point: it is as wide as the distance from the surface stays above half
+ * of that at the point.
+ * @param axis   of the limb, of unit length.
+ * @param widest no section is wider; nothing if it would be.
+ */
+inline std::optional<Section> sectionAt(
+	const ClosestSurface& surface, Point3d x, const Point3d& axis, double widest)
+{
+	constexpr double minSide = 0.5, pace = 0.25; // radii
+	constexpr int halvings = 3;
+	ClosestSurface::Hit hit = surface.closest(x);
+	if (hit.distance <= 0 || !surface.isInside(x, hit))
+		return std::nullopt;
+	ClosestSurface::Ball ball = medialBall(surface, x, hit);
+	if (!isMedial(ball))
+		return std::nullopt;
+	x = movedAside(x, ball, axis, hit.distance);
+	hit = surface.closest(x, hit.face);
+	if (hit.distance <= 0 || !surface.isInside(x, hit))
+		return std::nullopt;
+	ball = medialBall(surface, x, hit);
+	Point3d side = axis ^ (hit.point - ball.contact);
+	if (!isMedial(ball) || !(side.Norm() > 0))
+		return std::nullopt;
+	side /= side.Norm();
+	const double r = hit.distance;
+	const auto reach = [&](double sign) {
+		const auto isWithin = [&](double s) {
+			return surface.clearance(x + side * (sign * s)) >= minSide * r;
+		};
+		double s = 0, step = pace * r;
+		while (s <= widest && isWithin(s + step))
+			s += step;
+		for (int i = 0; i < halvings; ++i)
+			if (step /= 2; isWithin(s + step))
+				s += step;
+		return s;
+	};
+	const double right = reach(1), left = right <= widest ? reach(-1) : 0;
+	if (left + right > widest)
+		return std::nullopt;
+	return Section {x + side * ((right - left) / 2), side, r, left + right};
+}
+
+/// A new end of a terminal branch: from one of its nodes straight to two points.
+struct StraightEnd
+{
+	size_t root; ///< in the branch, from the tip
+	Point3d middle, tip;
+};
+
+/**
+ * The straight end of a branch that ends beside the middle of an edge. A section across the limb,
+ * half as far from a root as the tip is, is as wide as the distance from the surface stays above
+ * half of that in its middle. The end is moved into the middle of the section that is nearest to the
+ * tip, wider than round ones, no wider than the root is far from the tip, and no wider than the ends
+ * of limbs, see longestEnd; if the tip lies ahead of the root, beside the section's middle, and on
+ * one ridge with its new place.
+ * @param fromTip  the branch. @return nothing if it does not end beside the middle of an edge.
+ */
+inline std::optional<StraightEnd> straightEnd(const CurveSkeleton& skeleton, const Branch& fromTip,
+	const ClosestSurface& surface, KnownClearances& clearances)
+{
+	constexpr double nearest = 2, farther = 1.25; // radii of the tip; factor
+	constexpr double minStem = 0.25;              // of the root's distance
+	constexpr double ahead = 0.85;                // cosine: corners are 27 degrees aside
+	constexpr double round = 2, centred = 0.15;   // radii; of the width
+	const auto position = [&](size_t i) { return skeleton.position[size_t(fromTip.nodes[i])]; };
+	const Point3d tip = position(0);
+	const double radius = clearances.at(tip);
+	if (!(radius > 0))
+		return std::nullopt;
+	std::vector<double> along {0};
+	for (size_t i = 1; i < fromTip.nodes.size(); ++i)
+		along.push_back(along.back() + Distance(position(i - 1), position(i)));
+	const auto nodeAt = [&](double way) {
+		return size_t(std::lower_bound(along.begin(), along.end() - 1, way) - along.begin());
+	};
+	double largest = radius; // of the first nodes
+	size_t measured = 1;
+	for (double far = nearest * radius; (1 + minStem) * far <= along.back(); far *= farther) {
+		const size_t root = nodeAt(far), before = nodeAt(2 * far);
+		for (; measured <= before; ++measured)
+			largest = std::max(largest, clearances.at(position(measured)));
+		const double widest = (longestEnd + 1) * largest;
+		if (far > farther * widest) // the limb is thin, and all of its sections were too narrow
+			break;
+		Point3d axis = position(root) - position(before);
+		if (!(axis.Norm() > 0))
+			continue;
+		axis /= axis.Norm();
+		const Point3d onward = tip - position(root);
+		if (onward * axis < ahead * onward.Norm())
+			continue;
+		const std::optional<Section> section =
+			sectionAt(surface, position(root) + axis * (far / 2), axis, widest);
+		if (!section || section->width < round * section->radius || section->width > far)
+			continue;
+		const Point3d halfway = section->middle;
+		// The curve may lie askew in the limb; the middles of its sections do not.
+		if (const std::optional<Section> first = sectionAt(surface, position(root), axis, widest)) {
+			const Point3d between = halfway - first->middle;
+			if (between * axis >= ahead * between.Norm())
+				axis = between / between.Norm();
+		}
+		const Point3d moved = halfway + axis * (axis * (tip - halfway));
+		const double off = Distance(tip, moved);
+		if (off >= centred * section->width && off <= section->width / 2 + section->radius
+			&& areOnOneRidge(surface, tip - axis * (behindTips * off),
+				moved - axis * (behindTips * off), clearances)
+			&& isSegmentInside(surface, position(root), clearances.at(position(root)), halfway,
+				clearances.at(halfway))
+			&& isSegmentInside(
+				surface, halfway, clearances.at(halfway), moved, clearances.at(moved)))
+			return StraightEnd {root, halfway, moved};
+	}
+	return std::nullopt;
+}
+
+/**
+ * The skeleton with the tips of limbs that end in an edge moved to the middle of that edge, see
+ * straightEnd(). Within the medial axis of such a limb nothing holds the curve: the flow leaves its
+ * end anywhere between the corners.
+ * @throws Cancelled
+ */
+inline CurveSkeleton withStraightEnds(CurveSkeleton skeleton, const ClosestSurface& surface,
+	KnownClearances& clearances, const Progress& progress = Progress())
+{
+	std::vector<std::vector<int>> neighbours = skeleton.neighbours();
+	std::vector<Point3d> tips;
+	for (size_t v = 0; v < neighbours.size(); ++v)
+		if (neighbours[v].size() == 1)
+			tips.push_back(skeleton.position[v]);
+	for (const Point3d& place : tips) {
+		progress.check();
+		const auto found = std::find(skeleton.position.begin(), skeleton.position.end(), place);
+		const int v = int(found - skeleton.position.begin());
+		const Branch branch = branchAlong(neighbours, v, neighbours[size_t(v)][0]);
+		const std::optional<StraightEnd> end = straightEnd(skeleton, branch, surface, clearances);
+		if (!end)
+			continue;
+		std::vector<int> target(skeleton.position.size());
+		std::iota(target.begin(), target.end(), 0);
+		const int root = branch.nodes[end->root];
+		for (size_t i = 0; i < end->root; ++i)
+			target[size_t(branch.nodes[i])] = root;
+		int last = 0; // the root's number among those that are left
+		for (int w = 0; w < root; ++w)
+			last += target[size_t(w)] == w;
+		skeleton = mergeNodes(skeleton, target);
+		for (const Point3d& p : {end->middle, end->tip}) {
+			const int next = int(skeleton.position.size());
+			skeleton.position.push_back(p);
+			skeleton.radius.push_back(clearances.at(p));
+			skeleton.edges.push_back({last, next});
+			last = next;
+		}
+		std::sort(skeleton.edges.begin(), skeleton.edges.end());
+		neighbours = skeleton.neighbours();
+	}
+	return skeleton;
+}
+
+} // namespace vcg::tri::mcf::refining
+
+#endif
