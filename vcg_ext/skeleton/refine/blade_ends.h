@@ -46,7 +46,7 @@ inline bool areOnOneRidge(
 {
 	constexpr int pieces = 8;
 	constexpr double lowest = 0.5, highest = 1.5; // of the distances at the ends
-	constexpr double small = 0.2; // of the length: of the edge of a wedge of 90 degrees
+	constexpr double small = 0.2;  // of the length: of the edge of a wedge of 90 degrees
 	constexpr double aside = 0.75; // radii
 	const double one = clearances.at(p), other = clearances.at(q);
 	const double low = lowest * std::min(one, other);
