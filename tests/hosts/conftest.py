@@ -172,6 +172,19 @@ def diagonal(vertices: np.ndarray) -> float:
     return float(np.linalg.norm(np.ptp(vertices, axis=0)))
 
 
+def distances_from_edges(places: np.ndarray, node: np.ndarray, nodes: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """The distance of each place from the nearest of the edges that end at its node."""
+    distance = np.linalg.norm(places - nodes[node], axis=1)
+    for edge in edges:
+        for a, b in (edge, edge[::-1]):
+            own = np.flatnonzero(node == a)
+            away, step = places[own] - nodes[a], nodes[b] - nodes[a]
+            along = (away @ step / (step @ step)).clip(0, 1)
+            gap = np.linalg.norm(away - along[:, None] * step, axis=1)
+            distance[own] = np.minimum(distance[own], gap)
+    return distance
+
+
 def gui_host(name: str) -> Path:
     """The folder of a MeshLab for the tests; the test is skipped, by name, where there is none."""
     folder = os.environ.get("MCFSKEL_HOST_" + re.sub(r"\W", "_", name).upper())

@@ -17,7 +17,7 @@ import pytest
 import trimesh
 from plyfile import PlyData
 
-from conftest import MESHES, ROOT, arrays, components, document, euler
+from conftest import MESHES, ROOT, arrays, components, distances_from_edges, document, euler
 from hostile.primitives import box
 
 sys.path.insert(0, str(ROOT / "scripts"))
@@ -75,13 +75,13 @@ class TestResults:
         assert np.array_equal(vertices, nodes) and np.array_equal(pairs, edges)
 
     def test_surface_with_its_correspondence(self, torus):
-        nodes, _, radius = read_skeleton(torus[0] / "torus_skeleton.ply")
+        nodes, edges, radius = read_skeleton(torus[0] / "torus_skeleton.ply")
         vertices, faces = read_surface(torus[0] / "torus_surface.ply")
         assert faces.max() == len(vertices) - 1
         vertex = PlyData.read(str(torus[0] / "torus_surface.ply"))["vertex"]
         node = np.asarray(vertex["mcfskel_node"])
         assert np.issubdtype(node.dtype, np.integer)
-        distance = np.linalg.norm(vertices - nodes[node], axis=1)
+        distance = distances_from_edges(vertices, node, nodes, edges)
         count = np.bincount(node, minlength=len(nodes))
         mean = np.bincount(node, distance, len(nodes)) / np.maximum(count, 1)
         reached = count > 0

@@ -11,8 +11,8 @@ import numpy as np
 import pymeshlab
 import pytest
 
-from conftest import (FULL, MESHES, POLES, REFINE, ROOT, area, components, diagonal, euler, failing,
-                      fingerprint, layer, opened, points, scalars, volume)
+from conftest import (FULL, MESHES, POLES, REFINE, ROOT, area, components, diagonal, distances_from_edges, euler,
+                      failing, fingerprint, layer, opened, points, scalars, volume)
 
 PARTS = "compute_skeleton_parts_mcf"
 PRUNE = "generate_pruned_skeleton_mcf"
@@ -50,19 +50,6 @@ def add_curve(layers: pymeshlab.MeshSet, nodes, edges, radius, name: str) -> Non
                           edge_matrix=np.asarray(edges, np.int32),
                           v_scalar_array=np.asarray(radius, float))
     layers.add_mesh(mesh, name)
-
-
-def distances_from_edges(points_of_surface: np.ndarray, node: np.ndarray, curve: pymeshlab.Mesh) -> np.ndarray:
-    """The distance of each point from the nearest edge that ends at its node."""
-    nodes, distance = curve.vertex_matrix(), np.full(len(points_of_surface), np.inf)
-    for edge in curve.edge_matrix():
-        for a, b in (edge, edge[::-1]):
-            own = np.flatnonzero(node == a)
-            away, step = points_of_surface[own] - nodes[a], nodes[b] - nodes[a]
-            along = (away @ step / (step @ step)).clip(0, 1)
-            gap = np.linalg.norm(away - along[:, None] * step, axis=1)
-            distance[own] = np.minimum(distance[own], gap)
-    return distance
 
 
 def known_skeleton(name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -279,7 +266,8 @@ class TestPrune:
         on_input = scalars(layer(y_tube, "y_tube.off"), "mcfskel_node").astype(int)
         assert on_input.min() >= 0 and on_input.max() < pruned.vertex_number()
         # The radius is again the mean distance of what has merged from the edges of its node.
-        distance = distances_from_edges(surface.vertex_matrix(), now, pruned)
+        distance = distances_from_edges(
+            surface.vertex_matrix(), now, pruned.vertex_matrix(), pruned.edge_matrix())
         count = np.bincount(now, minlength=pruned.vertex_number())
         mean = np.bincount(now, distance, minlength=len(count))[count > 0] / count[count > 0]
         assert scalars(pruned, "mcfskel_radius")[count > 0] == pytest.approx(mean)

@@ -7,11 +7,12 @@
 #ifndef VCG_MCF_SKELETON_RADIUS_H
 #define VCG_MCF_SKELETON_RADIUS_H
 
+#include "curve_skeleton.h"
+
 #include <skeleton/core/large_arrays.h>
 #include <skeleton/core/progress.h>
 #include <skeleton/core/segment.h>
 #include <skeleton/core/ticker.h>
-#include <skeleton/graph/curve_skeleton.h>
 
 #include <algorithm>
 #include <cmath>
