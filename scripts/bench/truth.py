@@ -95,9 +95,8 @@ class Truth:
         radii = self.cone_radii[edge]
         return Nearest(distance, radii[:, 0] * (1 - along) + radii[:, 1] * along)
 
-    def is_inside(self, points: Array) -> Array:
-        """Whether each point is in the solid: in a ball of the truth."""
-        near = self.nearest(points)
+    def is_inside(self, points: Array, near: Nearest) -> Array:
+        """Whether each point, of which `near` is the nearest place, is in the solid: in a ball of the truth."""
         inside = near.distance <= near.radius
         if self.is_sheet:
             return inside
@@ -206,7 +205,7 @@ def score(truth: Truth, curve: Curve) -> Score:
         to_truth=mean(away.distance) / size, from_truth=float(back.mean()) / size,
         to_truth_max=float(away.distance.max()) / size, from_truth_max=float(back.max()) / size,
         to_truth_radii=mean(away.distance / away.radius), from_truth_radii=float(back_radii.mean()),
-        outside=mean(~truth.is_inside(spots)),
+        outside=mean(~truth.is_inside(spots, away)),
         radius_error=radius_error(truth, curve),
     )
 

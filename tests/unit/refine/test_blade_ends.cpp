@@ -3,8 +3,7 @@
 
 // Limbs that end in an edge: one tip, in the middle of it.
 
-#include "curves.h"
-#include "shapes.h"
+#include "curve_in_shape.h"
 
 #include <skeleton/refine/blade_ends.h>
 #include <skeleton/skeletonize.h>
@@ -13,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <vector>
 
 using namespace vcg::tri::mcf;
@@ -22,37 +20,23 @@ using vcg::Point3d;
 
 namespace {
 
-/// A curve in a shape, before and after the rules for its ends.
-class CurveInShape
+/// The curve with the radii that the rules for its ends ask for.
+CurveSkeleton measured(CurveInShape& scene)
 {
-public:
-	CurveInShape(const shapes::Soup& soup, CurveMaker maker) :
-			mesh(soup.mesh()), vertices(mesh.position.size()),
-			closest(mesh, numbered(vertices), 0.01), curve(maker.in(mesh)), clearances(closest)
-	{
-		refining::measureNodes(curve, clearances);
-	}
+	refining::measureNodes(scene.curve, scene.clearances);
+	return scene.curve;
+}
 
-	std::vector<Point3d> tips() const { return curves::tips(curve); }
-	std::vector<Point3d> tipsWithoutForks()
-	{
-		return curves::tips(refining::withoutForkedEnds(curve, closest, clearances));
-	}
-	CurveSkeleton straight() { return refining::withStraightEnds(curve, closest, clearances); }
+std::vector<Point3d> tipsWithoutForks(CurveInShape& scene)
+{
+	return curves::tips(
+		refining::withoutForkedEnds(measured(scene), scene.closest, scene.clearances));
+}
 
-private:
-	static const std::vector<int>& numbered(std::vector<int>& all)
-	{
-		std::iota(all.begin(), all.end(), 0);
-		return all;
-	}
-
-	SurfaceMesh mesh;
-	std::vector<int> vertices;
-	ClosestSurface closest;
-	CurveSkeleton curve;
-	refining::KnownClearances clearances;
-};
+CurveSkeleton straightened(CurveInShape& scene)
+{
+	return refining::withStraightEnds(measured(scene), scene.closest, scene.clearances);
+}
 
 /// Adds a way from point to point, with a node every hundredth.
 CurveMaker along(const std::vector<Point3d>& points, CurveMaker maker = CurveMaker())
@@ -98,7 +82,7 @@ shapes::Soup star(int points, double height)
 TEST(BladeEnds, ATipInACornerOfABarGoesToTheMiddleOfItsEnd)
 {
 	CurveInShape scene(bar(0.32), along({{0.08, 0, 0}, {0.7, 0, 0}, {0.92, 0.08, 0}}));
-	const CurveSkeleton straight = scene.straight();
+	const CurveSkeleton straight = straightened(scene);
 	const std::vector<Point3d> tips = curves::tips(straight);
 	ASSERT_EQ(tips.size(), 2u);
 	EXPECT_LT(Distance(tips[0], Point3d(0.08, 0, 0)), 0.01) << "the other end stays";
@@ -111,14 +95,14 @@ TEST(BladeEnds, ATipInACornerOfABarGoesToTheMiddleOfItsEnd)
 TEST(BladeEnds, ATipInACornerOfAPlateStays)
 {
 	CurveInShape scene(bar(0.6), along({{0.3, 0, 0}, {0.7, 0, 0}, {0.92, 0.22, 0}}));
-	EXPECT_EQ(curves::tips(scene.straight()), scene.tips());
+	EXPECT_EQ(curves::tips(straightened(scene)), scene.tips());
 }
 
 TEST(BladeEnds, TheTipOfARoundLimbStays)
 {
 	CurveInShape scene(shapes::scaled(shapes::capsule(2, 0.35, 24), 0.37),
 		along({{0, 0, -0.3}, {0.02, 0, 0.3}, {0.06, 0.02, 0.42}}));
-	EXPECT_EQ(curves::tips(scene.straight()), scene.tips());
+	EXPECT_EQ(curves::tips(straightened(scene)), scene.tips());
 }
 
 TEST(BladeEnds, OfTwoBranchesIntoTheCornersOfABarOneStays)
@@ -128,7 +112,8 @@ TEST(BladeEnds, OfTwoBranchesIntoTheCornersOfABarOneStays)
 		const Point3d fork(0.8, 0, 0);
 		const CurveMaker curve = along({fork, {0.92, -aside, 0}},
 			along({fork, {0.92, aside, 0}}, along({{0.08, 0, 0}, fork})));
-		return CurveInShape(bar(width), curve).tipsWithoutForks().size();
+		CurveInShape scene(bar(width), curve);
+		return tipsWithoutForks(scene).size();
 	};
 	EXPECT_EQ(tipsLeft(0.32), 2u) << "twice as wide as thick";
 	EXPECT_EQ(tipsLeft(0.6), 3u) << "a plate";
@@ -143,7 +128,7 @@ TEST(BladeEnds, TheTipsOfTwoLimbsStay)
 	const CurveMaker curve = along({fork, {0.05, 0.55, 0.05}, {0.05, 0.95, 0.05}},
 		along({fork, {0.25, 0.55, 0.05}, {0.25, 0.95, 0.05}}, along({{0.15, 0.1, 0.05}, fork})));
 	CurveInShape scene(shapes::scaled(hand, 0.05), curve);
-	EXPECT_EQ(scene.tipsWithoutForks().size(), 3u);
+	EXPECT_EQ(tipsWithoutForks(scene).size(), 3u);
 }
 
 TEST(BladeEnds, EachPointOfAStarHasOneTipHalfWayUp)

@@ -3,15 +3,13 @@
 
 // Curves in symmetric shapes that lack a branch on one side, or have one too many there.
 
-#include "curves.h"
-#include "shapes.h"
+#include "curve_in_shape.h"
 
 #include <skeleton/refine/refine_symmetry.h>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <numeric>
 #include <vector>
 
 using namespace vcg::tri::mcf;
@@ -20,44 +18,16 @@ using vcg::Point3d;
 
 namespace {
 
-/// A shape with a diagonal of about 1, and a curve in it.
-class CurveInShape
+/// Gives the curve the images of its branches; returns whether any was missing.
+bool makeSymmetric(CurveInShape& scene)
 {
-public:
-	CurveInShape(const shapes::Soup& soup, CurveMaker maker) :
-			mesh(soup.mesh()), vertices(numbers(mesh.position.size())),
-			closest(mesh, vertices, 0.01), curve(maker.in(mesh))
-	{
-	}
-
-	bool makeSymmetric()
-	{
-		refining::KnownClearances clearances(closest);
-		const refining::SurfaceComponent component = {mesh, vertices, vertices};
-		const auto symmetric =
-			refining::withImages(curve, component, closest, clearances, Progress());
-		if (symmetric)
-			curve = *symmetric;
-		return symmetric.has_value();
-	}
-
-	std::vector<Point3d> tips() const { return curves::tips(curve); }
-
-private:
-	static std::vector<int> numbers(size_t count)
-	{
-		std::vector<int> all(count);
-		std::iota(all.begin(), all.end(), 0);
-		return all;
-	}
-
-	SurfaceMesh mesh;
-	std::vector<int> vertices;
-	ClosestSurface closest;
-
-public:
-	CurveSkeleton curve;
-};
+	const refining::SurfaceComponent component = {scene.mesh, scene.vertices, scene.vertices};
+	const auto symmetric =
+		refining::withImages(scene.curve, component, scene.closest, scene.clearances, Progress());
+	if (symmetric)
+		scene.curve = *symmetric;
+	return symmetric.has_value();
+}
 
 /// Whether each tip has one at its image, within a hundredth of the diagonal.
 template <class Map>
@@ -107,13 +77,13 @@ TEST(RefineSymmetry, AMissingCornerIsAdded)
 			.line(left, {-0.35, -0.25, 0}, 60)
 			.line(right, {0.35, 0.25, 0}, 60));
 	ASSERT_EQ(scene.tips().size(), 3u);
-	EXPECT_TRUE(scene.makeSymmetric());
+	EXPECT_TRUE(makeSymmetric(scene));
 	EXPECT_EQ(scene.tips().size(), 4u);
 	EXPECT_TRUE(areSymmetric(scene.tips(), alongX) && areSymmetric(scene.tips(), alongY));
 	const SkeletonStatistics now = statistics(scene.curve);
 	EXPECT_EQ(now.components, 1);
 	EXPECT_EQ(now.cycles, 0);
-	EXPECT_FALSE(scene.makeSymmetric());
+	EXPECT_FALSE(makeSymmetric(scene));
 }
 
 TEST(RefineSymmetry, AStubInThePlateGoesWhereTheOthersAreMore)
@@ -127,7 +97,7 @@ TEST(RefineSymmetry, AStubInThePlateGoesWhereTheOthersAreMore)
 			.line(right, {0.35, 0.25, 0}, 60)
 			.line(right, {0.35, -0.25, 0}, 60)
 			.line(right, {0.35, 0, 0}, 50));
-	EXPECT_TRUE(scene.makeSymmetric());
+	EXPECT_TRUE(makeSymmetric(scene));
 	EXPECT_EQ(scene.tips().size(), 4u);
 	EXPECT_TRUE(areSymmetric(scene.tips(), alongX));
 }
@@ -141,7 +111,7 @@ TEST(RefineSymmetry, OfACornerInEightAllAreAdded)
 			.line({0, 0, 0}, polar(0.4, 315), 60)
 			.line({0, 0, 0}, polar(0.37, 59), 60)
 			.line({0, 0, 0}, polar(0.37, 240), 60));
-	EXPECT_TRUE(scene.makeSymmetric());
+	EXPECT_TRUE(makeSymmetric(scene));
 	EXPECT_EQ(scene.tips().size(), 8u);
 	const auto turned = [](const Point3d& p) {
 		const double c = std::sqrt(0.5);
@@ -158,7 +128,7 @@ TEST(RefineSymmetry, OnARoundRimNoTipIsAdded)
 	for (int sides : {24, 60}) {
 		CurveInShape scene(flatPlate(sides),
 			CurveMaker().line({0, 0, 0}, polar(0.4, 20), 60).line({0, 0, 0}, polar(0.4, 200), 60));
-		EXPECT_FALSE(scene.makeSymmetric()) << sides;
+		EXPECT_FALSE(makeSymmetric(scene)) << sides;
 		EXPECT_EQ(scene.tips().size(), 2u) << sides;
 	}
 }
@@ -176,7 +146,7 @@ TEST(RefineSymmetry, ALimbThatOneSideLacks)
 	CurveInShape scene(
 		body, CurveMaker().line({0, -0.06, 0}, {0, arm, 0}).line({0, arm, 0}, {0.38, arm, 0}, 76));
 	ASSERT_EQ(scene.tips().size(), 2u);
-	EXPECT_TRUE(scene.makeSymmetric());
+	EXPECT_TRUE(makeSymmetric(scene));
 	EXPECT_TRUE(areSymmetric(scene.tips(), alongX));
 	EXPECT_EQ(scene.tips().size(), 3u);
 }
@@ -184,7 +154,7 @@ TEST(RefineSymmetry, ALimbThatOneSideLacks)
 TEST(RefineSymmetry, WhatIsSymmetricOrBelongsToNoSymmetricShapeStays)
 {
 	CurveInShape whole(flatBox(), CurveMaker().line({-0.3, 0, 0}, {0.3, 0, 0}, 120));
-	EXPECT_FALSE(whole.makeSymmetric());
+	EXPECT_FALSE(makeSymmetric(whole));
 	// One corner is pulled out.
 	const shapes::Soup pulled = shapes::transformed(flatBox(), [](const Point3d& p) {
 		const double far = Distance(p, Point3d(0.4, 0.3, 0));
@@ -193,6 +163,6 @@ TEST(RefineSymmetry, WhatIsSymmetricOrBelongsToNoSymmetricShapeStays)
 	CurveInShape odd(pulled,
 		CurveMaker().line({-0.3, 0, 0}, {0.1, 0, 0}, 80).line({0.1, 0, 0}, {0.4, 0.3, 0}, 80));
 	const size_t before = odd.curve.position.size();
-	EXPECT_FALSE(odd.makeSymmetric());
+	EXPECT_FALSE(makeSymmetric(odd));
 	EXPECT_EQ(odd.curve.position.size(), before);
 }

@@ -740,8 +740,8 @@ inline void bringInsideInput(CurveSkeleton& curve, const SurfaceMesh& surface,
 	curve.node = std::move(correspondence);
 	if (curve.position == before)
 		return;
-	const std::vector<std::vector<int>> neighbours = curve.neighbours();
 	if (!curve.significance.empty()) {
+		const std::vector<std::vector<int>> neighbours = curve.neighbours();
 		const auto endOfWay = [&](int v, int next) {
 			for (int last = v; size_t(next) >= nodes;) {
 				const std::vector<int>& around = neighbours[size_t(next)];

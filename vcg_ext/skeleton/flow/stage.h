@@ -10,6 +10,7 @@
 #include "vertex_states.h"
 
 #include <skeleton/core/large_arrays.h>
+#include <skeleton/graph/skeleton_radius.h>
 #include <skeleton/mesh/measured_surface.h>
 #include <skeleton/core/parameters.h>
 #include <skeleton/poles/pole_set.h>
@@ -213,17 +214,8 @@ inline std::vector<double> meanSurfaceDistance(const std::vector<Point3d>& posit
 	const std::vector<Point3d>& surface, const std::vector<int>& node,
 	const Cancellation& cancel = Cancellation())
 {
-	std::vector<double> sum = detail::filledArray(position.size(), 0.0, cancel);
-	std::vector<int> count = detail::filledArray(position.size(), 0, cancel);
-	detail::cancellableLoop(int(node.size()), cancel, [&](int s) {
-		if (node[s] < 0)
-			return;
-		sum[node[s]] += Distance(surface[s], position[node[s]]);
-		++count[node[s]];
-	});
-	detail::cancellableLoop(
-		int(sum.size()), cancel, [&](int v) { sum[v] = count[v] ? sum[v] / count[v] : -1; });
-	return sum;
+	return detail::meanOfMerged(position.size(), node, cancel,
+		[&](int s) { return Distance(surface[s], position[node[s]]); });
 }
 
 /// Local thickness at each vertex of a stage; where no surface vertex has merged into it, as after

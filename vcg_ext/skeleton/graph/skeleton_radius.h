@@ -65,6 +65,32 @@ inline void fillUnknownRadii(
 	}
 }
 
+namespace detail {
+
+/**
+ * For each node the mean of distanceOf(surface vertex) over those that have merged into it; -1 where
+ * there are none.
+ * @param node of each surface vertex, -1: none. @throws Cancelled. Complexity: O(S + N).
+ */
+template <class DistanceOf>
+std::vector<double> meanOfMerged(size_t nodes, const std::vector<int>& node,
+	const Cancellation& cancel, const DistanceOf& distanceOf)
+{
+	std::vector<double> mean = filledArray(nodes, 0.0, cancel);
+	std::vector<int> count = filledArray(nodes, 0, cancel);
+	cancellableLoop(int(node.size()), cancel, [&](int s) {
+		if (node[s] < 0)
+			return;
+		mean[node[s]] += distanceOf(s);
+		++count[node[s]];
+	});
+	cancellableLoop(
+		int(nodes), cancel, [&](int v) { mean[v] = count[v] ? mean[v] / count[v] : -1; });
+	return mean;
+}
+
+} // namespace detail
+
 /**
  * Local thickness: for each node of a curve or meso-skeleton the mean distance of the surface
  * vertices that have merged into it from the edges that end at it. (From the node itself it would be
@@ -77,24 +103,17 @@ inline std::vector<double> thicknessAlong(const std::vector<Point3d>& position,
 	const std::vector<std::vector<int>>& neighbours, const std::vector<int>& node,
 	const std::vector<Point3d>& surface, const Cancellation& cancel = Cancellation())
 {
-	std::vector<double> sum = detail::filledArray(position.size(), 0.0, cancel);
-	std::vector<int> count = detail::filledArray(position.size(), 0, cancel);
-	detail::cancellableLoop(int(node.size()), cancel, [&](int s) {
-		if (node[size_t(s)] < 0)
-			return;
+	std::vector<double> thickness = detail::meanOfMerged(position.size(), node, cancel, [&](int s) {
 		const size_t v = size_t(node[size_t(s)]);
 		const Point3d& p = surface[size_t(s)];
 		double squared = SquaredDistance(p, position[v]);
 		for (int w : neighbours[v])
 			squared = std::min(squared,
 				SquaredDistance(p, closestOnSegment(position[v], position[size_t(w)], p).point));
-		sum[v] += std::sqrt(squared);
-		++count[v];
+		return std::sqrt(squared);
 	});
-	for (size_t v = 0; v < sum.size(); ++v)
-		sum[v] = count[v] ? sum[v] / count[v] : -1;
-	fillUnknownRadii(sum, neighbours);
-	return sum;
+	fillUnknownRadii(thickness, neighbours);
+	return thickness;
 }
 
 /// thicknessAlong() of a curve whose `node` refers to the vertices of `surface`. @throws Cancelled

@@ -27,26 +27,25 @@
 namespace vcg::tri::mcf::refining {
 
 /**
- * A limb ends in an edge, not in a plate, if the middle of its end is no longer than so many radii
- * of the limb. Of a bar whose section is s times as wide as thick it is 2 (s - 1) radii long: a bar
- * twice as wide as thick has one tip; beyond s = 2.3 it is a plate, whose corners may have tips.
+ * Length of the longest medial edge at the end of a limb, in radii of the limb; with a longer one it
+ * is a plate, whose corners may have tips. A bar whose section is s times as wide as thick has one of
+ * 2 (s - 1) radii, so that bars up to s = 2.3 get one tip.
  */
 constexpr double longestEnd = 2.6;
 
-/// The distance from tips, as a part of that between them, at which areOnOneRidge() is asked: at a
-/// sharp edge itself, balls are smaller than the triangles.
+/// How far behind the tips areOnOneRidge() is evaluated, as a fraction of their distance: at a sharp
+/// edge itself, balls are smaller than the triangles.
 constexpr double behindTips = 0.25;
 
-/// Whether the way from p to q runs within the medial axis, and the distance from the surface hardly
-/// changes on it, as along the edge of a blade. It falls between two limbs, and rises on the way
-/// through a body from one side to the other; close under the surface of a body there is no medial
-/// axis.
+/// Whether the segment from p to q is near the medial axis, and the distance from the surface nearly
+/// constant along it, as along the edge of a blade. Between two limbs the distance falls, and from one
+/// side of a body to the other it rises; a segment close to the surface is far from the medial axis.
 inline bool areOnOneRidge(
 	const ClosestSurface& surface, const Point3d& p, const Point3d& q, KnownClearances& clearances)
 {
 	constexpr int pieces = 8;
 	constexpr double lowest = 0.5, highest = 1.5; // of the distances at the ends
-	constexpr double small = 0.2;  // of the length: of the edge of a wedge of 90 degrees
+	constexpr double small = 0.2;  // of the segment's length, behind the edge of a 90 degree wedge
 	constexpr double aside = 0.75; // radii
 	const double one = clearances.at(p), other = clearances.at(q);
 	const double low = lowest * std::min(one, other);
@@ -66,8 +65,7 @@ inline bool areOnOneRidge(
 	return true;
 }
 
-/// The largest distance from the surface of the nodes that are connected with a node by a way of
-/// the curve no longer than `farthest`.
+/// The largest distance from the surface among the nodes within `farthest` of a node along the curve.
 inline double largestRadiusAround(const CurveSkeleton& skeleton,
 	const std::vector<std::vector<int>>& neighbours, KnownClearances& clearances, int node,
 	double farthest)
@@ -153,18 +151,21 @@ inline std::optional<Section> sectionAt(
 	constexpr double minSide = 0.5, pace = 0.25; // radii
 	constexpr int halvings = 3;
 	ClosestSurface::Hit hit = surface.closest(x);
-	if (hit.distance <= 0 || !surface.isInside(x, hit))
-		return std::nullopt;
-	ClosestSurface::Ball ball = medialBall(surface, x, hit);
-	if (!isMedial(ball))
+	ClosestSurface::Ball ball;
+	const auto hasMedialBall = [&] {
+		if (hit.distance <= 0 || !surface.isInside(x, hit))
+			return false;
+		ball = medialBall(surface, x, hit);
+		return isMedial(ball);
+	};
+	if (!hasMedialBall())
 		return std::nullopt;
 	x = movedAside(x, ball, axis, hit.distance);
 	hit = surface.closest(x, hit.face);
-	if (hit.distance <= 0 || !surface.isInside(x, hit))
+	if (!hasMedialBall())
 		return std::nullopt;
-	ball = medialBall(surface, x, hit);
 	Point3d side = axis ^ (hit.point - ball.contact);
-	if (!isMedial(ball) || !(side.Norm() > 0))
+	if (!(side.Norm() > 0))
 		return std::nullopt;
 	side /= side.Norm();
 	const double r = hit.distance;
@@ -209,40 +210,43 @@ inline std::optional<StraightEnd> straightEnd(const CurveSkeleton& skeleton, con
 	constexpr double minStem = 0.25;              // of the root's distance
 	constexpr double ahead = 0.85;                // cosine: corners are 27 degrees aside
 	constexpr double round = 2, centred = 0.15;   // radii; of the width
-	const auto position = [&](size_t i) { return skeleton.position[size_t(fromTip.nodes[i])]; };
-	const Point3d tip = position(0);
+	std::vector<Point3d> points;
+	for (const int v : fromTip.nodes)
+		points.push_back(skeleton.position[size_t(v)]);
+	const Point3d& tip = points[0];
 	const double radius = clearances.at(tip);
 	if (!(radius > 0))
 		return std::nullopt;
-	std::vector<double> along {0};
-	for (size_t i = 1; i < fromTip.nodes.size(); ++i)
-		along.push_back(along.back() + Distance(position(i - 1), position(i)));
+	const std::vector<double> along = lengthsAlong(points);
 	const auto nodeAt = [&](double way) {
 		return size_t(std::lower_bound(along.begin(), along.end() - 1, way) - along.begin());
+	};
+	const auto isInside = [&](const Point3d& a, const Point3d& b) {
+		return isSegmentInside(surface, a, clearances.at(a), b, clearances.at(b));
 	};
 	double largest = radius; // of the first nodes
 	size_t measured = 1;
 	for (double far = nearest * radius; (1 + minStem) * far <= along.back(); far *= farther) {
 		const size_t root = nodeAt(far), before = nodeAt(2 * far);
 		for (; measured <= before; ++measured)
-			largest = std::max(largest, clearances.at(position(measured)));
+			largest = std::max(largest, clearances.at(points[measured]));
 		const double widest = (longestEnd + 1) * largest;
-		if (far > farther * widest) // the limb is thin, and all of its sections were too narrow
+		if (far > farther * widest) // all sections that are narrow enough have been tried
 			break;
-		Point3d axis = position(root) - position(before);
+		Point3d axis = points[root] - points[before];
 		if (!(axis.Norm() > 0))
 			continue;
 		axis /= axis.Norm();
-		const Point3d onward = tip - position(root);
+		const Point3d onward = tip - points[root];
 		if (onward * axis < ahead * onward.Norm())
 			continue;
 		const std::optional<Section> section =
-			sectionAt(surface, position(root) + axis * (far / 2), axis, widest);
+			sectionAt(surface, points[root] + axis * (far / 2), axis, widest);
 		if (!section || section->width < round * section->radius || section->width > far)
 			continue;
 		const Point3d halfway = section->middle;
 		// The curve may lie askew in the limb; the middles of its sections do not.
-		if (const std::optional<Section> first = sectionAt(surface, position(root), axis, widest)) {
+		if (const std::optional<Section> first = sectionAt(surface, points[root], axis, widest)) {
 			const Point3d between = halfway - first->middle;
 			if (between * axis >= ahead * between.Norm())
 				axis = between / between.Norm();
@@ -252,10 +256,7 @@ inline std::optional<StraightEnd> straightEnd(const CurveSkeleton& skeleton, con
 		if (off >= centred * section->width && off <= section->width / 2 + section->radius
 			&& areOnOneRidge(surface, tip - axis * (behindTips * off),
 				moved - axis * (behindTips * off), clearances)
-			&& isSegmentInside(surface, position(root), clearances.at(position(root)), halfway,
-				clearances.at(halfway))
-			&& isSegmentInside(
-				surface, halfway, clearances.at(halfway), moved, clearances.at(moved)))
+			&& isInside(points[root], halfway) && isInside(halfway, moved))
 			return StraightEnd {root, halfway, moved};
 	}
 	return std::nullopt;
@@ -303,6 +304,15 @@ inline CurveSkeleton withStraightEnds(CurveSkeleton skeleton, const ClosestSurfa
 		neighbours = skeleton.neighbours();
 	}
 	return skeleton;
+}
+
+/// withoutForkedEnds(), then withStraightEnds(): one tip for each edge, in its middle.
+/// @pre the radius of tips is their distance from the surface. @throws Cancelled
+inline CurveSkeleton withOneTipAtEdges(const CurveSkeleton& skeleton, const ClosestSurface& surface,
+	KnownClearances& clearances, const Progress& progress = Progress())
+{
+	return withStraightEnds(
+		withoutForkedEnds(skeleton, surface, clearances, progress), surface, clearances, progress);
 }
 
 } // namespace vcg::tri::mcf::refining

@@ -217,8 +217,7 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 		skeleton = withoutSpurs(skeleton, spurProminence, cancel);
 		if (spurProminence > 0) {
 			skeleton = withoutTwinTips(withoutStubs(skeleton, cancel), cancel);
-			skeleton = withoutForkedEnds(skeleton, surface, clearances, cancel);
-			skeleton = withStraightEnds(std::move(skeleton), surface, clearances, cancel);
+			skeleton = withOneTipAtEdges(skeleton, surface, clearances, cancel);
 		}
 		if (tipDistinctness > 0) {
 			skeleton = withoutCornerBranches(skeleton, clearances, tipDistinctness, cancel);
@@ -311,9 +310,8 @@ inline std::optional<CurveSkeleton> madeSymmetric(const CurveSkeleton& curve,
 	if (!whole)
 		return std::nullopt;
 	CurveSkeleton skeleton =
-		withStraightEnds(withoutForkedEnds(*std::move(whole), surface, clearances, cancel), surface,
-			clearances, cancel);
-	skeleton = withWholeJunctions(std::move(skeleton), parameters.junctionProminence, cancel);
+		withWholeJunctions(withOneTipAtEdges(*whole, surface, clearances, cancel),
+			parameters.junctionProminence, cancel);
 	const auto sample = [&] {
 		skeleton = evenlySampled(skeleton, surface, parameters.spacing, scale, cancel);
 	};
