@@ -514,16 +514,19 @@ inline bool isCertainlyInside(const std::vector<Point3d>& place,
 	const auto cheaply = [&](const Point3d& p) { return balls.radius(p); };
 	int left = std::max(minSamples, samplesOfTriangle * int(triangles.size()));
 	const auto exactly = [&](const Point3d& p) { return balls.largestRadius(p, left); };
-	std::vector<double> radius;
-	reportedLoop(int(place.size()), progress, "Bringing the curve inside",
-		[&](int A) { radius.push_back(cheaply(place[A])); });
+	CoveredCurve covered =
+		coveredCurve(place, edges, cheaply, cheapHalvings, progress, "Bringing the curve inside");
+	std::vector<double>& radius = covered.radius;
 	MergeForest parts(int(place.size()), progress);
-	for (const auto& [A, B] : edges) {
-		progress.check();
+	for (size_t e = 0; e < edges.size(); ++e) {
+		const auto& [A, B] = edges[e];
 		parts.join(A, B);
+		if (covered.isCovered[e])
+			continue;
+		progress.check();
 		const Point3d &a = place[A], &b = place[B];
 		if (isCoveredByBalls(a, radius[A], b, radius[B], cheaply, cheapHalvings))
-			continue;
+			continue; // by what has been found more exactly for another edge
 		for (int end : {A, B})
 			radius[end] = exactly(place[end]);
 		if (!isCoveredByBalls(a, radius[A], b, radius[B], exactly, halvings))

@@ -108,10 +108,6 @@ public:
 	 */
 	bool holds(const CurveSkeleton& curve, const Progress& progress) const
 	{
-		std::vector<double> empty; // radii of balls that the surface does not enter
-		empty.reserve(curve.position.size());
-		detail::reportedLoop(int(curve.position.size()), progress, what,
-			[&](int v) { empty.push_back(closest.emptyRadius(curve.position[v])); });
 		constexpr int samplesOfVertex = 8; // then a tree of the triangles is cheaper
 		int left = samplesOfVertex * int(component.vertices.size());
 		const auto exactly = [&](const Point3d& p) {
@@ -123,11 +119,17 @@ public:
 		};
 		const auto cheaply = [&](const Point3d& p) { return closest.emptyRadius(p); };
 		constexpr int halvings = 4;
-		for (const auto& [a, b] : curve.edges) {
-			progress.report(0, what);
+		CoveredCurve covered =
+			coveredCurve(curve.position, curve.edges, cheaply, halvings, progress, what);
+		std::vector<double>& empty = covered.radius; // of balls that the surface does not enter
+		for (size_t e = 0; e < curve.edges.size(); ++e) {
+			if (covered.isCovered[e])
+				continue;
+			progress.report(1, what);
+			const auto& [a, b] = curve.edges[e];
 			const Point3d &from = curve.position[a], &to = curve.position[b];
 			if (isCoveredByBalls(from, empty[a], to, empty[b], cheaply, halvings))
-				continue;
+				continue; // by what has been found more exactly for another edge
 			for (int end : {a, b})
 				empty[end] = exactly(curve.position[end]);
 			if (!isCovered(from, empty[a], to, empty[b], exactly, progress)
@@ -136,7 +138,7 @@ public:
 		}
 		const std::vector<Point3d> firsts = firstNodes(curve);
 		return std::all_of(firsts.begin(), firsts.end(), [&](const Point3d& p) {
-			progress.report(0, what);
+			progress.report(1, what);
 			return windingNumber(p) > 0 || closest.exactClearance(p, progress) > 0;
 		});
 	}

@@ -11,12 +11,14 @@
 #include "point_tree.h"
 
 #include <skeleton/core/grouped_sort.h>
+#include <skeleton/core/parallel.h>
 #include <skeleton/core/progress.h>
 #include <skeleton/core/ticker.h>
 #include <skeleton/mesh/closest_point_walk.h>
 #include <skeleton/mesh/surface_mesh.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -185,6 +187,36 @@ bool isCoveredByBalls(const Point3d& a, double radiusA, const Point3d& b, double
 	const double radius = radiusAt(middle);
 	return isCoveredByBalls(a, radiusA, middle, radius, radiusAt, halvings - 1)
 		&& isCoveredByBalls(middle, radius, b, radiusB, radiusAt, halvings - 1);
+}
+
+/// What balls around the nodes of a curve cover of it.
+struct CoveredCurve
+{
+	std::vector<double> radius;   ///< of the ball around each node
+	std::vector<char> isCovered;  ///< of each edge: see isCoveredByBalls()
+};
+
+/// @param radiusAt, halvings  see isCoveredByBalls(); called on several threads.
+/// @throws Cancelled. Complexity: O(N + E) calls of radiusAt.
+template <class RadiusAt>
+CoveredCurve coveredCurve(const std::vector<Point3d>& node,
+	const std::vector<std::array<int, 2>>& edges, const RadiusAt& radiusAt, int halvings,
+	const Progress& progress, const char* what)
+{
+	CoveredCurve covered = {
+		std::vector<double>(node.size()), std::vector<char>(edges.size())};
+	forEachBlock(int(node.size()), progress.part(0, 0.5), what, [&](int begin, int end) {
+		for (int v = begin; v < end; ++v)
+			covered.radius[v] = radiusAt(node[v]);
+	});
+	forEachBlock(int(edges.size()), progress.part(0.5, 1), what, [&](int begin, int end) {
+		for (int e = begin; e < end; ++e) {
+			const auto& [a, b] = edges[e];
+			covered.isCovered[e] = isCoveredByBalls(
+				node[a], covered.radius[a], node[b], covered.radius[b], radiusAt, halvings);
+		}
+	});
+	return covered;
 }
 
 } // namespace vcg::tri::mcf

@@ -11,6 +11,7 @@
 #include "four_slabs.h"
 #include "four_values.h"
 
+#include <skeleton/core/parallel.h>
 #include <skeleton/core/progress.h>
 #include <skeleton/core/ticker.h>
 
@@ -61,9 +62,8 @@ public:
 			width *= 4;
 		}
 		nodes.resize(inner);
-		leafStart.reserve(width + 1);
-		build(samples, box, 0, 0, int(points.size()), progress.part(0, 0.9));
-		leafStart.push_back(int(points.size()));
+		leafStart.assign(width + 1, int(points.size()));
+		buildAll(samples, box, progress.part(0, 0.9));
 		ids.reserve(points.size());
 		sorted.reserve(points.size());
 		for (std::vector<float>& values : coordinate)
@@ -293,7 +293,9 @@ private:
 		int id;
 	};
 
-	static std::array<int, 5> quarters(int begin, int end)
+	using Cuts = std::array<int, 5>;
+
+	static Cuts quarters(int begin, int end)
 	{
 		const int middle = begin + (end - begin) / 2;
 		return {begin, begin + (middle - begin) / 2, middle, middle + (end - middle) / 2, end};
@@ -322,35 +324,70 @@ private:
 			});
 	}
 
+	/// Sets the bounds of a node's child. @return its box.
+	Box3d setChild(const std::vector<Sample>& samples, int node, int child, const Cuts& cuts)
+	{
+		const int begin = cuts[child], end = cuts[child + 1];
+		const Box3d box = bounds(samples, begin, end);
+		nodes[node].boxes.set(child, Box3d(box.min * scale, box.max * scale), origin * scale);
+		nodes[node].slabs.set(
+			child, end - begin, [&](int i) { return samples[begin + i].point * scale; },
+			origin * scale, slack);
+		return box;
+	}
+
+	/// build() of the whole tree: its halves are sorted, then its quarters built, several at once.
+	void buildAll(std::vector<Sample>& samples, const Box3d& box, const Progress& progress)
+	{
+		constexpr int minForTeam = 1 << 12;
+		const int root = 0, count = int(samples.size());
+		if (count < minForTeam) {
+			build(samples, box, root, 0, count, progress);
+			return;
+		}
+		const Cuts cuts = quarters(0, count);
+		progress.report(0, sorting);
+		split(samples, box, 0, cuts[2], count);
+		forEachPart({0, cuts[2], count}, progress.part(0.2, 0.3), sorting,
+			[&](int begin, int end, const Progress&) {
+				split(samples, bounds(samples, begin, end), begin, begin == 0 ? cuts[1] : cuts[3],
+					end);
+			});
+		forEachPart(std::vector<int>(cuts.begin(), cuts.end()), progress.part(0.3, 1), sorting,
+			[&](int begin, int end, const Progress& part) {
+				const int child =
+					int(std::find(cuts.begin(), cuts.end(), begin) - cuts.begin());
+				build(samples, setChild(samples, root, child, cuts), 4 * root + 1 + child, begin,
+					end, part);
+			});
+	}
+
 	/// @param box of the samples from `begin` to `end`.
 	void build(std::vector<Sample>& samples, const Box3d& box, int node, int begin, int end,
 		const Progress& progress)
 	{
 		constexpr int reportFrom = 1 << 13;
 		if (isLeaf(node)) {
-			leafStart.push_back(begin);
+			leafStart[node - nodes.size()] = begin;
 			return;
 		}
-		const std::array<int, 5> cuts = quarters(begin, end);
-		const auto report = [&](int done) {
-			if (end - begin >= reportFrom)
-				progress.report(double(done) / double(samples.size()), sorting);
+		const Cuts cuts = quarters(begin, end);
+		const bool isLarge = end - begin >= reportFrom;
+		const auto ask = [&] {
+			if (isLarge)
+				progress.check();
 		};
-		report(begin);
+		ask();
 		split(samples, box, begin, cuts[2], end);
-		report(begin);
+		ask();
 		split(samples, bounds(samples, begin, cuts[2]), begin, cuts[1], cuts[2]);
-		report(begin);
+		ask();
 		split(samples, bounds(samples, cuts[2], end), cuts[2], cuts[3], end);
 		for (int k = 0; k < 4; ++k) {
-			report(cuts[k]);
-			const Box3d quarter = bounds(samples, cuts[k], cuts[k + 1]);
-			nodes[node].boxes.set(
-				k, Box3d(quarter.min * scale, quarter.max * scale), origin * scale);
-			nodes[node].slabs.set(
-				k, cuts[k + 1] - cuts[k], [&](int i) { return samples[cuts[k] + i].point * scale; },
-				origin * scale, slack);
-			build(samples, quarter, 4 * node + 1 + k, cuts[k], cuts[k + 1], progress);
+			if (isLarge)
+				progress.report(k / 4.0, sorting);
+			build(samples, setChild(samples, node, k, cuts), 4 * node + 1 + k, cuts[k],
+				cuts[k + 1], isLarge ? progress.part(k / 4.0, (k + 1) / 4.0) : progress);
 		}
 	}
 };

@@ -63,11 +63,12 @@ public:
 		detail::reportedLoop(int(triangles.size()), progress.part(0, 0.1), sorting, [&](int f) {
 			samples.push_back({(corner(f, 0) + corner(f, 1) + corner(f, 2)) / 3.0, f});
 		});
-		nodes.reserve(triangles.size());
-		ids.reserve(triangles.size());
-		detail::Ticker ticker(progress.part(0.1, 1), sorting, double(triangles.size()));
+		nodes.resize(triangles.empty() ? 0 : size_t(nodesOf(int(triangles.size()))));
 		if (!triangles.empty())
-			build(samples, 0, int(triangles.size()), ticker);
+			buildAll(samples, progress.part(0.1, 0.9));
+		ids.reserve(triangles.size());
+		detail::reportedLoop(int(triangles.size()), progress.part(0.9, 1), sorting,
+			[&](int i) { ids.push_back(samples[size_t(i)].id); });
 	}
 
 	const std::vector<Node>& allNodes() const { return nodes; }
@@ -284,41 +285,93 @@ private:
 		int id;
 	};
 
-	/// @pre ids holds those of the samples before `begin`.
-	void build(std::vector<Sample>& samples, int begin, int end, detail::Ticker& ticker)
+	/// The number of nodes of a tree of so many triangles. Complexity: O(count).
+	static int nodesOf(int count)
 	{
-		const int at = int(nodes.size());
-		nodes.push_back({Box3d(), begin, end, -1});
-		if (end - begin <= leafSize) {
-			for (int i = begin; i < end; ++i) {
-				ids.push_back(samples[size_t(i)].id);
-				nodes[size_t(at)].box.Add(boxOf(ids.back()));
-				ticker.tick();
-			}
-			return;
-		}
-		// The ticker counts leaves only, and splitting many triangles takes long.
+		return count <= leafSize ? 1 : 1 + nodesOf(count / 2) + nodesOf(count - count / 2);
+	}
+
+	/// Sorts the samples of a node into two halves. @return where the second one begins.
+	static int halve(
+		std::vector<Sample>& samples, int begin, int end, const Cancellation& cancel)
+	{
 		constexpr int many = 1 << 13;
-		if (end - begin >= many)
-			ticker.check();
+		const auto ask = [&] {
+			if (end - begin >= many)
+				cancel.check();
+		};
+		ask();
 		Box3d spread;
 		for (int i = begin; i < end; ++i)
 			spread.Add(samples[size_t(i)].middle);
-		if (end - begin >= many)
-			ticker.check();
+		ask();
 		const int axis = spread.MaxDim();
-		const int half = (begin + end) / 2;
+		const int half = begin + (end - begin) / 2;
 		std::nth_element(samples.begin() + begin, samples.begin() + half, samples.begin() + end,
 			[axis](const Sample& a, const Sample& b) {
 				const double x = a.middle[axis], y = b.middle[axis];
 				return x != y ? x < y : a.id < b.id;
 			});
-		build(samples, begin, half, ticker);
-		const int right = int(nodes.size());
-		build(samples, half, end, ticker);
-		nodes[size_t(at)].right = right;
-		nodes[size_t(at)].box = nodes[size_t(at) + 1].box;
-		nodes[size_t(at)].box.Add(nodes[size_t(right)].box);
+		return half;
+	}
+
+	/// Makes an inner node, whose subtrees exist.
+	void join(int at, int begin, int end, int right)
+	{
+		Box3d box = nodes[size_t(at) + 1].box;
+		box.Add(nodes[size_t(right)].box);
+		nodes[size_t(at)] = {box, begin, end, right};
+	}
+
+	/// build() of the whole tree: its halves are sorted, then its quarters built, several at once.
+	void buildAll(std::vector<Sample>& samples, const Progress& progress)
+	{
+		constexpr int minForTeam = 1 << 12;
+		const int root = 0, count = int(samples.size());
+		if (count < minForTeam) {
+			build(samples, root, 0, count, progress);
+			return;
+		}
+		std::array<int, 5> cuts = {0, 0, 0, 0, count};
+		progress.report(0, sorting);
+		cuts[2] = halve(samples, 0, count, progress);
+		forEachPart({0, cuts[2], count}, progress.part(0.1, 0.2), sorting,
+			[&](int begin, int end, const Progress& part) {
+				cuts[begin == 0 ? 1 : 3] = halve(samples, begin, end, part);
+			});
+		std::array<int, 4> at; // the roots of the quarters
+		at[0] = root + 2;
+		at[1] = at[0] + nodesOf(cuts[1]);
+		const int right = at[1] + nodesOf(cuts[2] - cuts[1]);
+		at[2] = right + 1;
+		at[3] = at[2] + nodesOf(cuts[3] - cuts[2]);
+		forEachPart(std::vector<int>(cuts.begin(), cuts.end()), progress.part(0.2, 1), sorting,
+			[&](int begin, int end, const Progress& part) {
+				const int quarter =
+					int(std::find(cuts.begin(), cuts.end(), begin) - cuts.begin());
+				build(samples, at[size_t(quarter)], begin, end, part);
+			});
+		join(root + 1, 0, cuts[2], at[1]);
+		join(right, cuts[2], count, at[3]);
+		join(root, 0, count, right);
+	}
+
+	/// Builds the subtree of node `at`. @return the place after its last node.
+	int build(
+		std::vector<Sample>& samples, int at, int begin, int end, const Progress& progress)
+	{
+		if (end - begin <= leafSize) {
+			Box3d box;
+			for (int i = begin; i < end; ++i)
+				box.Add(boxOf(samples[size_t(i)].id));
+			nodes[size_t(at)] = {box, begin, end, -1};
+			return at + 1;
+		}
+		const int half = halve(samples, begin, end, progress);
+		const int right = build(samples, at + 1, begin, half, progress);
+		const int after = build(samples, right, half, end, progress);
+		join(at, begin, end, right);
+		return after;
 	}
 };
 
