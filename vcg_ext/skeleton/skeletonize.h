@@ -406,7 +406,7 @@ inline bool replaceThinCurves(Skeletonization& result, const SurfaceInput& input
 	const std::vector<int> componentOfInput = connectedComponents(*input.mesh, &ofInput, begin);
 	const std::vector<int> ofCurve = componentOfNodes(result.curve, component);
 	const std::vector<int> partner =
-		resampledFrom(ofCurve, components, result.node, componentOfInput, ofInput);
+		resampledFrom(ofCurve, components, result.node, componentOfInput, ofInput, begin);
 	if (partner.empty())
 		return false;
 	const ComponentVertices vertices(component, components, begin);

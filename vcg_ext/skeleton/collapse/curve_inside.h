@@ -535,6 +535,7 @@ inline bool isCertainlyInside(const std::vector<Point3d>& place,
 	for (size_t A = 0; A < place.size(); ++A) {
 		if (parts.find(int(A)) != int(A))
 			continue;
+		progress.check();
 		int winding = 0;
 		for (const Triangle& t : triangles)
 			winding += crossingAbove(surface, t, place[A]);
@@ -595,9 +596,11 @@ inline CurveSkeleton broughtInside(CurveSkeleton skeleton, const std::vector<Poi
 	const Progress begin = progress.cancelOnly();
 	const ComponentVertices vertices(component, components, begin);
 	std::vector<std::vector<Triangle>> faces(components);
-	for (const Triangle& t : triangles)
+	detail::cancellableLoop(int(triangles.size()), begin, [&](int f) {
+		const Triangle& t = triangles[f];
 		faces[component[t[0]]].push_back(
 			{vertices.place[t[0]], vertices.place[t[1]], vertices.place[t[2]]});
+	});
 	const std::vector<int>& node = skeleton.node;
 	std::vector<std::vector<int>> nodes(components);
 	std::vector<int> number(skeleton.position.size());
@@ -619,8 +622,8 @@ inline CurveSkeleton broughtInside(CurveSkeleton skeleton, const std::vector<Poi
 	for (int c = 0; c < components; ++c) {
 		const Progress part = progress.part(double(c) / components, double(c + 1) / components);
 		std::vector<Point3d> points, given;
-		for (int s : vertices.ids[c])
-			points.push_back(surface[s]);
+		detail::cancellableLoop(int(vertices.ids[c].size()), begin,
+			[&](int i) { points.push_back(surface[vertices.ids[c][i]]); });
 		for (int A : nodes[c])
 			given.push_back(skeleton.position[A]);
 		if (detail::isCertainlyInside(
@@ -688,14 +691,17 @@ inline CurveSkeleton broughtInside(CurveSkeleton skeleton, const std::vector<Poi
  * @param ofSurface  how many components that has.
  * @param node       for each vertex of the other surface its node.
  * @param component  of that vertex; there are `components`.
+ * @throws Cancelled
  */
 inline std::vector<int> resampledFrom(const std::vector<int>& ofCurve, int ofSurface,
-	const std::vector<int>& node, const std::vector<int>& component, int components)
+	const std::vector<int>& node, const std::vector<int>& component, int components,
+	const Cancellation& cancel)
 {
 	std::vector<std::map<int, int>> votes(static_cast<size_t>(components));
-	for (size_t v = 0; v < node.size(); ++v)
+	detail::cancellableLoop(int(node.size()), cancel, [&](int v) {
 		if (node[v] >= 0)
 			++votes[size_t(component[v])][ofCurve[size_t(node[v])]];
+	});
 	std::vector<int> partner(static_cast<size_t>(ofSurface), -1);
 	for (int c = 0; c < components; ++c) {
 		const auto& count = votes[size_t(c)];
@@ -726,7 +732,8 @@ inline void bringInsideInput(CurveSkeleton& curve, const SurfaceMesh& surface,
 	const std::vector<int> component = connectedComponents(input, &components, begin);
 	const std::vector<int> ofCurve =
 		componentOfNodes(curve, connectedComponents(surface, &ofSurface, begin));
-	const std::vector<int> partner = resampledFrom(ofCurve, ofSurface, node, component, components);
+	const std::vector<int> partner =
+		resampledFrom(ofCurve, ofSurface, node, component, components, begin);
 	if (partner.empty())
 		return;
 	std::vector<int> ofNode;
@@ -738,7 +745,7 @@ inline void bringInsideInput(CurveSkeleton& curve, const SurfaceMesh& surface,
 	const size_t nodes = curve.position.size();
 	const std::vector<Point3d> before = curve.position;
 	std::vector<int> correspondence = std::exchange(curve.node, node);
-	curve = broughtInside(std::move(curve), input.position, input.triangles(), component,
+	curve = broughtInside(std::move(curve), input.position, input.triangles(begin), component,
 		components, ofNode, progress, TooFarOutside::Stay);
 	curve.node = std::move(correspondence);
 	if (curve.position == before)

@@ -183,7 +183,8 @@ public:
 	explicit NoiseMeasure(const MeasuredSurface& surface, const Progress& progress = Progress()) :
 			surface(surface), mesh(surface.mesh()),
 			rings(mesh, progress.part(0, 0.2), detail::measuringNoise),
-			normal(mesh.vertexNormals(progress.part(0.2, 0.3))), offset(mesh.position)
+			normal(mesh.vertexNormals(progress.part(0.2, 0.3))),
+			offset(detail::copiedArray(mesh.position, progress))
 	{
 		constexpr int normalRounds = 3;
 		for (int round = 0; round < normalRounds; ++round)

@@ -94,9 +94,10 @@ inline WindingVolumes windingVolumes(const std::vector<Point3d>& points,
 	const char* const what = "Measuring the volume";
 	WindingVolumes volumes;
 	Box3d box;
-	for (const Triangle& t : triangles)
-		for (int v : t)
+	detail::cancellableLoop(int(triangles.size()), progress, [&](int f) {
+		for (int v : triangles[size_t(f)])
 			box.Add(points[size_t(v)]);
+	});
 	const double dx = (box.max[0] - box.min[0]) / across, dy = (box.max[1] - box.min[1]) / across;
 	if (triangles.empty() || !(dx > 0) || !(dy > 0))
 		return volumes;

@@ -35,10 +35,12 @@ namespace vcg::tri::mcf {
  * The number of vertices of an even mesh of a surface: V = int dA / (L^2 sqrt(3) / 2), where the
  * edge length L is the smaller of the length of the component and the field.
  * @param lengthOfComponent mesh units, > 0.
- * @param field             see sizingField(); may be empty. Complexity: O(F) with a field.
+ * @param field             see sizingField(); may be empty.
+ * @throws Cancelled. Complexity: O(F) with a field.
  */
 inline double expectedVertices(const MeasuredSurface& surface,
-	const std::vector<double>& lengthOfComponent, const SizingField& field)
+	const std::vector<double>& lengthOfComponent, const SizingField& field,
+	const Cancellation& cancel = Cancellation())
 {
 	const double areaOfVertex = std::sqrt(3.0) / 2; // for edges of length 1
 	double expected = 0;
@@ -48,9 +50,9 @@ inline double expectedVertices(const MeasuredSurface& surface,
 		return expected;
 	// The vertices that the field adds.
 	const SurfaceMesh& mesh = surface.mesh();
-	for (int f = 0; f < mesh.faceSlots(); ++f) {
+	detail::cancellableLoop(mesh.faceSlots(), cancel, [&](int f) {
 		if (!mesh.isFace(f))
-			continue;
+			return;
 		const Triangle t = mesh.triangle(f);
 		const double length = lengthOfComponent[surface.component()[t[0]]];
 		double added = 0; // the mean over the corners
@@ -58,7 +60,7 @@ inline double expectedVertices(const MeasuredSurface& surface,
 			if (field[v] < length)
 				added += (1 / (field[v] * field[v]) - 1 / (length * length)) / 3;
 		expected += mesh.doubleAreaVector(f).Norm() / 2 * added / areaOfVertex;
-	}
+	});
 	return expected;
 }
 
@@ -75,7 +77,8 @@ inline SurfaceMesh resampleAll(const MeasuredSurface& surface,
 	std::vector<double> targetLength;
 	for (int c = 0; c < components; ++c)
 		targetLength.push_back(surface.frame(c).lengthOnGrid(targetLengthOfComponent[c]));
-	const double expected = expectedVertices(surface, targetLengthOfComponent, field);
+	const double expected =
+		expectedVertices(surface, targetLengthOfComponent, field, progress);
 	if (!(expected <= maxVertices))
 		throw InvalidParameter("Parameter target_length is too small: the surface would need "
 			+ detail::countText(expected / 1e6) + " million vertices.");

@@ -14,6 +14,7 @@
 #include <skeleton/core/notes.h>
 #include <skeleton/core/parameters.h>
 #include <skeleton/core/progress.h>
+#include <skeleton/core/ticker.h>
 #include <skeleton/input/denoise.h>
 #include <skeleton/mesh/measured_surface.h>
 #include <skeleton/mesh/surface_mesh.h>
@@ -116,9 +117,10 @@ inline VertexBudget budgetWithSamples(const SurfaceMesh& mesh, const SurfaceMesh
 inline std::optional<SurfaceMesh> sampledWhereResolvable(const MeasuredSurface& surface,
 	std::vector<double> thickness, const Parameters& parameters, const Progress& progress)
 {
-	for (size_t v = 0; v < thickness.size(); ++v)
-		if (!isResolvable(surface, parameters.relativeLength * thickness[v], int(v)))
+	detail::cancellableLoop(int(thickness.size()), progress, [&](int v) {
+		if (!isResolvable(surface, parameters.relativeLength * thickness[v], v))
 			thickness[v] = std::numeric_limits<double>::infinity();
+	});
 	std::vector<double> thick = surface.diagonals();
 	for (double& diagonal : thick)
 		diagonal *= neutralLength / parameters.relativeLength;
@@ -128,16 +130,17 @@ inline std::optional<SurfaceMesh> sampledWhereResolvable(const MeasuredSurface& 
 /**
  * The part of the thin regions that a raised sizing field still resolves, see isResolvable() and
  * VertexBudget::longest. Thin is where `field` is finite; regions count by their length,
- * area / field. Complexity: O(F).
+ * area / field.
+ * @throws Cancelled. Complexity: O(F).
  */
 inline double resolvedPart(const MeasuredSurface& surface, const SizingField& field,
-	const SizingField& raised, double relativeLength, double longest)
+	const SizingField& raised, double relativeLength, double longest, const Cancellation& cancel)
 {
 	const SurfaceMesh& mesh = surface.mesh();
 	double resolved = 0, all = 0;
-	for (int f = 0; f < mesh.faceSlots(); ++f) {
+	detail::cancellableLoop(mesh.faceSlots(), cancel, [&](int f) {
 		if (!mesh.isFace(f))
-			continue;
+			return;
 		const double area = mesh.doubleAreaVector(f).Norm();
 		for (int v : mesh.triangle(f)) {
 			if (!std::isfinite(field[v]))
@@ -148,7 +151,7 @@ inline double resolvedPart(const MeasuredSurface& surface, const SizingField& fi
 				&& isResolvable(surface, field[v], v))
 				resolved += length;
 		}
-	}
+	});
 	return all > 0 ? resolved / all : 1;
 }
 
@@ -169,7 +172,7 @@ inline std::optional<SizingField> fieldOfResampling(const MeasuredSurface& surfa
 	const VertexBudget& budget, const Progress& progress = Progress(),
 	const NoteCallback& onNote = {})
 {
-	const double anyway = expectedVertices(surface, length, SizingField());
+	const double anyway = expectedVertices(surface, length, SizingField(), progress);
 	if (anyway > budget.vertices)
 		return std::nullopt;
 	MeasuredThickness found;
@@ -187,12 +190,13 @@ inline std::optional<SizingField> fieldOfResampling(const MeasuredSurface& surfa
 	SizingField field = gradedField(surface, *places, length, progress.part(0.95, 1));
 	if (field.empty())
 		return field;
-	double expected = expectedVertices(surface, length, field);
+	double expected = expectedVertices(surface, length, field, progress);
 	const double maximum = std::min(std::max(maxVertices, 1.01 * anyway), budget.vertices);
 	constexpr double minResolved = 0.5, longest = 1; // of what is thin; local thicknesses
 	const SizingField wanted = field;
 	const auto isResolved = [&] {
-		return resolvedPart(surface, wanted, field, parameters.relativeLength, budget.longest)
+		return resolvedPart(
+				   surface, wanted, field, parameters.relativeLength, budget.longest, progress)
 			>= minResolved;
 	};
 	constexpr const char* everywhere =
@@ -217,8 +221,7 @@ inline std::optional<SizingField> fieldOfResampling(const MeasuredSurface& surfa
 			coarsenToCost(field, std::max(1.0, longest / parameters.relativeLength),
 				*std::max_element(length.begin(), length.end()), maximum,
 				[&](const SizingField& raised) {
-					progress.check();
-					return expectedVertices(surface, length, raised);
+					return expectedVertices(surface, length, raised, progress);
 				});
 		if (!isResolved()) {
 			tell(tooMany + everywhere);
@@ -234,7 +237,7 @@ inline std::optional<SizingField> fieldOfResampling(const MeasuredSurface& surfa
 				" mesh units (", 100 * thinnest / diagonal,
 				" % of the diagonal) is resolved less, and may be left out or simplified."));
 		}
-		expected = expectedVertices(surface, length, field);
+		expected = expectedVertices(surface, length, field, progress);
 	}
 	tell(detail::sentence(3, "Parts of the shape are thin: edges are down to ",
 		*std::min_element(field.begin(), field.end()), " mesh units long there, about ",

@@ -192,8 +192,8 @@ bool isCoveredByBalls(const Point3d& a, double radiusA, const Point3d& b, double
 /// What balls around the nodes of a curve cover of it.
 struct CoveredCurve
 {
-	std::vector<double> radius;   ///< of the ball around each node
-	std::vector<char> isCovered;  ///< of each edge: see isCoveredByBalls()
+	std::vector<double> radius;  ///< of the ball around each node
+	std::vector<char> isCovered; ///< of each edge: see isCoveredByBalls()
 };
 
 /// @param radiusAt, halvings  see isCoveredByBalls(); called on several threads.
@@ -203,8 +203,7 @@ CoveredCurve coveredCurve(const std::vector<Point3d>& node,
 	const std::vector<std::array<int, 2>>& edges, const RadiusAt& radiusAt, int halvings,
 	const Progress& progress, const char* what)
 {
-	CoveredCurve covered = {
-		std::vector<double>(node.size()), std::vector<char>(edges.size())};
+	CoveredCurve covered = {std::vector<double>(node.size()), std::vector<char>(edges.size())};
 	forEachBlock(int(node.size()), progress.part(0, 0.5), what, [&](int begin, int end) {
 		for (int v = begin; v < end; ++v)
 			covered.radius[v] = radiusAt(node[v]);

@@ -90,8 +90,8 @@ public:
 	 * Visits every point of the ball, and some outside it, each once.
 	 *
 	 * Ball: `Point3d centre()`, `double reach()`, its radius, and
-	 * `void visit(int slot, const Point3d&)`, which may replace the ball by one inside it or,
-	 * unless nearestFirst is set, by another one: points outside either are then left out.
+	 * `void visit(int slot, const Point3d&)`, which may shrink the ball or, unless nearestFirst is
+	 * set, replace it by one with another centre: points outside either are then left out.
 	 * `order()[slot]` is the point's id.
 	 * @tparam nearestFirst  visits the boxes nearest to the centre first: it pays where the ball is
 	 *                       much too large to begin with.
@@ -355,8 +355,7 @@ private:
 			});
 		forEachPart(std::vector<int>(cuts.begin(), cuts.end()), progress.part(0.3, 1), sorting,
 			[&](int begin, int end, const Progress& part) {
-				const int child =
-					int(std::find(cuts.begin(), cuts.end(), begin) - cuts.begin());
+				const int child = int(std::find(cuts.begin(), cuts.end(), begin) - cuts.begin());
 				build(samples, setChild(samples, root, child, cuts), 4 * root + 1 + child, begin,
 					end, part);
 			});
@@ -386,8 +385,8 @@ private:
 		for (int k = 0; k < 4; ++k) {
 			if (isLarge)
 				progress.report(k / 4.0, sorting);
-			build(samples, setChild(samples, node, k, cuts), 4 * node + 1 + k, cuts[k],
-				cuts[k + 1], isLarge ? progress.part(k / 4.0, (k + 1) / 4.0) : progress);
+			build(samples, setChild(samples, node, k, cuts), 4 * node + 1 + k, cuts[k], cuts[k + 1],
+				isLarge ? progress.part(k / 4.0, (k + 1) / 4.0) : progress);
 		}
 	}
 };

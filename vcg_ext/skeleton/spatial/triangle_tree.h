@@ -292,8 +292,7 @@ private:
 	}
 
 	/// Sorts the samples of a node into two halves. @return where the second one begins.
-	static int halve(
-		std::vector<Sample>& samples, int begin, int end, const Cancellation& cancel)
+	static int halve(std::vector<Sample>& samples, int begin, int end, const Cancellation& cancel)
 	{
 		constexpr int many = 1 << 13;
 		const auto ask = [&] {
@@ -347,8 +346,7 @@ private:
 		at[3] = at[2] + nodesOf(cuts[3] - cuts[2]);
 		forEachPart(std::vector<int>(cuts.begin(), cuts.end()), progress.part(0.2, 1), sorting,
 			[&](int begin, int end, const Progress& part) {
-				const int quarter =
-					int(std::find(cuts.begin(), cuts.end(), begin) - cuts.begin());
+				const int quarter = int(std::find(cuts.begin(), cuts.end(), begin) - cuts.begin());
 				build(samples, at[size_t(quarter)], begin, end, part);
 			});
 		join(root + 1, 0, cuts[2], at[1]);
@@ -357,8 +355,7 @@ private:
 	}
 
 	/// Builds the subtree of node `at`. @return the place after its last node.
-	int build(
-		std::vector<Sample>& samples, int at, int begin, int end, const Progress& progress)
+	int build(std::vector<Sample>& samples, int at, int begin, int end, const Progress& progress)
 	{
 		if (end - begin <= leafSize) {
 			Box3d box;
