@@ -117,6 +117,26 @@ TEST(SizingField, IsThatOfAComponentAlone)
 	}
 }
 
+TEST(SizingField, PlacesBelowASmallerBoundAreThoseFoundWithIt)
+{
+	const SurfaceMesh mesh = bottle().mesh();
+	const MeasuredSurface surface(mesh);
+	const PoleSet poles = medialPoles(mesh, PoleMethod::Balls);
+	const auto placesBelow = [&](double bound) {
+		return thinPlaces(surface, poles, relative, smallLengths(surface, {bound}));
+	};
+	const ThinPlaces all = placesBelow(std::numeric_limits<double>::infinity());
+	ASSERT_FALSE(all.seeds.empty());
+	const double inTube = relative * thinRadius;
+	for (double bound : {2 * inTube, 0.5 * inTube}) {
+		const ThinPlaces few =
+			thinPlacesBelow(all, smallLengths(surface, {bound}), surface.component(), relative);
+		EXPECT_EQ(few.below, placesBelow(bound).below);
+		EXPECT_EQ(few.seeds, placesBelow(bound).seeds);
+		EXPECT_EQ(few.seeds.empty(), bound < inTube);
+	}
+}
+
 TEST(SizingField, AShapeOfOneScaleHasNone)
 {
 	const SurfaceMesh torus = shapes::torus(1, 0.3, 90, 30).mesh();

@@ -66,18 +66,19 @@ struct FlowSurface
 };
 
 /// About the number of pieces into which the flow would cut the edges that are longer than
-/// epsilonOfField of the field. Complexity: O(E).
-inline double cutsByField(const SurfaceMesh& mesh, const SizingField& field)
+/// epsilonOfField of the field. @throws Cancelled. Complexity: O(E).
+inline double cutsByField(
+	const SurfaceMesh& mesh, const SizingField& field, const Cancellation& cancel)
 {
 	double cuts = 0;
-	for (int h = 0; h < mesh.halfEdgeSlots(); ++h) {
+	detail::cancellableLoop(mesh.halfEdgeSlots(), cancel, [&](int h) {
 		if (!mesh.isEdge(h))
-			continue;
+			return;
 		const double length =
 			epsilonOfField * std::min(field[mesh.origin(h)], field[mesh.target(h)]);
 		if (const double squared = mesh.squaredLength(h); squared > length * length)
 			cuts += std::sqrt(squared) / length;
-	}
+	});
 	return cuts;
 }
 
@@ -113,16 +114,16 @@ inline std::vector<double> epsilonLimits(const MeasuredSurface& surface, const P
 	constexpr double cutsOfVertex = 30;
 	const double maximum = cutsOfVertex * surface.mesh().vertexCount();
 	const auto cuts = [&](const SizingField& raised) {
-		progress.check();
-		return cutsByField(surface.mesh(), raised);
+		return cutsByField(surface.mesh(), raised, progress);
 	};
 	if (!field.empty() && cuts(field) > maximum)
 		raiseToCost(field, *std::max_element(bound.begin(), bound.end()), maximum, cuts);
 	limits.reserve(field.size());
-	for (size_t v = 0; v < field.size(); ++v)
+	detail::cancellableLoop(int(field.size()), progress, [&](int v) {
 		limits.push_back(
 			std::clamp(epsilonOfField * field[v] / surface.diagonal(surface.component()[v]),
 				Stage::minEpsilonLimit, Parameters::maxEpsilon));
+	});
 	return limits;
 }
 

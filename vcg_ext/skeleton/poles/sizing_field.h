@@ -63,7 +63,7 @@ inline SizingField gradedField(const MeasuredSurface& surface, const ThinPlaces&
 		std::greater<Entry>(), places.seeds);
 	size_t count = 0;
 	while (!queue.empty()) {
-		if (++count % 65536 == 0)
+		if (++count % 16384 == 0)
 			progress.report(0.5, detail::sizing);
 		const double length = queue.top().first;
 		const int v = queue.top().second;

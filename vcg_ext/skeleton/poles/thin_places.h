@@ -240,8 +240,8 @@ public:
 			if (!isWanted[c])
 				continue;
 			std::vector<Point3d> points;
-			for (int v : vertices.ids[c])
-				points.push_back(frame.in(mesh.position[v]));
+			cancellableLoop(int(vertices.ids[c].size()), progress,
+				[&](int i) { points.push_back(frame.in(mesh.position[vertices.ids[c][i]])); });
 			tree[c].emplace(points, progress.cancelOnly());
 		}
 	}
@@ -302,6 +302,40 @@ struct ThinPlaces
 	/// diagonal.
 	std::vector<std::pair<double, int>> seeds;
 };
+
+namespace detail {
+
+/// Leaves out the seeds of components that are nowhere thinner than their edges would be anyway.
+inline void forgetUnlessThinner(
+	ThinPlaces& places, const std::vector<int>& component, double relativeLength)
+{
+	std::vector<double> minimum(places.below.size(), std::numeric_limits<double>::infinity());
+	for (const auto& [length, v] : places.seeds)
+		minimum[component[v]] = std::min(minimum[component[v]], length);
+	const auto isNone = [&](const std::pair<double, int>& seed) {
+		const int c = component[seed.second];
+		return minimum[c] >= relativeLength * places.below[c];
+	};
+	places.seeds.erase(
+		std::remove_if(places.seeds.begin(), places.seeds.end(), isNone), places.seeds.end());
+}
+
+} // namespace detail
+
+/// Those of the thin places where lengths below `below` count as small.
+/// @param below of each component, nowhere above places.below. Complexity: O(seeds).
+inline ThinPlaces thinPlacesBelow(ThinPlaces places, std::vector<double> below,
+	const std::vector<int>& component, double relativeLength)
+{
+	places.below = std::move(below);
+	const auto isNone = [&](const std::pair<double, int>& seed) {
+		return !(seed.first < places.below[component[seed.second]]);
+	};
+	places.seeds.erase(
+		std::remove_if(places.seeds.begin(), places.seeds.end(), isNone), places.seeds.end());
+	detail::forgetUnlessThinner(places, component, relativeLength);
+	return places;
+}
 
 /// The lengths that count as small, see ThinPlaces::below: the smaller of `bound` and neutralLength
 /// times the diagonal. @param bound  of each component, mesh units.
@@ -376,7 +410,6 @@ inline ThinPlaces thinPlaces(const MeasuredSurface& surface, const PoleSet& pole
 	const Progress last = progress.part(0.9, 1);
 	const detail::OppositeSides opposite(mesh, poles, component, hasSeeds, last);
 	std::vector<int> across(size_t(mesh.vertexSlots()), -1); // of seeds
-	std::vector<double> minimum(thin.size(), std::numeric_limits<double>::infinity());
 	const auto forget = [&](const auto& isNone) {
 		seeds.erase(std::remove_if(seeds.begin(), seeds.end(), isNone), seeds.end());
 	};
@@ -389,12 +422,7 @@ inline ThinPlaces thinPlaces(const MeasuredSurface& surface, const PoleSet& pole
 	const std::vector<double> backToBack =
 		detail::partBackToBack(seeds, across, opposite, component, surface.components());
 	forget([&](const Seed& seed) { return backToBack[component[seed.second]] < minBackToBack; });
-	for (const auto& [length, v] : seeds)
-		minimum[component[v]] = std::min(minimum[component[v]], length);
-	forget([&](const Seed& seed) {
-		const int c = component[seed.second];
-		return minimum[c] >= relativeLength * thin[c];
-	});
+	detail::forgetUnlessThinner(places, component, relativeLength);
 	if (seeds.empty())
 		return places;
 	for (double& r : radius)

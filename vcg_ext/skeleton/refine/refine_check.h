@@ -139,7 +139,7 @@ public:
 		const std::vector<Point3d> firsts = firstNodes(curve);
 		return std::all_of(firsts.begin(), firsts.end(), [&](const Point3d& p) {
 			progress.report(1, what);
-			return windingNumber(p) > 0 || closest.exactClearance(p, progress) > 0;
+			return windingNumber(p, progress) > 0 || closest.exactClearance(p, progress) > 0;
 		});
 	}
 
@@ -205,17 +205,19 @@ private:
 	}
 
 	template <class Visitor>
-	void forEachTriangle(Visitor&& visit) const
+	void forEachTriangle(const Cancellation& cancel, Visitor&& visit) const
 	{
-		for (int v : component.vertices)
-			component.mesh.forEachOwnFace(v, [&](int f) { visit(component.mesh.triangle(f)); });
+		detail::cancellableLoop(int(component.vertices.size()), cancel, [&](int i) {
+			component.mesh.forEachOwnFace(
+				component.vertices[size_t(i)], [&](int f) { visit(component.mesh.triangle(f)); });
+		});
 	}
 
 	/// How many times the surface goes around a point.
-	int windingNumber(const Point3d& p) const
+	int windingNumber(const Point3d& p, const Cancellation& cancel) const
 	{
 		int winding = 0;
-		forEachTriangle([&](const Triangle& t) {
+		forEachTriangle(cancel, [&](const Triangle& t) {
 			winding += detail::crossingAbove(component.mesh.position, t, p);
 		});
 		return winding;
@@ -229,7 +231,7 @@ private:
 			1e-6; // parts of the segment; shorter ones are where triangles meet
 		const Point3d segment = b - a;
 		std::vector<double> ends = {0, 1};
-		forEachTriangle([&](const Triangle& t) {
+		forEachTriangle(progress, [&](const Triangle& t) {
 			const Point3d& u = component.mesh.position[t[0]];
 			const Point3d e1 = component.mesh.position[t[1]] - u;
 			const Point3d e2 = component.mesh.position[t[2]] - u, across = segment ^ e2;
@@ -246,7 +248,7 @@ private:
 		for (size_t i = 1; i < ends.size(); ++i) {
 			progress.report(0, what);
 			if (ends[i] - ends[i - 1] > shortest
-				&& windingNumber(a + segment * ((ends[i - 1] + ends[i]) / 2)) <= 0)
+				&& windingNumber(a + segment * ((ends[i - 1] + ends[i]) / 2), progress) <= 0)
 				return false;
 		}
 		return true;

@@ -77,8 +77,7 @@ inline SurfaceMesh resampleAll(const MeasuredSurface& surface,
 	std::vector<double> targetLength;
 	for (int c = 0; c < components; ++c)
 		targetLength.push_back(surface.frame(c).lengthOnGrid(targetLengthOfComponent[c]));
-	const double expected =
-		expectedVertices(surface, targetLengthOfComponent, field, progress);
+	const double expected = expectedVertices(surface, targetLengthOfComponent, field, progress);
 	if (!(expected <= maxVertices))
 		throw InvalidParameter("Parameter target_length is too small: the surface would need "
 			+ detail::countText(expected / 1e6) + " million vertices.");

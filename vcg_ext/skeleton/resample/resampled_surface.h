@@ -42,28 +42,19 @@ struct ResampledSurface
 	bool isTooThin = false;
 };
 
-/// The poles of a surface, and where it is thin.
-struct MeasuredThickness
+/// thinPlaces() by the poles of all vertices. @param bound  see smallLengths().
+/// @throws Cancelled. Complexity: as medialPoles().
+inline ThinPlaces measuredThinPlaces(const MeasuredSurface& surface, const Parameters& parameters,
+	const std::vector<double>& bound, const Progress& progress = Progress())
 {
-	PoleSet poles;
-	ThinPlaces places;
-};
-
-/// @param bound  see smallLengths(). @throws Cancelled. Complexity: as medialPoles().
-inline MeasuredThickness measuredThickness(const MeasuredSurface& surface,
-	const Parameters& parameters, const std::vector<double>& bound,
-	const Progress& progress = Progress())
-{
-	MeasuredThickness measured;
-	measured.poles = medialPoles(surface, PoleMethod::Balls, progress.part(0, 0.7));
-	measured.places = thinPlaces(surface, measured.poles, parameters.relativeLength,
-		smallLengths(surface, bound), progress.part(0.7, 1));
-	return measured;
+	const PoleSet poles = medialPoles(surface, PoleMethod::Balls, progress.part(0, 0.7));
+	return thinPlaces(surface, poles, parameters.relativeLength, smallLengths(surface, bound),
+		progress.part(0.7, 1));
 }
 
 /// The local thickness at each vertex of a surface, mesh units; infinite where gradedField() is not
 /// below neutralLength of the diagonal, and empty if that is so everywhere.
-/// @param places see MeasuredThickness. @throws Cancelled. Complexity: as gradedField().
+/// @param places see measuredThinPlaces(). @throws Cancelled. Complexity: as gradedField().
 inline std::vector<double> localThickness(const MeasuredSurface& surface, const ThinPlaces& places,
 	const Parameters& parameters, const Progress& progress = Progress())
 {
@@ -168,26 +159,18 @@ inline double resolvedPart(const MeasuredSurface& surface, const SizingField& fi
  * @throws Cancelled. Complexity: as medialPoles().
  */
 inline std::optional<SizingField> fieldOfResampling(const MeasuredSurface& surface,
-	const std::vector<double>& length, const Parameters& parameters, const MeasuredThickness* known,
+	const std::vector<double>& length, const Parameters& parameters, const ThinPlaces* known,
 	const VertexBudget& budget, const Progress& progress = Progress(),
 	const NoteCallback& onNote = {})
 {
 	const double anyway = expectedVertices(surface, length, SizingField(), progress);
 	if (anyway > budget.vertices)
 		return std::nullopt;
-	MeasuredThickness found;
-	if (!known) {
-		found = measuredThickness(surface, parameters, length, progress.part(0, 0.9));
-		known = &found;
-	}
-	ThinPlaces smaller; // where `length` is below what counts as small in `known`
-	const ThinPlaces* places = &known->places;
-	if (std::vector<double> below = smallLengths(surface, length); below != places->below) {
-		smaller = thinPlaces(surface, known->poles, parameters.relativeLength, std::move(below),
-			progress.part(0.9, 0.95));
-		places = &smaller;
-	}
-	SizingField field = gradedField(surface, *places, length, progress.part(0.95, 1));
+	const ThinPlaces places = known
+		? thinPlacesBelow(
+			*known, smallLengths(surface, length), surface.component(), parameters.relativeLength)
+		: measuredThinPlaces(surface, parameters, length, progress.part(0, 0.95));
+	SizingField field = gradedField(surface, places, length, progress.part(0.95, 1));
 	if (field.empty())
 		return field;
 	double expected = expectedVertices(surface, length, field, progress);
@@ -276,20 +259,20 @@ inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Paramete
 	const MeasuredSurface surface(mesh, progress.part(0, 0.05));
 	const Parameters parameters = sharedAmong(given, surface.diagonals());
 	ResampledSurface result;
-	MeasuredThickness measured;
+	ThinPlaces places;
 	std::vector<double> thickness;
 	if (parameters.adaptive) {
 		const std::vector<double> any(
 			size_t(surface.components()), std::numeric_limits<double>::infinity());
-		measured = measuredThickness(surface, parameters, any, progress.part(0.05, 0.19));
-		thickness = localThickness(surface, measured.places, parameters, progress.part(0.19, 0.2));
+		places = measuredThinPlaces(surface, parameters, any, progress.part(0.05, 0.19));
+		thickness = localThickness(surface, places, parameters, progress.part(0.19, 0.2));
 	}
 	result.noise = measureNoise(surface, progress.part(0.2, 0.25), thickness);
 	const bool smooth = parameters.denoise && result.noise.isNoisy();
 	tellNoise(result.noise, smooth, onNote);
-	const auto resampled = [&](const MeasuredSurface& calm, const MeasuredThickness* own) {
+	const auto resampled = [&](const MeasuredSurface& calm, const ThinPlaces* own) {
 		const double from = smooth ? 0.35 : 0.25;
-		const std::vector<double> length = defaultTargetLength(calm, parameters);
+		const std::vector<double> length = defaultTargetLength(calm, parameters, progress);
 		const bool isAdaptive = parameters.adaptive && parameters.resampleIterations > 0;
 		if (isAdaptive && own && !thickness.empty()) {
 			if (const std::optional<SurfaceMesh> sampled =
@@ -323,7 +306,7 @@ inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Paramete
 						  progress.part(0.3, 0.35)},
 				nullptr);
 	else
-		result.mesh = resampled(surface, parameters.adaptive ? &measured : nullptr);
+		result.mesh = resampled(surface, parameters.adaptive ? &places : nullptr);
 	if (onNote)
 		onNote(detail::sentence(6, "Resampled to ", result.mesh.vertexCount(),
 			" vertices, mean edge length ", meanEdgeLength(result.mesh), " mesh units",

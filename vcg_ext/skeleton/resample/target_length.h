@@ -22,20 +22,20 @@ namespace vcg::tri::mcf {
 /**
  * About how many cuts bring all edges of each component down to L: the vertices that resample() may
  * make for a while where triangles are narrower than L, which their area does not show.
- * @param length L of each component, mesh units, > 0. Complexity: O(F).
+ * @param length L of each component, mesh units, > 0. @throws Cancelled. Complexity: O(F).
  */
-inline std::vector<double> cutsOfLongEdges(
-	const MeasuredSurface& surface, const std::vector<double>& length)
+inline std::vector<double> cutsOfLongEdges(const MeasuredSurface& surface,
+	const std::vector<double>& length, const Cancellation& cancel = Cancellation())
 {
 	const SurfaceMesh& mesh = surface.mesh();
 	std::vector<double> cuts(length.size(), 0);
-	for (int h = 0; h < mesh.halfEdgeSlots(); ++h) {
+	detail::cancellableLoop(mesh.halfEdgeSlots(), cancel, [&](int h) {
 		if (!mesh.isEdge(h))
-			continue;
+			return;
 		const size_t c = size_t(surface.component()[mesh.origin(h)]);
 		if (const double squared = mesh.squaredLength(h); squared > length[c] * length[c])
 			cuts[c] += std::sqrt(squared) / length[c];
-	}
+	});
 	return cuts;
 }
 
@@ -54,10 +54,10 @@ inline std::vector<double> cutsOfLongEdges(
  * @param parameters targetLength > 0 is taken instead, as a fraction of the diagonal of each
  *                   component's axis-aligned bounding box.
  * @return one length for each component, in the order of connectedComponents().
- * Complexity: O(V + F).
+ * @throws Cancelled. Complexity: O(V + F).
  */
-inline std::vector<double> defaultTargetLength(
-	const MeasuredSurface& surface, const Parameters& parameters = Parameters())
+inline std::vector<double> defaultTargetLength(const MeasuredSurface& surface,
+	const Parameters& parameters = Parameters(), const Cancellation& cancel = Cancellation())
 {
 	constexpr double totalVertices = 45000, fewestVertices = 3000, maxVertices = 200000;
 	constexpr double maxCuts = 2e6;
@@ -67,9 +67,10 @@ inline std::vector<double> defaultTargetLength(
 	std::vector<double> length(count);
 	if (parameters.targetLength > 0) {
 		std::vector<Box3d> box(count);
-		for (int v = 0; v < surface.mesh().vertexSlots(); ++v)
+		detail::cancellableLoop(surface.mesh().vertexSlots(), cancel, [&](int v) {
 			if (surface.mesh().isVertex(v))
 				box[surface.component()[v]].Add(surface.mesh().position[v]);
+		});
 		for (int c = 0; c < count; ++c)
 			length[c] = parameters.targetLength * box[c].Diag();
 		return length;
@@ -82,7 +83,7 @@ inline std::vector<double> defaultTargetLength(
 		length[c] = std::clamp(std::sqrt(surface.area(c) / (areaOfVertex * vertices)),
 			shortestOfEpsilon * epsilon, 8 * epsilon);
 	}
-	const std::vector<double> cuts = cutsOfLongEdges(surface, length);
+	const std::vector<double> cuts = cutsOfLongEdges(surface, length, cancel);
 	// The components with the most cuts share what the others leave.
 	std::vector<double> ascending = cuts;
 	std::sort(ascending.begin(), ascending.end());
