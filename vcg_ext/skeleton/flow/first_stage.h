@@ -109,15 +109,17 @@ inline std::vector<double> epsilonLimits(const MeasuredSurface& surface, const P
 	std::vector<double> limits;
 	if (!parameters.adaptive)
 		return limits;
-	auto [bound, field] = boundedField(surface, poles, parameters.relativeLength,
+	BoundedField bounded = boundedField(surface, poles, parameters.relativeLength,
 		boundOfEpsilon(surface, parameters), known, progress);
+	SizingField& field = bounded.length;
 	constexpr double cutsOfVertex = 30;
 	const double maximum = cutsOfVertex * surface.mesh().vertexCount();
 	const auto cuts = [&](const SizingField& raised) {
 		return cutsByField(surface.mesh(), raised, progress);
 	};
 	if (!field.empty() && cuts(field) > maximum)
-		raiseToCost(field, *std::max_element(bound.begin(), bound.end()), maximum, cuts);
+		raiseToCost(
+			field, *std::max_element(bounded.bound.begin(), bounded.bound.end()), maximum, cuts);
 	limits.reserve(field.size());
 	detail::cancellableLoop(int(field.size()), progress, [&](int v) {
 		limits.push_back(
