@@ -196,6 +196,7 @@ struct CoveredCurve
 	std::vector<char> isCovered; ///< of each edge: see isCoveredByBalls()
 };
 
+/// Balls around the nodes of a curve, and which of its edges they cover; several at once.
 /// @param radiusAt, halvings  see isCoveredByBalls(); called on several threads.
 /// @throws Cancelled. Complexity: O(N + E) calls of radiusAt.
 template <class RadiusAt>
