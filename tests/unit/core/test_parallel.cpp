@@ -118,6 +118,34 @@ TEST(ForEachPart, ThrowsWhatAPartThrows)
 	}
 }
 
+TEST(ForEachQuarter, HasEachQuarterOnceOnAnyNumberOfThreads)
+{
+	for (int threads : {1, 2, 5}) {
+		const ThreadCount limit(threads);
+		for (int count : {4, 7, 9001}) {
+			const auto divide = [](int begin, int end, const Progress&) {
+				return begin + (end - begin) / 2;
+			};
+			const Quarters cuts = quarteredRange(count, Progress(), "", divide);
+			EXPECT_EQ(cuts[0], 0);
+			EXPECT_EQ(cuts[1], divide(0, cuts[2], Progress()));
+			EXPECT_EQ(cuts[2], divide(0, count, Progress()));
+			EXPECT_EQ(cuts[3], divide(cuts[2], count, Progress()));
+			EXPECT_EQ(cuts[4], count);
+			std::mutex mutex;
+			std::set<int> seen;
+			forEachQuarter(
+				cuts, Progress(), "", [&](int quarter, int begin, int end, const Progress&) {
+					const std::lock_guard<std::mutex> lock(mutex);
+					EXPECT_EQ(begin, cuts[size_t(quarter)]);
+					EXPECT_EQ(end, cuts[size_t(quarter) + 1]);
+					EXPECT_TRUE(seen.insert(quarter).second);
+				});
+			EXPECT_EQ(seen.size(), 4u);
+		}
+	}
+}
+
 TEST(ForEachBlock, ThrowsWhatABlockThrowsAndIsUsableAgain)
 {
 	for (int threads : {1, 3}) {

@@ -345,7 +345,7 @@ TEST(SizingField, AMeshBeyondTheBudgetResolvesWhatItCanAndSaysWhatItDoesNot)
 	std::string said;
 	const auto fieldOfNeck = [&](const SurfaceMesh& mesh) {
 		said.clear();
-		return fieldOfResampling(MeasuredSurface(mesh), length, Parameters(), nullptr,
+		return fieldOfResampling(MeasuredSurface(mesh), length, Parameters(), std::nullopt,
 			budgetOf(mesh), Progress(), [&](const std::string& text) { said += text + "\n"; });
 	};
 	constexpr int sides = 5; // few vertices, and thirty edges for each

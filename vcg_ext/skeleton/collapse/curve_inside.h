@@ -526,7 +526,7 @@ inline bool isCertainlyInside(const std::vector<Point3d>& place,
 		progress.check();
 		const Point3d &a = place[A], &b = place[B];
 		if (isCoveredByBalls(a, radius[A], b, radius[B], cheaply, cheapHalvings))
-			continue; // by what has been found more exactly for another edge
+			continue; // an exact radius, found for another edge, is enough
 		for (int end : {A, B})
 			radius[end] = exactly(place[end]);
 		if (!isCoveredByBalls(a, radius[A], b, radius[B], exactly, halvings))

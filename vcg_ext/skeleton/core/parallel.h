@@ -10,6 +10,7 @@
 #include "progress.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -211,6 +212,36 @@ void forEachPart(
 			}
 	if (cancelled)
 		std::rethrow_exception(cancelled);
+}
+
+/// Where four parts of a range begin, and the last one ends.
+using Quarters = std::array<int, 5>;
+
+/// Divides [0, count) in half, then both halves at once.
+/// @param divide int(begin, end, Progress): where the second half of [begin, end) begins.
+/// @pre count >= 4. @throws what divide throws; Cancelled.
+template <class Divide>
+Quarters quarteredRange(int count, const Progress& progress, const char* what, const Divide& divide)
+{
+	progress.report(0, what);
+	Quarters cuts = {0, 0, divide(0, count, progress), 0, count};
+	forEachPart({0, cuts[2], count}, progress.part(0.5, 1), what,
+		[&](int begin, int end, const Progress& part) {
+			cuts[begin == 0 ? 1 : 3] = divide(begin, end, part);
+		});
+	return cuts;
+}
+
+/// Calls body(quarter, begin, end, progress) for each quarter, several at once: see forEachPart().
+template <class Body>
+void forEachQuarter(
+	const Quarters& cuts, const Progress& progress, const char* what, const Body& body)
+{
+	forEachPart(std::vector<int>(cuts.begin(), cuts.end()), progress, what,
+		[&](int begin, int end, const Progress& part) {
+			const int quarter = int(std::find(cuts.begin(), cuts.end(), begin) - cuts.begin());
+			body(quarter, begin, end, part);
+		});
 }
 
 /// Parts of [0, count) for forEachPart(), one for each thread; a single one if count < minForTeam.

@@ -298,42 +298,46 @@ struct ThinPlaces
 	std::vector<double> below;
 	/// Of each vertex where the length may be small, else infinite; empty if there are no seeds.
 	std::vector<double> length;
+	using Seed = std::pair<double, int>;
 	/// Length and vertex where the shape is thin; lengths are at least shortestLength times the
 	/// diagonal.
-	std::vector<std::pair<double, int>> seeds;
+	std::vector<Seed> seeds;
+
+	/// Removes the seeds for which isNone(seed).
+	template <class IsNone>
+	void removeSeeds(const IsNone& isNone)
+	{
+		seeds.erase(std::remove_if(seeds.begin(), seeds.end(), isNone), seeds.end());
+	}
 };
 
 namespace detail {
 
-/// Leaves out the seeds of components that are nowhere thinner than their edges would be anyway.
-inline void forgetUnlessThinner(
+/// Removes the seeds of components that are nowhere thinner than their edges would be anyway.
+inline void keepThinComponents(
 	ThinPlaces& places, const std::vector<int>& component, double relativeLength)
 {
 	std::vector<double> minimum(places.below.size(), std::numeric_limits<double>::infinity());
 	for (const auto& [length, v] : places.seeds)
 		minimum[component[v]] = std::min(minimum[component[v]], length);
-	const auto isNone = [&](const std::pair<double, int>& seed) {
+	places.removeSeeds([&](const ThinPlaces::Seed& seed) {
 		const int c = component[seed.second];
 		return minimum[c] >= relativeLength * places.below[c];
-	};
-	places.seeds.erase(
-		std::remove_if(places.seeds.begin(), places.seeds.end(), isNone), places.seeds.end());
+	});
 }
 
 } // namespace detail
 
-/// Those of the thin places where lengths below `below` count as small.
+/// The thin places that are left where only lengths below smaller bounds count as small.
 /// @param below of each component, nowhere above places.below. Complexity: O(seeds).
 inline ThinPlaces thinPlacesBelow(ThinPlaces places, std::vector<double> below,
 	const std::vector<int>& component, double relativeLength)
 {
 	places.below = std::move(below);
-	const auto isNone = [&](const std::pair<double, int>& seed) {
+	places.removeSeeds([&](const ThinPlaces::Seed& seed) {
 		return !(seed.first < places.below[component[seed.second]]);
-	};
-	places.seeds.erase(
-		std::remove_if(places.seeds.begin(), places.seeds.end(), isNone), places.seeds.end());
-	detail::forgetUnlessThinner(places, component, relativeLength);
+	});
+	detail::keepThinComponents(places, component, relativeLength);
 	return places;
 }
 
@@ -371,7 +375,8 @@ inline ThinPlaces thinPlaces(const MeasuredSurface& surface, const PoleSet& pole
 	ThinPlaces places;
 	places.below = std::move(below);
 	const std::vector<double>& thin = places.below;
-	std::vector<std::pair<double, int>>& seeds = places.seeds;
+	using Seed = ThinPlaces::Seed;
+	std::vector<Seed>& seeds = places.seeds;
 	std::vector<char> isNear(size_t(mesh.vertexSlots()), 0);
 	bool isAnyNear = false;
 	detail::reportedLoop(mesh.halfEdgeSlots(), progress.part(0, 0.1), detail::sizing, [&](int h) {
@@ -410,19 +415,16 @@ inline ThinPlaces thinPlaces(const MeasuredSurface& surface, const PoleSet& pole
 	const Progress last = progress.part(0.9, 1);
 	const detail::OppositeSides opposite(mesh, poles, component, hasSeeds, last);
 	std::vector<int> across(size_t(mesh.vertexSlots()), -1); // of seeds
-	const auto forget = [&](const auto& isNone) {
-		seeds.erase(std::remove_if(seeds.begin(), seeds.end(), isNone), seeds.end());
-	};
 	forEachBlock(int(seeds.size()), last, detail::sizing, [&](int begin, int end) {
 		for (int i = begin; i < end; ++i)
 			across[seeds[i].second] = opposite.of(seeds[i].second);
 	});
-	using Seed = std::pair<double, int>;
-	forget([&](const Seed& seed) { return across[seed.second] < 0; });
+	places.removeSeeds([&](const Seed& seed) { return across[seed.second] < 0; });
 	const std::vector<double> backToBack =
 		detail::partBackToBack(seeds, across, opposite, component, surface.components());
-	forget([&](const Seed& seed) { return backToBack[component[seed.second]] < minBackToBack; });
-	detail::forgetUnlessThinner(places, component, relativeLength);
+	places.removeSeeds(
+		[&](const Seed& seed) { return backToBack[component[seed.second]] < minBackToBack; });
+	detail::keepThinComponents(places, component, relativeLength);
 	if (seeds.empty())
 		return places;
 	for (double& r : radius)

@@ -129,7 +129,7 @@ public:
 			const auto& [a, b] = curve.edges[e];
 			const Point3d &from = curve.position[a], &to = curve.position[b];
 			if (isCoveredByBalls(from, empty[a], to, empty[b], cheaply, halvings))
-				continue; // by what has been found more exactly for another edge
+				continue; // an exact radius, found for another edge, is enough
 			for (int end : {a, b})
 				empty[end] = exactly(curve.position[end]);
 			if (!isCovered(from, empty[a], to, empty[b], exactly, progress)

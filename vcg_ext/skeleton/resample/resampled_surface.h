@@ -154,21 +154,21 @@ inline double resolvedPart(const MeasuredSurface& surface, const SizingField& fi
  * an even mesh alone exceeds the budget.
  * @param length of each component, see defaultTargetLength().
  * @param budget see budgetOf() and budgetWithSamples().
- * @param known  what is known already; null: it is computed.
+ * @param known  the thin places for a bound that is nowhere smaller; nothing: they are found.
  * @param onNote receives what is resolved less; may be empty.
  * @throws Cancelled. Complexity: as medialPoles().
  */
 inline std::optional<SizingField> fieldOfResampling(const MeasuredSurface& surface,
-	const std::vector<double>& length, const Parameters& parameters, const ThinPlaces* known,
-	const VertexBudget& budget, const Progress& progress = Progress(),
-	const NoteCallback& onNote = {})
+	const std::vector<double>& length, const Parameters& parameters,
+	std::optional<ThinPlaces> known, const VertexBudget& budget,
+	const Progress& progress = Progress(), const NoteCallback& onNote = {})
 {
 	const double anyway = expectedVertices(surface, length, SizingField(), progress);
 	if (anyway > budget.vertices)
 		return std::nullopt;
 	const ThinPlaces places = known
-		? thinPlacesBelow(
-			*known, smallLengths(surface, length), surface.component(), parameters.relativeLength)
+		? thinPlacesBelow(*std::move(known), smallLengths(surface, length), surface.component(),
+			parameters.relativeLength)
 		: measuredThinPlaces(surface, parameters, length, progress.part(0, 0.95));
 	SizingField field = gradedField(surface, places, length, progress.part(0.95, 1));
 	if (field.empty())
@@ -259,18 +259,18 @@ inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Paramete
 	const MeasuredSurface surface(mesh, progress.part(0, 0.05));
 	const Parameters parameters = sharedAmong(given, surface.diagonals());
 	ResampledSurface result;
-	ThinPlaces places;
+	std::optional<ThinPlaces> places;
 	std::vector<double> thickness;
 	if (parameters.adaptive) {
 		const std::vector<double> any(
 			size_t(surface.components()), std::numeric_limits<double>::infinity());
 		places = measuredThinPlaces(surface, parameters, any, progress.part(0.05, 0.19));
-		thickness = localThickness(surface, places, parameters, progress.part(0.19, 0.2));
+		thickness = localThickness(surface, *places, parameters, progress.part(0.19, 0.2));
 	}
 	result.noise = measureNoise(surface, progress.part(0.2, 0.25), thickness);
 	const bool smooth = parameters.denoise && result.noise.isNoisy();
 	tellNoise(result.noise, smooth, onNote);
-	const auto resampled = [&](const MeasuredSurface& calm, const ThinPlaces* own) {
+	const auto resampled = [&](const MeasuredSurface& calm, std::optional<ThinPlaces> own) {
 		const double from = smooth ? 0.35 : 0.25;
 		const std::vector<double> length = defaultTargetLength(calm, parameters, progress);
 		const bool isAdaptive = parameters.adaptive && parameters.resampleIterations > 0;
@@ -280,7 +280,7 @@ inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Paramete
 				const MeasuredSurface dense(*sampled, progress.cancelOnly());
 				std::vector<std::string> notes;
 				const std::optional<SizingField> field = fieldOfResampling(dense, length,
-					parameters, nullptr, budgetWithSamples(calm.mesh(), *sampled),
+					parameters, std::nullopt, budgetWithSamples(calm.mesh(), *sampled),
 					progress.cancelOnly(), [&](const std::string& note) { notes.push_back(note); });
 				if (field && !field->empty()) {
 					for (const std::string& note : notes)
@@ -293,8 +293,8 @@ inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Paramete
 		}
 		std::optional<SizingField> field = SizingField();
 		if (isAdaptive)
-			field = fieldOfResampling(calm, length, parameters, own, budgetOf(calm.mesh()),
-				progress.part(from, from + 0.15), onNote);
+			field = fieldOfResampling(calm, length, parameters, std::move(own),
+				budgetOf(calm.mesh()), progress.part(from, from + 0.15), onNote);
 		result.isTooThin = !field;
 		return resample(calm, length, parameters.resampleIterations, progress.part(from + 0.15, 1),
 			field ? *field : SizingField());
@@ -304,9 +304,9 @@ inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Paramete
 			resampled({smoothed(surface, result.noise.ofVertices(surface.component(), thickness),
 						   progress.part(0.25, 0.3)),
 						  progress.part(0.3, 0.35)},
-				nullptr);
+				std::nullopt);
 	else
-		result.mesh = resampled(surface, parameters.adaptive ? &places : nullptr);
+		result.mesh = resampled(surface, std::move(places));
 	if (onNote)
 		onNote(detail::sentence(6, "Resampled to ", result.mesh.vertexCount(),
 			" vertices, mean edge length ", meanEdgeLength(result.mesh), " mesh units",

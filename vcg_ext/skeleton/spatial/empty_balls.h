@@ -189,14 +189,14 @@ bool isCoveredByBalls(const Point3d& a, double radiusA, const Point3d& b, double
 		&& isCoveredByBalls(middle, radius, b, radiusB, radiusAt, halvings - 1);
 }
 
-/// What balls around the nodes of a curve cover of it.
+/// Balls around the nodes of a curve, and which of its edges they cover.
 struct CoveredCurve
 {
 	std::vector<double> radius;  ///< of the ball around each node
 	std::vector<char> isCovered; ///< of each edge: see isCoveredByBalls()
 };
 
-/// Balls around the nodes of a curve, and which of its edges they cover; several at once.
+/// Finds them, several at once.
 /// @param radiusAt, halvings  see isCoveredByBalls(); called on several threads.
 /// @throws Cancelled. Complexity: O(N + E) calls of radiusAt.
 template <class RadiusAt>

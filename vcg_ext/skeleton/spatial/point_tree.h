@@ -293,14 +293,6 @@ private:
 		int id;
 	};
 
-	using Cuts = std::array<int, 5>;
-
-	static Cuts quarters(int begin, int end)
-	{
-		const int middle = begin + (end - begin) / 2;
-		return {begin, begin + (middle - begin) / 2, middle, middle + (end - middle) / 2, end};
-	}
-
 	static Box3d bounds(const std::vector<Sample>& samples, int begin, int end)
 	{
 		// Without the branches of Box3d::Add().
@@ -313,21 +305,21 @@ private:
 		return Box3d(low, high);
 	}
 
-	static void split(
-		std::vector<Sample>& samples, const Box3d& box, int begin, int middle, int end)
+	/// Sorts samples into two halves. @param box of them. @return where the second one begins.
+	static int split(std::vector<Sample>& samples, const Box3d& box, int begin, int end)
 	{
-		const int axis = box.MaxDim();
+		const int axis = box.MaxDim(), middle = begin + (end - begin) / 2;
 		std::nth_element(samples.begin() + begin, samples.begin() + middle, samples.begin() + end,
 			[axis](const Sample& a, const Sample& b) {
 				const double x = a.point[axis], y = b.point[axis];
 				return x != y ? x < y : a.id < b.id;
 			});
+		return middle;
 	}
 
 	/// Sets the bounds of a node's child. @return its box.
-	Box3d setChild(const std::vector<Sample>& samples, int node, int child, const Cuts& cuts)
+	Box3d setChild(const std::vector<Sample>& samples, int node, int child, int begin, int end)
 	{
-		const int begin = cuts[child], end = cuts[child + 1];
 		const Box3d box = bounds(samples, begin, end);
 		nodes[node].boxes.set(child, Box3d(box.min * scale, box.max * scale), origin * scale);
 		nodes[node].slabs.set(
@@ -345,19 +337,15 @@ private:
 			build(samples, box, root, 0, count, progress);
 			return;
 		}
-		const Cuts cuts = quarters(0, count);
-		progress.report(0, sorting);
-		split(samples, box, 0, cuts[2], count);
-		forEachPart({0, cuts[2], count}, progress.part(0.2, 0.3), sorting,
-			[&](int begin, int end, const Progress&) {
-				split(samples, bounds(samples, begin, end), begin, begin == 0 ? cuts[1] : cuts[3],
-					end);
+		const Quarters cuts = quarteredRange(
+			count, progress.part(0, 0.3), sorting, [&](int begin, int end, const Progress&) {
+				return split(
+					samples, end - begin == count ? box : bounds(samples, begin, end), begin, end);
 			});
-		forEachPart(std::vector<int>(cuts.begin(), cuts.end()), progress.part(0.3, 1), sorting,
-			[&](int begin, int end, const Progress& part) {
-				const int child = int(std::find(cuts.begin(), cuts.end(), begin) - cuts.begin());
-				build(samples, setChild(samples, root, child, cuts), 4 * root + 1 + child, begin,
-					end, part);
+		forEachQuarter(cuts, progress.part(0.3, 1), sorting,
+			[&](int child, int begin, int end, const Progress& part) {
+				build(samples, setChild(samples, root, child, begin, end), 4 * root + 1 + child,
+					begin, end, part);
 			});
 	}
 
@@ -370,23 +358,23 @@ private:
 			leafStart[node - nodes.size()] = begin;
 			return;
 		}
-		const Cuts cuts = quarters(begin, end);
 		const bool isLarge = end - begin >= reportFrom;
 		const auto ask = [&] {
 			if (isLarge)
 				progress.check();
 		};
+		Quarters cuts = {begin, 0, 0, 0, end};
 		ask();
-		split(samples, box, begin, cuts[2], end);
+		cuts[2] = split(samples, box, begin, end);
 		ask();
-		split(samples, bounds(samples, begin, cuts[2]), begin, cuts[1], cuts[2]);
+		cuts[1] = split(samples, bounds(samples, begin, cuts[2]), begin, cuts[2]);
 		ask();
-		split(samples, bounds(samples, cuts[2], end), cuts[2], cuts[3], end);
+		cuts[3] = split(samples, bounds(samples, cuts[2], end), cuts[2], end);
 		for (int k = 0; k < 4; ++k) {
 			if (isLarge)
 				progress.report(k / 4.0, sorting);
-			build(samples, setChild(samples, node, k, cuts), 4 * node + 1 + k, cuts[k], cuts[k + 1],
-				isLarge ? progress.part(k / 4.0, (k + 1) / 4.0) : progress);
+			build(samples, setChild(samples, node, k, cuts[k], cuts[k + 1]), 4 * node + 1 + k,
+				cuts[k], cuts[k + 1], isLarge ? progress.part(k / 4.0, (k + 1) / 4.0) : progress);
 		}
 	}
 };

@@ -331,12 +331,9 @@ private:
 			build(samples, root, 0, count, progress);
 			return;
 		}
-		std::array<int, 5> cuts = {0, 0, 0, 0, count};
-		progress.report(0, sorting);
-		cuts[2] = halve(samples, 0, count, progress);
-		forEachPart({0, cuts[2], count}, progress.part(0.1, 0.2), sorting,
-			[&](int begin, int end, const Progress& part) {
-				cuts[begin == 0 ? 1 : 3] = halve(samples, begin, end, part);
+		const Quarters cuts = quarteredRange(
+			count, progress.part(0, 0.2), sorting, [&](int begin, int end, const Progress& part) {
+				return halve(samples, begin, end, part);
 			});
 		std::array<int, 4> at; // the roots of the quarters
 		at[0] = root + 2;
@@ -344,9 +341,8 @@ private:
 		const int right = at[1] + nodesOf(cuts[2] - cuts[1]);
 		at[2] = right + 1;
 		at[3] = at[2] + nodesOf(cuts[3] - cuts[2]);
-		forEachPart(std::vector<int>(cuts.begin(), cuts.end()), progress.part(0.2, 1), sorting,
-			[&](int begin, int end, const Progress& part) {
-				const int quarter = int(std::find(cuts.begin(), cuts.end(), begin) - cuts.begin());
+		forEachQuarter(cuts, progress.part(0.2, 1), sorting,
+			[&](int quarter, int begin, int end, const Progress& part) {
 				build(samples, at[size_t(quarter)], begin, end, part);
 			});
 		join(root + 1, 0, cuts[2], at[1]);
