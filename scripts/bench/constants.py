@@ -118,7 +118,7 @@ def changeable(text: str, file: str) -> tuple[str, list[Constant]]:
         return f'{indent}{kind} {name} = ::vcg::tri::mcf::changeable("{id_}", {value});'
 
     changed = DECLARATION.sub(declaration, text)
-    if "struct" in text and file in ("parameters.h", "refine.h", "refine_peaks.h", "prune.h"):
+    if "struct" in text and file in ("parameters.h", "refine_parameters.h", "refine_peaks.h", "prune.h"):
         changed = DEFAULT.sub(default, changed)
     if found:
         changed = re.sub(r"(#define VCG_MCF_\w+_H\n)", r"\1#include <skeleton/core/changeable.h>\n", changed, count=1)

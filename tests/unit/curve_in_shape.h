@@ -11,7 +11,7 @@
 #include "shapes.h"
 
 #include <skeleton/core/large_arrays.h>
-#include <skeleton/refine/refine_graph.h>
+#include <skeleton/refine/known_clearances.h>
 
 #include <vector>
 

@@ -8,7 +8,8 @@
 #define VCG_MCF_BLADE_ENDS_H
 
 #include "refine_centre.h"
-#include "refine_graph.h"
+#include "ball_chain.h"
+#include "known_clearances.h"
 
 #include <skeleton/core/progress.h>
 #include <skeleton/graph/curve_skeleton.h>

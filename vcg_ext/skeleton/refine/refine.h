@@ -7,24 +7,19 @@
 #ifndef VCG_MCF_REFINE_H
 #define VCG_MCF_REFINE_H
 
-#include "blade_ends.h"
+#include "known_clearances.h"
 #include "local_scale.h"
-#include "refine_centre.h"
 #include "refine_check.h"
-#include "refine_features.h"
-#include "refine_graph.h"
-#include "refine_symmetry.h"
-#include "refine_tips.h"
+#include "refine_component.h"
+#include "refine_parameters.h"
+#include "refine_report.h"
 
 #include <skeleton/collapse/curve_inside.h>
 #include <skeleton/core/errors.h>
-#include <skeleton/core/parameters.h>
 #include <skeleton/core/progress.h>
 #include <skeleton/core/ticker.h>
-#include <skeleton/flow/stage.h>
 #include <skeleton/graph/curve_skeleton.h>
 #include <skeleton/graph/significance.h>
-#include <skeleton/graph/skeleton_branches.h>
 #include <skeleton/graph/skeleton_radius.h>
 #include <skeleton/mesh/component_meshes.h>
 #include <skeleton/mesh/components.h>
@@ -40,7 +35,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -48,285 +42,14 @@
 
 namespace vcg::tri::mcf {
 
-/**
- * The parameters of refine(). Lengths are fractions of the diagonal of a connected component of the
- * surface: that of its bounding box along its principal axes, see PrincipalFrame.
- */
-struct RefineParameters
+/// What refineChecked() returns.
+struct Refinement
 {
-	/// Distance of neighbouring nodes; fraction of the diagonal, in (0, 0.1].
-	double spacing = 0.005;
-	/// A terminal branch whose end ball sticks out of the ball at its junction by less than this
-	/// part of the latter's radius is a spur and is removed; in [0, 1]. If it is above 0, so are
-	/// twin tips, forked ends and stubs, see withoutTwinTips(), withoutForkedEnds(), withoutStubs()
-	/// and withoutStubsInPlates().
-	double spurProminence = 0.1;
-	/// Two junctions are one where the smaller ball sticks out of the larger one by less than this
-	/// part of its own radius; in [0, 1].
-	double junctionProminence = 0.5;
-	/// kappa, weight of the smoothness along the branch against that of the centring, for a spacing
-	/// of 0.5 % where the shape's radius is 3.3 %; >= 0. Larger: smoother, less centred.
-	double smoothing = 20;
-	/// Rounds of centring with ten times that smoothness, which free curves that are caught on a
-	/// wrong sheet of the medial axis, then rounds with it before and after the last extension of
-	/// the tips; >= 0.
-	int stiffRounds = 6, rounds = 3, lastRounds = 4;
-	/// Minimum distinctness() of a terminal branch, and of what may be its end; in [0, 1], 0: any.
-	/// The corners of a box have 0.42, pointed ends with an opening angle of 60 degrees 0.5.
-	double tipDistinctness = 0.45;
-	/// A tip is extended while the balls reach farther by at least this part of the way, and taken
-	/// back where they do not; in (0, 1].
-	double tipGain = 0.2;
-	/// Minimum radius of an extended tip, see TipRule; fraction of the diagonal, > 0.
-	double tipRadius = 0.003;
-	/// A part of the surface that is higher above the balls than this part of the radius of the
-	/// nearest one, and like a limb, gets a branch: see growFeatures(); >= 0.
-	double featureHeight = 0.27;
-	/// On the way into such a feature the balls reach farther by at least this part of the way; in
-	/// (0, 1]. The corners of boxes have 0.42 to 0.56, limbs of even thickness 1.
-	double featureGain = 0.56;
-	/// Lengths follow the local thickness where that is small, see LocalScale.
-	bool adaptive = true;
-	/// @see Parameters::relativeLength
-	double relativeLength = 0.6;
-	/// @see Parameters::detail
-	double detail = Parameters::defaultDetail;
-
-	/// @throws InvalidParameter naming the first parameter that is out of its range.
-	void check() const
-	{
-		// Below that, a curve would exceed CurveBounds::holdAtEnd().
-		require(
-			spacing >= 5e-4 && spacing <= 0.1, "spacing", "between 0.05 and 10 % of the diagonal");
-		require(spurProminence >= 0 && spurProminence <= 1, "spur_prominence", "between 0 and 1");
-		require(junctionProminence >= 0 && junctionProminence <= 1, "junction_prominence",
-			"between 0 and 1");
-		require(smoothing >= 0 && std::isfinite(smoothing), "smoothing", "at least 0");
-		require(stiffRounds >= 0 && rounds >= 0 && lastRounds >= 0, "rounds", "at least 0");
-		require(
-			tipDistinctness >= 0 && tipDistinctness <= 1, "tip_distinctness", "between 0 and 1");
-		require(tipGain > 0 && tipGain <= 1, "tip_gain", "in (0, 1]");
-		require(featureHeight >= 0 && std::isfinite(featureHeight), "feature_height", "at least 0");
-		require(featureGain > 0 && featureGain <= 1, "feature_gain", "in (0, 1]");
-		require(relativeLength > 0 && relativeLength <= 2, "relative_length", "between 0 and 2");
-		require(detail >= 0 && detail <= 1, "detail", "between 0 and 1");
-		require(tipRadius > 0 && std::isfinite(tipRadius), "tip_radius", "greater than 0");
-	}
-
-private:
-	static void require(bool holds, const char* name, const char* range)
-	{
-		if (!holds)
-			throw InvalidParameter(std::string("Parameter ") + name + " must be " + range + ".");
-	}
+	CurveSkeleton skeleton;
+	RefineReport report;
 };
 
 namespace refining {
-
-/**
- * The smallest lower bound of the scale with which a curve has no more than maxNodes(): a shape
- * that is thin all along, such as a needle, needs no node every half radius. 0: none is needed.
- * @throws Cancelled. Complexity: O(E log V).
- */
-inline double minScale(const CurveSkeleton& curve, const ClosestSurface& closest,
-	const LocalScale& scale, double spacing, const Progress& progress)
-{
-	constexpr int halvings = 30;
-	std::vector<std::pair<double, double>> pieces; // length, scale
-	double length = 0;
-	for (const auto& [a, b] : curve.edges) {
-		if (pieces.size() % nodesPerCheck == 0)
-			progress.check();
-		const Point3d &from = curve.position[a], &to = curve.position[b];
-		pieces.emplace_back(Distance(from, to), scale.at((from + to) / 2, closest));
-		length += pieces.back().first;
-	}
-	const auto nodes = [&](double minimum) {
-		double sum = 0;
-		for (const auto& [piece, own] : pieces)
-			sum += piece / (spacing * std::max(own, minimum));
-		return sum;
-	};
-	const double maximum = maxNodes(length);
-	if (nodes(0) <= maximum)
-		return 0;
-	double low = 0, high = 1;
-	for (int i = 0; i < halvings; ++i) {
-		const double middle = (low + high) / 2;
-		(nodes(middle) > maximum ? low : high) = middle;
-	}
-	return high;
-}
-
-/// kappa for the spacing of the nodes, see RefineParameters::smoothing.
-inline double kappaOf(const RefineParameters& parameters)
-{
-	constexpr double referenceSpacing = 0.005;
-	return parameters.smoothing * std::pow(referenceSpacing / parameters.spacing, 4);
-}
-
-/// Rounds of centring. @param kappa, ascend  see centre() and findContacts(). @throws Cancelled
-inline void centreRounds(CurveSkeleton& skeleton, const ClosestSurface& surface, int rounds,
-	double kappa, bool ascend, const LocalScale& scale, const Progress& progress)
-{
-	// Every third round searches the whole surface; the others track the contacts.
-	constexpr int roundsOfSearch = 3;
-	std::vector<Contact> contacts;
-	for (int i = 0; i < rounds; ++i) {
-		const Progress round =
-			progress.part(double(i) / rounds, double(i + 1) / rounds).cancelOnly();
-		if (i % roundsOfSearch == 0)
-			contacts = findContacts(skeleton, surface, ascend, round);
-		else
-			followContacts(contacts, skeleton, surface, round);
-		centre(skeleton, contacts, surface, kappa, scale, round);
-		progress.report(double(i + 1) / rounds, "Refining the skeleton");
-	}
-}
-
-/**
- * Refines the skeleton of one component, in coordinates where the component's diagonal is 1. Stops
- * early where the curve exceeds CurveBounds, or where nodes are outside and cannot be moved in by
- * exact closest points: the caller checks whether the curve can be the result, see defectOf().
- * @param scale  its lower bound is raised where there would be too many nodes.
- * @throws SolverError, Cancelled
- */
-inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurface& surface,
-	const SurfaceComponent& component, LocalScale& scale, const RefineParameters& parameters,
-	const Progress& progress)
-{
-	const char* what = "Refining the skeleton";
-	const Progress cancel = progress.cancelOnly();
-	constexpr double stiffer = 10, coarser = 1.3;
-	constexpr int maxCoarser = 4;
-	const double kappa = kappaOf(parameters);
-	const FeatureRule features = {
-		parameters.featureGain, parameters.featureHeight, parameters.spacing, scale};
-	const TipRule tips = {parameters.spacing, parameters.tipGain, parameters.tipRadius, scale};
-	const int total = parameters.stiffRounds + parameters.rounds + parameters.lastRounds + 2;
-	int done = 0;
-	const auto recentre = [&](int rounds, double weight, bool ascend) {
-		centreRounds(skeleton, surface, rounds, weight, ascend, scale,
-			progress.part(double(done) / total, double(done + rounds) / total));
-		done += rounds;
-	};
-	const CurveBounds bounds(skeleton, parameters.spacing * scale.minimum(component.vertices));
-	KnownClearances clearances(surface, cancel);
-	const auto tidy = [&](double spurProminence, double tipDistinctness) {
-		measureBranchEnds(skeleton, clearances);
-		skeleton = withoutSpurs(skeleton, spurProminence, cancel);
-		if (spurProminence > 0) {
-			skeleton = withoutTwinTips(withoutStubs(skeleton, cancel), cancel);
-			skeleton = withOneTipAtEdges(skeleton, surface, clearances, cancel);
-		}
-		if (tipDistinctness > 0) {
-			skeleton = withoutCornerBranches(skeleton, clearances, tipDistinctness, cancel);
-			skeleton = withoutCornerEnds(skeleton, clearances, tipDistinctness);
-		}
-		skeleton = withWholeJunctions(std::move(skeleton), parameters.junctionProminence, cancel);
-		skeleton = evenlySampled(skeleton, surface, parameters.spacing, scale, cancel);
-		const auto isCrowded = [&] {
-			return !scale.isUniform()
-				&& double(skeleton.position.size()) > maxNodes(statistics(skeleton).length);
-		};
-		const auto sampleFrom = [&](double minimum) {
-			scale.setMin(std::max(scale.minimum(), minimum));
-			skeleton = evenlySampled(skeleton, surface, parameters.spacing, scale, cancel);
-		};
-		// Tips may have been extended to where the shape is far thinner than along the given curve.
-		if (isCrowded())
-			sampleFrom(minScale(skeleton, surface, scale, parameters.spacing, cancel));
-		// Where straight pieces would leave a needle, it keeps its nodes but for crowded ones.
-		for (int i = 0; i < maxCoarser && isCrowded(); ++i)
-			sampleFrom(coarser * scale.minimum(component.vertices));
-		moveInside(
-			skeleton, surface, cancel); // long edges of a coarse shape's curve may have left it
-		progress.report(double(done) / total, what);
-	};
-	const auto unfold = [&] {
-		skeleton = withoutDoubledTips(withoutFolds(std::move(skeleton), surface, cancel), cancel);
-	};
-	const auto extend = [&] {
-		measureBranchEnds(skeleton, clearances);
-		extendTips(skeleton, surface, tips, cancel);
-		progress.report(double(done) / total, what);
-	};
-	const auto grow = [&] {
-		if (parameters.spurProminence > 0) {
-			measureBranchEnds(skeleton, clearances);
-			skeleton = withoutStubsInPlates(skeleton, surface, cancel);
-		}
-		growFeatures(skeleton, component, surface, clearances, features,
-			progress.part(double(done) / total, double(done + 1) / total));
-		++done;
-		extend();
-	};
-	progress.report(0, what);
-	measureNodes(skeleton, clearances);
-	moveInside(skeleton, surface, cancel);
-	// A stub may be the start of a feature: only branches that do not stick out go before the
-	// extension.
-	constexpr double hopeless = 0;
-	const std::function<void()> steps[] = {
-		[&] { tidy(hopeless, 0); },
-		[&] { recentre(parameters.stiffRounds, stiffer * kappa, false); },
-		extend,
-		grow,
-		unfold,
-		[&] { tidy(parameters.spurProminence, parameters.tipDistinctness); },
-		[&] { recentre(parameters.rounds, kappa, true); },
-		extend,
-		unfold,
-		[&] { tidy(parameters.spurProminence, parameters.tipDistinctness); },
-		[&] { recentre(parameters.lastRounds, kappa, true); },
-		unfold,
-		[&] { tidy(parameters.spurProminence, parameters.tipDistinctness); },
-	};
-	// A few may be in branches that will still be removed.
-	constexpr size_t fewOutside = 2, partOutside = 500;
-	const auto isHopeless = [&] {
-		const size_t outside = size_t(std::count_if(skeleton.radius.begin(), skeleton.radius.end(),
-			[](double radius) { return !(radius > 0); }));
-		return surface.isExact() && outside > fewOutside + skeleton.radius.size() / partOutside;
-	};
-	for (const std::function<void()>& step : steps) {
-		if (!bounds.hold(skeleton) || (&step == steps + 1 && isHopeless()))
-			return skeleton;
-		step();
-	}
-	return withoutBluntEnds(skeleton, clearances, parameters.tipGain);
-}
-
-/**
- * A refined curve with the branches that it lacks if the shape is symmetric, see withImages(),
- * centred once more; nothing if it lacks none, or if the centring fails. @throws Cancelled
- */
-inline std::optional<CurveSkeleton> madeSymmetric(const CurveSkeleton& curve,
-	const ClosestSurface& surface, const SurfaceComponent& component, const LocalScale& scale,
-	const RefineParameters& parameters, const Progress& cancel)
-{
-	KnownClearances clearances(surface, cancel);
-	std::optional<CurveSkeleton> whole = withImages(curve, component, surface, clearances, cancel);
-	if (!whole)
-		return std::nullopt;
-	CurveSkeleton skeleton =
-		withWholeJunctions(withOneTipAtEdges(*whole, surface, clearances, cancel),
-			parameters.junctionProminence, cancel);
-	const auto sample = [&] {
-		skeleton = evenlySampled(skeleton, surface, parameters.spacing, scale, cancel);
-	};
-	sample();
-	try {
-		centreRounds(
-			skeleton, surface, parameters.lastRounds, kappaOf(parameters), true, scale, cancel);
-	}
-	catch (const SolverError&) {
-		return std::nullopt;
-	}
-	sample();
-	moveInside(skeleton, surface, cancel);
-	return withoutBluntEnds(skeleton, clearances, parameters.tipGain);
-}
 
 /// Descends along the graph from a node to one whose neighbours are no nearer to the point.
 inline int nearestAlong(const CurveSkeleton& skeleton,
@@ -350,93 +73,6 @@ inline int nearestAlong(const CurveSkeleton& skeleton,
 		node = nearest;
 	}
 }
-
-} // namespace refining
-
-/// What became of each component of a skeleton in its refinement.
-struct RefineReport
-{
-	/// Components of the surface that have a curve, and those of them that have a refined one.
-	int components = 0, refined = 0;
-	/// Those that keep the given curve, by what was wrong with the refined one: it left the
-	/// surface, grew too long, had other numbers of cycles or parts, or could not be computed.
-	int outside = 0, tooLong = 0, otherTopology = 0, notFinite = 0;
-	/// Nodes outside the surface in the curves that were kept, and how many curves have such nodes.
-	int nodesOutside = 0, curvesOutside = 0;
-	/// A component that keeps the given curve.
-	struct Kept
-	{
-		int component; ///< of the surface, see connectedComponents()
-		refining::Defect defect;
-		int nodesOutside;
-	};
-	std::vector<Kept> kept;
-
-	/// Counts a component.
-	void add(int component, refining::Defect defect, int outside)
-	{
-		using refining::Defect;
-		++components;
-		switch (defect) {
-		case Defect::None: ++refined; return;
-		case Defect::NotFinite: ++notFinite; break;
-		case Defect::TooLong: ++tooLong; break;
-		case Defect::Topology: ++otherTopology; break;
-		case Defect::Outside: ++this->outside; break;
-		}
-		nodesOutside += outside;
-		curvesOutside += outside > 0;
-		kept.push_back({component, defect, outside});
-	}
-
-	/// The report with one more component counted as refined.
-	RefineReport withRefined(int component) const
-	{
-		RefineReport result;
-		for (const Kept& one : kept)
-			if (one.component != component)
-				result.add(one.component, one.defect, one.nodesOutside);
-		result.components = components;
-		result.refined = components - int(result.kept.size());
-		return result;
-	}
-
-	/// Fraction of the components that are refined; 1 for a skeleton without components.
-	double fraction() const { return components > 0 ? double(refined) / components : 1; }
-
-	/// One plain line on what was not refined, and why; empty if everything was.
-	std::string text() const
-	{
-		if (refined == components)
-			return "";
-		std::string why;
-		const auto count = [&](int number, const char* reason) {
-			if (number > 0)
-				why += (why.empty() ? "" : ", ") + std::to_string(number) + " " + reason;
-		};
-		count(outside, "would have left the surface");
-		count(tooLong, "would have become too long");
-		count(otherTopology, "would have changed in components or cycles");
-		count(notFinite, "could not be computed");
-		std::string line = std::to_string(components - refined) + " of "
-			+ std::to_string(components)
-			+ " components are not refined and keep their curves: " + why + ".";
-		if (nodesOutside > 0)
-			line += " Of the curves that are kept, " + std::to_string(curvesOutside)
-				+ " are partly outside the surface, with " + std::to_string(nodesOutside)
-				+ " nodes: parts of the shape may be too thin for the edges of its triangles.";
-		return line;
-	}
-};
-
-/// What refineChecked() returns.
-struct Refinement
-{
-	CurveSkeleton skeleton;
-	RefineReport report;
-};
-
-namespace refining {
 
 /**
  * The scale of each vertex, see LocalScale.

@@ -8,7 +8,7 @@
 #define VCG_MCF_REFINE_CENTRE_H
 
 #include "local_scale.h"
-#include "refine_graph.h"
+#include "known_clearances.h"
 
 #include <skeleton/core/errors.h>
 #include <skeleton/core/parallel.h>

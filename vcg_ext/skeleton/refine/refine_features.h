@@ -9,7 +9,7 @@
 
 #include "holding_balls.h"
 #include "refine_centre.h"
-#include "refine_graph.h"
+#include "known_clearances.h"
 #include "refine_peaks.h"
 
 #include <skeleton/core/progress.h>

@@ -8,7 +8,7 @@
 #define VCG_MCF_REFINE_PEAKS_H
 
 #include "local_scale.h"
-#include "refine_graph.h"
+#include "spur_rules.h"
 
 #include <skeleton/core/parallel.h>
 #include <skeleton/core/progress.h>

@@ -9,7 +9,8 @@
 
 #include "holding_balls.h"
 #include "refine_features.h"
-#include "refine_graph.h"
+#include "ball_chain.h"
+#include "known_clearances.h"
 #include "refine_peaks.h"
 
 #include <skeleton/core/progress.h>

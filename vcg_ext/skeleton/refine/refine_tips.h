@@ -10,7 +10,7 @@
 #include "holding_balls.h"
 #include "local_scale.h"
 #include "refine_centre.h"
-#include "refine_graph.h"
+#include "known_clearances.h"
 
 #include <skeleton/core/progress.h>
 #include <skeleton/graph/curve_skeleton.h>
