@@ -18,14 +18,14 @@ namespace {
 
 Results medialAxis(FilterRun& run)
 {
-	mcf::MedialLayerParameters parameters;
+	mcf::MedialAxisParameters parameters;
 	parameters.minAngle = run.parameters.real("min_angle");
 	parameters.minRadius = run.parameters.fraction("min_radius") * referenceDiagonal(run.layer());
 	parameters.maxStretch = run.parameters.real("max_stretch");
 	parameters.check();
 	const PoledSurface poled = surfaceWithPoles(
 		run, mcf::Parameters().poleMethod, mcf::Repair::Off, run.progress.part(0, 0.5));
-	const mcf::MedialLayer medial = mcf::medialLayer(*poled.surface.mesh, *poled.poles,
+	const mcf::MedialAxis medial = mcf::medialAxis(*poled.surface.mesh, *poled.poles,
 		run.parameters.flag("joined"), parameters, run.progress.part(0.5, 1));
 	if (medial.position.empty())
 		throw mcf::InvalidInput(
@@ -54,7 +54,7 @@ Results medialAxis(FilterRun& run)
 
 FilterSpec medialAxisFilter()
 {
-	const mcf::MedialLayerParameters defaults;
+	const mcf::MedialAxisParameters defaults;
 	return {"generate_medial_axis_mcf", menuName("Medial Axis"),
 		helpPage(
 			"Makes a layer NAME_medial of the surface's medial poles, joined by triangles as their "

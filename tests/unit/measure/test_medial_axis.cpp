@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The medial axis as a layer, on shapes whose medial axis is known.
+// The medial axis as a mesh, on shapes whose medial axis is known.
 
 #include "shapes.h"
 #include <skeleton/measure/medial_axis.h>
@@ -35,25 +35,25 @@ const PoleSet& platePoles()
 	return poles;
 }
 
-TEST(MedialLayer, MiddleSheetOfAPlate)
+TEST(MedialAxis, MiddleSheetOfAPlate)
 {
-	MedialLayerParameters p;
+	MedialAxisParameters p;
 	p.minAngle = 150;
-	const MedialLayer layer = medialLayer(plate(), platePoles(), true, p);
+	const MedialAxis medial = medialAxis(plate(), platePoles(), true, p);
 	double area = 0;
-	for (const Triangle& t : layer.triangles) {
-		const Point3d& a = layer.position[t[0]];
-		area += ((layer.position[t[1]] - a) ^ (layer.position[t[2]] - a)).Norm() / 2;
+	for (const Triangle& t : medial.triangles) {
+		const Point3d& a = medial.position[t[0]];
+		area += ((medial.position[t[1]] - a) ^ (medial.position[t[2]] - a)).Norm() / 2;
 	}
-	for (size_t v = 0; v < layer.position.size(); ++v) {
-		EXPECT_NEAR(layer.position[v][2], 0, 0.02);
-		EXPECT_NEAR(layer.radius[v], 0.25, 0.02);
+	for (size_t v = 0; v < medial.position.size(); ++v) {
+		EXPECT_NEAR(medial.position[v][2], 0, 0.02);
+		EXPECT_NEAR(medial.radius[v], 0.25, 0.02);
 	}
 	// The flat part reaches to a quarter from the rim, seen from above and from below.
 	EXPECT_NEAR(area, 2 * 3.5 * 3.5, 0.1 * 24.5);
 }
 
-TEST(MedialLayer, AnglesAreThoseOfTheTwoContacts)
+TEST(MedialAxis, AnglesAreThoseOfTheTwoContacts)
 {
 	const std::vector<double> angle = poleAngles(plate(), platePoles());
 	for (int v = 0; v < plate().vertexSlots(); ++v) {
@@ -64,7 +64,7 @@ TEST(MedialLayer, AnglesAreThoseOfTheTwoContacts)
 	}
 }
 
-TEST(MedialLayer, AnglesOfAComponentAreThoseThatItHasAlone)
+TEST(MedialAxis, AnglesOfAComponentAreThoseThatItHasAlone)
 {
 	// A ring round the centre of a ball, where all the ball's poles are.
 	const shapes::Soup ball = shapes::sphere(3), ring = shapes::torus(0.5, 0.1);
@@ -95,7 +95,7 @@ std::vector<double> anglesByAllPoints(const SurfaceMesh& mesh, const PoleSet& po
 	return angles;
 }
 
-TEST(MedialLayer, AnglesAreTheWidestOfAllPointsInTheBall)
+TEST(MedialAxis, AnglesAreTheWidestOfAllPointsInTheBall)
 {
 	for (const shapes::Soup& soup : {shapes::sphere(4), shapes::jittered(shapes::sphere(3), 0.05),
 			 shapes::torus(), shapes::capsule(), shapes::box(1, 0.7, 0.2), shapes::plate(2, 4)}) {
@@ -105,7 +105,7 @@ TEST(MedialLayer, AnglesAreTheWidestOfAllPointsInTheBall)
 	}
 }
 
-TEST(MedialLayer, OnASphereOnlyTheFarSideIsSearchedForTheWidestAngle)
+TEST(MedialAxis, OnASphereOnlyTheFarSideIsSearchedForTheWidestAngle)
 {
 	struct Counted : detail::WidestAngle
 	{
@@ -128,66 +128,66 @@ TEST(MedialLayer, OnASphereOnlyTheFarSideIsSearchedForTheWidestAngle)
 	}
 }
 
-TEST(MedialLayer, FiltersByAngleAndRadius)
+TEST(MedialAxis, FiltersByAngleAndRadius)
 {
 	for (double minimum : {0.0, 60.0, 120.0}) {
-		MedialLayerParameters p;
+		MedialAxisParameters p;
 		p.minAngle = minimum;
 		p.minRadius = 0.1;
-		const MedialLayer layer = medialLayer(plate(), platePoles(), false, p);
-		EXPECT_TRUE(layer.triangles.empty());
-		EXPECT_GT(layer.position.size(), 5000u);
-		for (size_t v = 0; v < layer.position.size(); ++v) {
-			EXPECT_GE(layer.angle[v], minimum);
-			EXPECT_GE(layer.radius[v], 0.1);
-			EXPECT_EQ(layer.position[v], platePoles().centre[layer.source[v]]);
+		const MedialAxis medial = medialAxis(plate(), platePoles(), false, p);
+		EXPECT_TRUE(medial.triangles.empty());
+		EXPECT_GT(medial.position.size(), 5000u);
+		for (size_t v = 0; v < medial.position.size(); ++v) {
+			EXPECT_GE(medial.angle[v], minimum);
+			EXPECT_GE(medial.radius[v], 0.1);
+			EXPECT_EQ(medial.position[v], platePoles().centre[medial.source[v]]);
 		}
 	}
-	MedialLayerParameters tooThick;
+	MedialAxisParameters tooThick;
 	tooThick.minRadius = 0.3;
-	EXPECT_TRUE(medialLayer(plate(), platePoles(), true, tooThick).position.empty());
+	EXPECT_TRUE(medialAxis(plate(), platePoles(), true, tooThick).position.empty());
 }
 
-TEST(MedialLayer, NoTriangleIsStretched)
+TEST(MedialAxis, NoTriangleIsStretched)
 {
 	const SurfaceMesh mesh = shapes::jittered(shapes::torus(), 0.01).mesh();
-	MedialLayerParameters p;
+	MedialAxisParameters p;
 	p.minAngle = 0;
 	p.maxStretch = 0.5;
-	const MedialLayer layer = medialLayer(mesh, shrinkingBallPoles(mesh), true, p);
-	for (const Triangle& t : layer.triangles)
+	const MedialAxis medial = medialAxis(mesh, shrinkingBallPoles(mesh), true, p);
+	for (const Triangle& t : medial.triangles)
 		for (int k = 0; k < 3; ++k) {
 			const int a = t[k], b = t[(k + 1) % 3];
 			double longest = 0;
 			for (int i = 0; i < 3; ++i)
 				longest = std::max(longest,
-					vcg::Distance(mesh.position[layer.source[t[i]]],
-						mesh.position[layer.source[t[(i + 1) % 3]]]));
-			EXPECT_LE(vcg::Distance(layer.position[a], layer.position[b]), 0.5 * longest);
+					vcg::Distance(mesh.position[medial.source[t[i]]],
+						mesh.position[medial.source[t[(i + 1) % 3]]]));
+			EXPECT_LE(vcg::Distance(medial.position[a], medial.position[b]), 0.5 * longest);
 		}
 }
 
-TEST(MedialLayer, EveryPointOfAJoinedLayerIsUsed)
+TEST(MedialAxis, EveryPointOfAJoinedLayerIsUsed)
 {
-	const MedialLayer layer = medialLayer(plate(), platePoles(), true);
-	std::vector<char> used(layer.position.size(), 0);
-	for (const Triangle& t : layer.triangles)
+	const MedialAxis medial = medialAxis(plate(), platePoles(), true);
+	std::vector<char> used(medial.position.size(), 0);
+	for (const Triangle& t : medial.triangles)
 		for (int v : t)
 			used[v] = 1;
 	EXPECT_EQ(std::count(used.begin(), used.end(), 1), long(used.size()));
 }
 
-TEST(MedialLayer, RefusesParametersOutOfRange)
+TEST(MedialAxis, RefusesParametersOutOfRange)
 {
-	MedialLayerParameters p;
+	MedialAxisParameters p;
 	p.minAngle = 200;
-	EXPECT_THROW(medialLayer(plate(), platePoles(), true, p), InvalidParameter);
+	EXPECT_THROW(medialAxis(plate(), platePoles(), true, p), InvalidParameter);
 	p = {};
 	p.minRadius = -1;
-	EXPECT_THROW(medialLayer(plate(), platePoles(), true, p), InvalidParameter);
+	EXPECT_THROW(medialAxis(plate(), platePoles(), true, p), InvalidParameter);
 	p = {};
 	p.maxStretch = 0;
-	EXPECT_THROW(medialLayer(plate(), platePoles(), true, p), InvalidParameter);
+	EXPECT_THROW(medialAxis(plate(), platePoles(), true, p), InvalidParameter);
 }
 
 } // namespace

@@ -13,7 +13,7 @@
 
 namespace vcg::tri::mcf {
 
-/// Mesh units. Single precision, in which some hosts keep their layers, holds these with room for
+/// Mesh units. Single precision, in which some hosts keep their meshes, holds these with room for
 /// sums; their cubes are far from the limits of double precision.
 constexpr double maxCoordinate = 1e36, minSize = 1e-36;
 

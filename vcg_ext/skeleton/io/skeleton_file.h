@@ -28,7 +28,7 @@ struct SkeletonFile
 	CurveSkeleton skeleton;
 	/// What was put right, a sentence each.
 	std::vector<std::string> warnings;
-	/// Of the surface layer's geometry, as the host computes it; 0: not known.
+	/// Of the surface's geometry, as a host computes it; 0: not known.
 	std::uint64_t surfaceFingerprint = 0;
 	/// That of the surface, mesh units; 0: not known.
 	double diagonal = 0;

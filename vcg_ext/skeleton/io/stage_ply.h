@@ -28,13 +28,13 @@
 
 namespace vcg::tri::mcf {
 
-/// A stage, and what lets a host find the layer of its surface again.
+/// A stage, and what lets a host find its surface again.
 struct StageFile
 {
 	Stage stage;
-	/// Of the surface layer's geometry, as the host computes it; 0: not known.
+	/// Of the surface's geometry, as a host computes it; 0: not known.
 	std::uint64_t surfaceFingerprint = 0;
-	/// For each vertex of that layer the vertex of the surface, or -1.
+	/// For each vertex of the host's mesh the vertex of the surface, or -1.
 	std::vector<int> vertexOfSlot;
 };
 

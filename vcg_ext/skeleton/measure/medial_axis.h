@@ -25,7 +25,7 @@
 namespace vcg::tri::mcf {
 
 /// Which poles and triangles of poles count.
-struct MedialLayerParameters
+struct MedialAxisParameters
 {
 	/// Minimum angle between two places where a pole's ball touches the surface, seen from the
 	/// pole; degrees, in [0, 180]. Poles that come from noise and facets have narrow angles.
@@ -49,12 +49,12 @@ struct MedialLayerParameters
 };
 
 /// Poles, and triangles that join them.
-struct MedialLayer
+struct MedialAxis
 {
 	/// Mesh units.
 	std::vector<Point3d> position;
 	std::vector<double> radius;
-	/// Degrees, see MedialLayerParameters::minAngle.
+	/// Degrees, see MedialAxisParameters::minAngle.
 	std::vector<double> angle;
 	/// The vertex of the surface that each is the pole of.
 	std::vector<int> source;
@@ -167,8 +167,8 @@ inline std::vector<double> poleAngles(
  * Source: paper, Sec. 4.5 and Fig. 1b, 7; the filter by angle after Amenta, Choi and Kolluri, "The
  *         power crust", 2001.
  */
-inline MedialLayer medialLayer(const SurfaceMesh& surface, const PoleSet& poles, bool joined,
-	const MedialLayerParameters& parameters = MedialLayerParameters(),
+inline MedialAxis medialAxis(const SurfaceMesh& surface, const PoleSet& poles, bool joined,
+	const MedialAxisParameters& parameters = MedialAxisParameters(),
 	const Progress& progress = Progress())
 {
 	parameters.check();
@@ -198,22 +198,22 @@ inline MedialLayer medialLayer(const SurfaceMesh& surface, const PoleSet& poles,
 			used[v] = 1;
 	});
 
-	MedialLayer layer;
+	MedialAxis medial;
 	std::vector<int> number = detail::filledArray(used.size(), -1, cancel);
 	detail::cancellableLoop(int(used.size()), cancel, [&](int v) {
 		if (!used[v] || !counts(v))
 			return;
-		number[v] = int(layer.position.size());
-		layer.position.push_back(poles.centre[v]);
-		layer.radius.push_back(poles.radius[v]);
-		layer.angle.push_back(angle[v]);
-		layer.source.push_back(v);
+		number[v] = int(medial.position.size());
+		medial.position.push_back(poles.centre[v]);
+		medial.radius.push_back(poles.radius[v]);
+		medial.angle.push_back(angle[v]);
+		medial.source.push_back(v);
 	});
 	detail::cancellableLoop(int(kept.size()), cancel, [&](int f) {
 		const Triangle& t = kept[size_t(f)];
-		layer.triangles.push_back({number[t[0]], number[t[1]], number[t[2]]});
+		medial.triangles.push_back({number[t[0]], number[t[1]], number[t[2]]});
 	});
-	return layer;
+	return medial;
 }
 
 } // namespace vcg::tri::mcf
