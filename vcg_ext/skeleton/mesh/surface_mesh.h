@@ -7,8 +7,9 @@
 #ifndef VCG_MCF_SURFACE_MESH_H
 #define VCG_MCF_SURFACE_MESH_H
 
+#include "twin_pairing.h"
+
 #include <skeleton/core/errors.h>
-#include <skeleton/core/grouped_sort.h>
 #include <skeleton/core/large_arrays.h>
 #include <skeleton/core/progress.h>
 #include <skeleton/core/ticker.h>
@@ -57,7 +58,7 @@ public:
 			position(std::move(points))
 	{
 		setTriangles(triangles, progress.part(0, 0.1));
-		if (!pairTwins(progress.part(0.1, 0.9)))
+		if (!detail::pairTwins(origins, twins, vertexSlots(), progress.part(0.1, 0.9)))
 			throw InvalidInput("The mesh is not closed, or its faces are not oriented alike.");
 		chooseOutgoing(progress.part(0.9, 1));
 	}
@@ -82,7 +83,7 @@ public:
 		mesh.position = std::move(points);
 		mesh.setTriangles(triangles, progress.part(0.02, 0.2));
 		const Progress pairing = progress.part(0.2, 0.65);
-		if (!mesh.pairTwins(pairing)) {
+		if (!detail::pairTwins(mesh.origins, mesh.twins, mesh.vertexSlots(), pairing)) {
 			// Memory is given back in pieces, too.
 			pairing.report(1, checking);
 			mesh.position = std::vector<Point3d>();
@@ -739,76 +740,6 @@ private:
 				origins[3 * f + k] = triangles[f][k];
 		});
 		liveFaces = int(triangles.size());
-	}
-
-	/**
-	 * Pairs the half-edges; each lower end has a bucket of those that wait for their twin. Only the
-	 * first ones of a bucket are searched; what is left in the end is sorted.
-	 * @return whether each has found one.
-	 * @throws Cancelled. Complexity: O(F); O(F + n log n) where n faces meet at a vertex.
-	 */
-	bool pairTwins(const Progress& progress)
-	{
-		constexpr int maxSearched = 64;
-		const int n = int(position.size());
-		std::vector<int> start = detail::filledArray(size_t(n) + 1, 0, progress);
-		std::vector<int> bucket = detail::filledArray(origins.size(), 0, progress);
-		const auto lower = [&](int h) { return std::min(origin(h), target(h)); };
-		detail::reportedLoop(halfEdgeSlots(), progress.part(0.2, 0.3), checking,
-			[&](int h) { ++start[lower(h) + 1]; });
-		detail::reportedLoop(
-			n, progress.part(0.3, 0.4), checking, [&](int v) { start[v + 1] += start[v]; });
-		const Progress pairing = progress.part(0.4, 1);
-		std::vector<int> end = detail::copiedArray(start, pairing);
-		detail::reportedLoop(halfEdgeSlots(), pairing, checking, [&](int h) {
-			const int low = lower(h);
-			const int last = std::min(end[low], start[low] + maxSearched);
-			for (int i = start[low]; i < last; ++i) {
-				const int g = bucket[i];
-				if (areOpposite(g, h)) {
-					join(h, g);
-					bucket[i] = bucket[--end[low]]; // a fan in order stays cheap
-					break;
-				}
-			}
-			if (twins[h] < 0)
-				bucket[end[low]++] = h;
-		});
-		const auto areAllPaired = [&] {
-			return std::find(twins.begin(), twins.end(), -1) == twins.end();
-		};
-		if (areAllPaired())
-			return true;
-		detail::cancellableLoop(n, pairing, [&](int low) {
-			if (end[low] - start[low] > 1)
-				pairSorted(bucket, start[low], end[low], pairing);
-		});
-		return areAllPaired();
-	}
-
-	bool areOpposite(int g, int h) const
-	{
-		return origin(g) == target(h) && target(g) == origin(h);
-	}
-
-	/// Pairs those of the half-edges bucket[from, to) of a lower end that have a twin.
-	/// @throws Cancelled
-	void pairSorted(const std::vector<int>& bucket, int from, int to, const Cancellation& cancel)
-	{
-		std::vector<std::pair<int, int>> sorted; // other end, half-edge
-		sorted.reserve(size_t(to - from));
-		for (int i = from; i < to; ++i)
-			sorted.emplace_back(std::max(origin(bucket[i]), target(bucket[i])), bucket[i]);
-		detail::sortCancellable(sorted, 0, sorted.size(), cancel);
-		size_t waiting = 0; // the first of this edge without a twin
-		for (size_t i = 0; i < sorted.size(); ++i) {
-			if (sorted[waiting].first != sorted[i].first)
-				waiting = i;
-			while (waiting < i && twins[sorted[waiting].second] >= 0)
-				++waiting;
-			if (waiting < i && areOpposite(sorted[waiting].second, sorted[i].second))
-				join(sorted[waiting].second, sorted[i].second);
-		}
 	}
 
 	/// @throws Cancelled
