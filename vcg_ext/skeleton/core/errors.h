@@ -56,6 +56,13 @@ public:
 	using Error::Error;
 };
 
+/// @throws InvalidParameter "Parameter NAME must be RANGE." unless `holds`.
+inline void requireParameter(bool holds, const char* name, const char* range)
+{
+	if (!holds)
+		throw InvalidParameter(std::string("Parameter ") + name + " must be " + range + ".");
+}
+
 /// A linear system could not be solved, or a position stopped being finite.
 class SolverError : public Error
 {

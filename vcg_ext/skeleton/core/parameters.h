@@ -10,8 +10,6 @@
 #include "errors.h"
 #include "has_qhull.h"
 
-#include <string>
-
 namespace vcg::tri::mcf {
 
 /// Where the medial poles of the surface come from (Sec. 4.5).
@@ -123,32 +121,27 @@ struct Parameters
 	{
 		const auto isWeight = [](double w) { return w >= minWeight && w <= maxWeight; };
 		const char* const weights = "between 0.000001 and 1000000"; // minWeight, maxWeight
-		require(isWeight(wL), "w_l", weights);
-		require(isWeight(cotangentFactor), "cotangent_factor", weights);
-		require(isWeight(wH), "w_h", weights);
-		require(wM >= 0 && wM <= maxWeight, "w_m", "between 0 and 1000000");
-		require(
+		requireParameter(isWeight(wL), "w_l", weights);
+		requireParameter(isWeight(cotangentFactor), "cotangent_factor", weights);
+		requireParameter(isWeight(wH), "w_h", weights);
+		requireParameter(wM >= 0 && wM <= maxWeight, "w_m", "between 0 and 1000000");
+		requireParameter(
 			epsilon > 0 && epsilon <= maxEpsilon, "epsilon", "between 0 and 10 % of the diagonal");
-		require(splitAngle >= 60 && splitAngle < 180, "split_angle", "in [60, 180) degrees");
-		require(maxIterations >= 0, "max_iterations", "at least 0");
-		require(sheetThreshold >= 0 && sheetThreshold <= 1, "sheet_threshold", "between 0 and 1");
-		require(targetLength >= 0 && targetLength <= 0.5, "target_length",
+		requireParameter(
+			splitAngle >= 60 && splitAngle < 180, "split_angle", "in [60, 180) degrees");
+		requireParameter(maxIterations >= 0, "max_iterations", "at least 0");
+		requireParameter(
+			sheetThreshold >= 0 && sheetThreshold <= 1, "sheet_threshold", "between 0 and 1");
+		requireParameter(targetLength >= 0 && targetLength <= 0.5, "target_length",
 			"between 0 and 50 % of the diagonal");
-		require(relativeLength > 0 && relativeLength <= 2, "relative_length",
+		requireParameter(relativeLength > 0 && relativeLength <= 2, "relative_length",
 			"greater than 0 and at most 2");
-		require(detail >= 0 && detail <= 1, "detail", "between 0 and 1");
-		require(
+		requireParameter(detail >= 0 && detail <= 1, "detail", "between 0 and 1");
+		requireParameter(
 			minComponent >= 0 && minComponent < 1, "min_component", "at least 0 and less than 1");
-		require(resampleIterations >= 0, "resample_iterations", "at least 0");
-		require(poleMethod != PoleMethod::Voronoi || hasQhull, "pole_method",
+		requireParameter(resampleIterations >= 0, "resample_iterations", "at least 0");
+		requireParameter(poleMethod != PoleMethod::Voronoi || hasQhull, "pole_method",
 			"'balls': this program is built without Qhull, which finds the poles of 'voronoi'");
-	}
-
-private:
-	static void require(bool holds, const char* name, const char* range)
-	{
-		if (!holds)
-			throw InvalidParameter(std::string("Parameter ") + name + " must be " + range + ".");
 	}
 };
 

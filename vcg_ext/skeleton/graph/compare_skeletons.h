@@ -45,8 +45,7 @@ inline SkeletonDistance distanceToSkeleton(const CurveSkeleton& from, const Curv
 	double spacing, const Progress& progress = Progress())
 {
 	constexpr double maxPoints = 1e7;
-	if (!(spacing > 0) || !std::isfinite(spacing))
-		throw InvalidParameter("Parameter spacing must be greater than 0.");
+	requireParameter(spacing > 0 && std::isfinite(spacing), "spacing", "greater than 0");
 	if (from.position.empty() || to.position.empty())
 		throw InvalidInput("One of the two skeletons has no nodes: there is nothing to compare.");
 	if (statistics(from).length / spacing > maxPoints)

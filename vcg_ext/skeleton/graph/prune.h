@@ -19,7 +19,6 @@
 #include <map>
 #include <numeric>
 #include <set>
-#include <string>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -243,17 +242,12 @@ struct PruneParameters
 	/// @throws InvalidParameter naming the first parameter that is out of its range.
 	void check() const
 	{
-		require(spurProminence >= 0 && spurProminence <= 1, "spur_prominence", "between 0 and 1");
-		require(detail >= 0 && detail <= 1, "detail", "between 0 and 1");
-		require(shortestBranch >= 0 && std::isfinite(shortestBranch), "min_length", "at least 0");
-		require(minRadius >= 0 && std::isfinite(minRadius), "min_radius", "at least 0");
-	}
-
-private:
-	static void require(bool holds, const char* name, const char* range)
-	{
-		if (!holds)
-			throw InvalidParameter(std::string("Parameter ") + name + " must be " + range + ".");
+		requireParameter(
+			spurProminence >= 0 && spurProminence <= 1, "spur_prominence", "between 0 and 1");
+		requireParameter(detail >= 0 && detail <= 1, "detail", "between 0 and 1");
+		requireParameter(
+			shortestBranch >= 0 && std::isfinite(shortestBranch), "min_length", "at least 0");
+		requireParameter(minRadius >= 0 && std::isfinite(minRadius), "min_radius", "at least 0");
 	}
 };
 

@@ -196,10 +196,9 @@ inline CurveSkeleton resampledSkeleton(const CurveSkeleton& skeleton, double lon
 	using detail::SampledBranch;
 	constexpr double maxNodes = 1e7;
 	const char* what = "Resampling the skeleton";
-	if (!(longestEdge > 0) || !std::isfinite(longestEdge))
-		throw InvalidParameter("Parameter longest_edge must be greater than 0.");
-	if (!(smoothing >= 0) || !std::isfinite(smoothing))
-		throw InvalidParameter("Parameter smoothing must be at least 0.");
+	requireParameter(
+		longestEdge > 0 && std::isfinite(longestEdge), "longest_edge", "greater than 0");
+	requireParameter(smoothing >= 0 && std::isfinite(smoothing), "smoothing", "at least 0");
 	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
 	const std::vector<Branch> branches = skeletonBranches(skeleton);
 	const std::vector<BranchRecord> table = branchTable(skeleton, branches);

@@ -39,12 +39,10 @@ struct MedialAxisParameters
 	/// @throws InvalidParameter naming the first parameter that is out of its range.
 	void check() const
 	{
-		if (!(minAngle >= 0 && minAngle <= 180))
-			throw InvalidParameter("Parameter min_angle must be between 0 and 180 degrees.");
-		if (!(minRadius >= 0) || !std::isfinite(minRadius))
-			throw InvalidParameter("Parameter min_radius must be at least 0.");
-		if (!(maxStretch > 0))
-			throw InvalidParameter("Parameter max_stretch must be greater than 0.");
+		requireParameter(
+			minAngle >= 0 && minAngle <= 180, "min_angle", "between 0 and 180 degrees");
+		requireParameter(minRadius >= 0 && std::isfinite(minRadius), "min_radius", "at least 0");
+		requireParameter(maxStretch > 0, "max_stretch", "greater than 0");
 	}
 };
 

@@ -76,8 +76,7 @@ inline BallUnion unionOfBalls(const std::vector<Point3d>& centre, const std::vec
 	constexpr double maxVoxels = 3e7;
 	constexpr int margin = 3; // voxels; the walker leaves out the last two layers
 	const char* what = "Joining the balls";
-	if (!(voxel > 0) || !std::isfinite(voxel))
-		throw InvalidParameter("Parameter voxel must be greater than 0.");
+	requireParameter(voxel > 0 && std::isfinite(voxel), "voxel", "greater than 0");
 	Box3d box;
 	for (size_t i = 0; i < centre.size(); ++i)
 		if (radius[i] > 0)

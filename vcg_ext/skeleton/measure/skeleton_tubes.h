@@ -220,8 +220,7 @@ inline SkeletonTubes skeletonTubes(const CurveSkeleton& skeleton, const std::vec
 {
 	using namespace detail;
 	constexpr double maxPoints = 1e7;
-	if (sides < 3)
-		throw InvalidParameter("Parameter sides must be at least 3.");
+	requireParameter(sides >= 3, "sides", "at least 3");
 	if (radius.size() != skeleton.position.size())
 		throw InvalidInput("Tubes need a radius for each node.");
 	for (size_t v = 0; v < radius.size(); ++v)

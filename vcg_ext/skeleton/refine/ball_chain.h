@@ -41,26 +41,36 @@ struct BallChain
 	std::vector<double> radii;
 };
 
+/**
+ * Points of a polyline at equal steps of a measure along it, both ends included.
+ * @param measure  at its points, from 0, not falling.
+ */
+inline BallChain atEqualSteps(
+	const BallChain& line, const std::vector<double>& measure, int segments)
+{
+	BallChain chain = {{line.points.front()}, {line.radii.front()}};
+	const std::vector<double> along = lengthsAlong(line.points);
+	size_t i = 1;
+	for (int k = 1; k < segments; ++k) {
+		const double s = measure.back() * k / segments;
+		while (i + 1 < measure.size() && measure[i] < s)
+			++i;
+		const double whole = measure[i] - measure[i - 1], length = along[i] - along[i - 1];
+		const double t = whole > 0 ? (s - measure[i - 1]) / whole : 0;
+		chain.points.push_back(line.points[i - 1] + (line.points[i] - line.points[i - 1]) * t);
+		// The distance from the surface cannot change faster than the place.
+		chain.radii.push_back(
+			std::max(line.radii[i - 1] - t * length, line.radii[i] - (1 - t) * length));
+	}
+	chain.points.push_back(line.points.back());
+	chain.radii.push_back(line.radii.back());
+	return chain;
+}
+
 /// Points of a polyline at equal steps of its length, both ends included.
 inline BallChain evenPoints(const BallChain& line, int segments)
 {
-	const std::vector<double> along = lengthsAlong(line.points);
-	BallChain even = {{line.points.front()}, {line.radii.front()}};
-	size_t i = 1;
-	for (int k = 1; k < segments; ++k) {
-		const double s = along.back() * k / segments;
-		while (i + 1 < along.size() && along[i] < s)
-			++i;
-		const double length = along[i] - along[i - 1];
-		const double t = length > 0 ? (s - along[i - 1]) / length : 0;
-		even.points.push_back(line.points[i - 1] + (line.points[i] - line.points[i - 1]) * t);
-		// The distance from the surface cannot change faster than the place.
-		even.radii.push_back(
-			std::max(line.radii[i - 1] - t * length, line.radii[i] - (1 - t) * length));
-	}
-	even.points.push_back(line.points.back());
-	even.radii.push_back(line.radii.back());
-	return even;
+	return atEqualSteps(line, lengthsAlong(line.points), segments);
 }
 
 /// The spacing of nodes at each point of a polyline: `spacing` times the scale there, but growing
@@ -95,30 +105,11 @@ inline std::vector<double> spacingsAlong(const BallChain& line, const ClosestSur
 inline BallChain gradedPoints(
 	const BallChain& line, const std::vector<double>& spacings, int minimum)
 {
-	std::vector<double> along(line.points.size(), 0), steps(line.points.size(), 0);
-	for (size_t i = 1; i < along.size(); ++i) {
-		const double length = Distance(line.points[i - 1], line.points[i]);
-		along[i] = along[i - 1] + length;
-		steps[i] = steps[i - 1] + length * 2 / (spacings[i - 1] + spacings[i]);
-	}
-	const int segments = std::max(minimum, int(std::lround(steps.back())));
-	BallChain graded = {{line.points.front()}, {line.radii.front()}};
-	size_t i = 1;
-	for (int k = 1; k < segments; ++k) {
-		const double s = steps.back() * k / segments;
-		while (i + 1 < steps.size() && steps[i] < s)
-			++i;
-		const double whole = steps[i] - steps[i - 1];
-		const double t = whole > 0 ? (s - steps[i - 1]) / whole : 0;
-		const double length = along[i] - along[i - 1];
-		graded.points.push_back(line.points[i - 1] + (line.points[i] - line.points[i - 1]) * t);
-		// The distance from the surface cannot change faster than the place.
-		graded.radii.push_back(
-			std::max(line.radii[i - 1] - t * length, line.radii[i] - (1 - t) * length));
-	}
-	graded.points.push_back(line.points.back());
-	graded.radii.push_back(line.radii.back());
-	return graded;
+	std::vector<double> steps(line.points.size(), 0);
+	for (size_t i = 1; i < steps.size(); ++i)
+		steps[i] = steps[i - 1]
+			+ Distance(line.points[i - 1], line.points[i]) * 2 / (spacings[i - 1] + spacings[i]);
+	return atEqualSteps(line, steps, std::max(minimum, int(std::lround(steps.back()))));
 }
 
 /// A polyline with its nodes kept and its edges cut into pieces of about the given spacings.

@@ -11,7 +11,6 @@
 #include <skeleton/core/parameters.h>
 
 #include <cmath>
-#include <string>
 
 namespace vcg::tri::mcf {
 
@@ -63,28 +62,25 @@ struct RefineParameters
 	void check() const
 	{
 		// Below that, a curve would exceed CurveBounds::holdAtEnd().
-		require(
+		requireParameter(
 			spacing >= 5e-4 && spacing <= 0.1, "spacing", "between 0.05 and 10 % of the diagonal");
-		require(spurProminence >= 0 && spurProminence <= 1, "spur_prominence", "between 0 and 1");
-		require(junctionProminence >= 0 && junctionProminence <= 1, "junction_prominence",
+		requireParameter(
+			spurProminence >= 0 && spurProminence <= 1, "spur_prominence", "between 0 and 1");
+		requireParameter(junctionProminence >= 0 && junctionProminence <= 1, "junction_prominence",
 			"between 0 and 1");
-		require(smoothing >= 0 && std::isfinite(smoothing), "smoothing", "at least 0");
-		require(stiffRounds >= 0 && rounds >= 0 && lastRounds >= 0, "rounds", "at least 0");
-		require(
+		requireParameter(smoothing >= 0 && std::isfinite(smoothing), "smoothing", "at least 0");
+		requireParameter(
+			stiffRounds >= 0 && rounds >= 0 && lastRounds >= 0, "rounds", "at least 0");
+		requireParameter(
 			tipDistinctness >= 0 && tipDistinctness <= 1, "tip_distinctness", "between 0 and 1");
-		require(tipGain > 0 && tipGain <= 1, "tip_gain", "in (0, 1]");
-		require(featureHeight >= 0 && std::isfinite(featureHeight), "feature_height", "at least 0");
-		require(featureGain > 0 && featureGain <= 1, "feature_gain", "in (0, 1]");
-		require(relativeLength > 0 && relativeLength <= 2, "relative_length", "between 0 and 2");
-		require(detail >= 0 && detail <= 1, "detail", "between 0 and 1");
-		require(tipRadius > 0 && std::isfinite(tipRadius), "tip_radius", "greater than 0");
-	}
-
-private:
-	static void require(bool holds, const char* name, const char* range)
-	{
-		if (!holds)
-			throw InvalidParameter(std::string("Parameter ") + name + " must be " + range + ".");
+		requireParameter(tipGain > 0 && tipGain <= 1, "tip_gain", "in (0, 1]");
+		requireParameter(
+			featureHeight >= 0 && std::isfinite(featureHeight), "feature_height", "at least 0");
+		requireParameter(featureGain > 0 && featureGain <= 1, "feature_gain", "in (0, 1]");
+		requireParameter(
+			relativeLength > 0 && relativeLength <= 2, "relative_length", "between 0 and 2");
+		requireParameter(detail >= 0 && detail <= 1, "detail", "between 0 and 1");
+		requireParameter(tipRadius > 0 && std::isfinite(tipRadius), "tip_radius", "greater than 0");
 	}
 };
 

@@ -93,8 +93,8 @@ public:
 	/// @param sheetThickness  see SolidChoices.
 	SolidSurface run(Repair repair, double sheetThickness, const Progress& progress)
 	{
-		if (!(sheetThickness >= 0) || !std::isfinite(sheetThickness))
-			throw InvalidParameter("Parameter sheet_thickness must be at least 0.");
+		requireParameter(
+			sheetThickness >= 0 && std::isfinite(sheetThickness), "sheet_thickness", "at least 0");
 		const bool isThickened = sheetThickness > 0 && repair != Repair::Off;
 		std::optional<InvalidInput> error;
 		try {
