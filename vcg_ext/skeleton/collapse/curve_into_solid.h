@@ -84,7 +84,7 @@ public:
 		}
 		for (size_t A = 0; A < place.size(); ++A)
 			if (isOutside[A])
-				moveInside(int(A), neighbours[A]);
+				moveInside(int(A), neighbours);
 		return bendEdges(maxLength) ? Outcome::Brought : Outcome::TooLong;
 	}
 
@@ -311,9 +311,9 @@ private:
 	/**
 	 * Moves a node to the middle of a chord: that from the nearest point of the surface if it is
 	 * next to the node, else of those from the triangles at the vertices that have merged into it
-	 * the one whose middle is nearest.
+	 * the one whose middle is nearest. It keeps away from its neighbours: edges have a length.
 	 */
-	void moveInside(int A, const std::vector<int>& neighbours)
+	void moveInside(int A, const std::vector<std::vector<int>>& neighbours)
 	{
 		constexpr double nextTo = 0.004; // two of the default epsilon
 		constexpr size_t maxTried = 32;
@@ -331,11 +331,26 @@ private:
 					}
 				}
 		}
+		const auto takenBy = [&](const Point3d& p) {
+			return std::find_if(neighbours[A].begin(), neighbours[A].end(),
+				[&](int B) { return isSame(place[B], p); });
+		};
+		const auto isFree = [&](const Point3d& p) { return takenBy(p) == neighbours[A].end(); };
 		double part = 1;
-		const auto isTaken = [&](int B) { return isSame(place[B], best.at(part)); };
-		for (int i = 0; i < 20 && std::any_of(neighbours.begin(), neighbours.end(), isTaken); ++i)
+		for (int i = 0; i < 20 && !isFree(best.at(part)); ++i)
 			part *= 0.9;
-		place[A] = best.at(part);
+		Point3d moved = best.at(part);
+		// In a corner chords have no length: between the neighbour that is there and the next one.
+		if (const auto there = takenBy(moved); there != neighbours[A].end())
+			for (const std::vector<int>& others : {neighbours[A], neighbours[*there]})
+				for (int C : others) {
+					const Point3d middle = (place[*there] + place[C]) / 2;
+					const Point3d between =
+						solid.isInside(middle) ? middle : closestChord(middle, true).at(1);
+					if (C != A && !isFree(moved) && isFree(between))
+						moved = between;
+				}
+		place[A] = moved;
 		changed[A] = 1;
 	}
 
