@@ -245,7 +245,9 @@ inline void keepEdgesInside(CurveSkeleton& skeleton, const CurveSkeleton& before
  * is the centre of the maximal ball at node i, projected on the normal plane of the branch at the
  * node, so that nodes keep their spacing. w_i is smaller where the contacts of the ball are near
  * each other and in the ball of a junction, see sharesOfCentring(), and large at tips: the curve
- * must not shrink.
+ * must not shrink. It falls as well where the centre lies ahead of or behind the node by more than
+ * half the distance from the surface, as on the way from a limb into a round body: there a small
+ * error of the tangent moves the projection by much.
  *
  * No node moves by more than half its distance from the surface, and no edge leaves the surface:
  * the nodes of one that would are moved back.
@@ -280,7 +282,10 @@ inline void centre(CurveSkeleton& skeleton, const std::vector<Contact>& contacts
 			target = contacts[v].target;
 			if (degree == 1 || degree == 2) {
 				const Point3d tangent = tangentAt(skeleton, neighbours[v], v);
-				target -= tangent * (tangent * (target - x));
+				const double along = tangent * (target - x);
+				target -= tangent * along;
+				if (std::abs(along) > distance[v] / 2)
+					weight *= std::pow(distance[v] / (2 * along), 2);
 			}
 		}
 		weight = degree == 1 ? tipWeight : weight * share[v];
