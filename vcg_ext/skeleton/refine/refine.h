@@ -16,6 +16,7 @@
 
 #include <skeleton/collapse/curve_inside.h>
 #include <skeleton/core/errors.h>
+#include <skeleton/core/parallel.h>
 #include <skeleton/core/progress.h>
 #include <skeleton/core/ticker.h>
 #include <skeleton/graph/curve_skeleton.h>
@@ -358,16 +359,22 @@ inline Refinement refineChecked(const CurveSkeleton& curve, const MeasuredSurfac
 		const std::vector<int>& ids = vertices.ids[c];
 		std::vector<int> ofVertex(ids.size(), -1);
 		std::optional<PointTree> ownNodes;
-		detail::reportedLoop(int(ofVertex.size()), ofComponent.part(0.95, 1), what, [&](int i) {
-			const int s = ids[i], before = curve.node[s];
-			if (before < 0)
-				return;
-			if (componentOfNode[before] != c && !ownNodes)
-				ownNodes.emplace(part.position);
-			const int node = componentOfNode[before] == c ? part.node[number[before]]
-														  : ownNodes->nearest(unit.position[s]);
-			ofVertex[i] =
-				isRefined ? refining::nearestAlong(part, neighbours, node, unit.position[s]) : node;
+		const auto isOther = [&](int before) {
+			return before >= 0 && componentOfNode[before] != c;
+		};
+		if (std::any_of(ids.begin(), ids.end(), [&](int s) { return isOther(curve.node[s]); }))
+			ownNodes.emplace(part.position);
+		forEachBlock(int(ofVertex.size()), ofComponent.part(0.95, 1), what, [&](int from, int to) {
+			for (int i = from; i < to; ++i) {
+				const int s = ids[i], before = curve.node[s];
+				if (before < 0)
+					continue;
+				const int node = isOther(before) ? ownNodes->nearest(unit.position[s])
+												 : part.node[number[before]];
+				ofVertex[i] = isRefined
+					? refining::nearestAlong(part, neighbours, node, unit.position[s])
+					: node;
+			}
 		});
 		part.node = std::move(ofVertex);
 		const NestedBranches nested = refining::nestedIn(closest, part, ofComponent.cancelOnly());
