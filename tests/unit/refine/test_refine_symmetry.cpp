@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 using namespace vcg::tri::mcf;
@@ -84,6 +85,35 @@ TEST(RefineSymmetry, AMissingCornerIsAdded)
 	EXPECT_EQ(now.components, 1);
 	EXPECT_EQ(now.cycles, 0);
 	EXPECT_FALSE(makeSymmetric(scene));
+}
+
+TEST(RefineSymmetry, TipsBesideTheMiddleOfAPlateGoThere)
+{
+	CurveInShape scene(flatBox(), CurveMaker().line({-0.35, -0.035, 0}, {0.35, 0.03, 0}, 70));
+	EXPECT_TRUE(makeSymmetric(scene));
+	ASSERT_EQ(scene.tips().size(), 2u);
+	for (const Point3d& tip : scene.tips()) {
+		EXPECT_NEAR(std::abs(tip[0]), 0.35, 0.01);
+		EXPECT_NEAR(tip[1], 0, 1e-3);
+	}
+	EXPECT_EQ(statistics(scene.curve).components, 1);
+	EXPECT_FALSE(makeSymmetric(scene));
+}
+
+TEST(RefineSymmetry, APlaceAlongAnotherBranchIsNoImageOfATip)
+{
+	// The image of a leg's tip lies in the bar of a U, next to the curve.
+	shapes::Soup cells =
+		shapes::cells(3, 60, 1, [](int i, int j, int) { return i != 1 || j == 0; });
+	const shapes::Soup u = shapes::scaled(shapes::moved(cells, {-1.5, -30, -0.5}), 1.0 / 60);
+	CurveInShape scene(u,
+		CurveMaker()
+			.line({-1.0 / 60, 29.5 / 60, 0}, {-1.0 / 60, -29.5 / 60, 0}, 100)
+			.line({-1.0 / 60, -29.5 / 60, 0}, {1.0 / 60, -29.5 / 60, 0}, 4)
+			.line({1.0 / 60, -29.5 / 60, 0}, {1.0 / 60, 29.3 / 60, 0}, 100));
+	ASSERT_EQ(scene.tips().size(), 2u);
+	makeSymmetric(scene);
+	EXPECT_EQ(scene.tips().size(), 2u);
 }
 
 TEST(RefineSymmetry, AStubInThePlateGoesWhereTheOthersAreMore)

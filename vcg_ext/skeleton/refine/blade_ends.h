@@ -264,6 +264,33 @@ inline std::optional<StraightEnd> straightEnd(const CurveSkeleton& skeleton, con
 }
 
 /**
+ * The skeleton with a new end of a terminal branch, in place of the nodes up to one of them.
+ * @param fromTip  the branch. @param root  the index of that node in it. @param end  to the new tip.
+ */
+inline CurveSkeleton withNewEnd(const CurveSkeleton& skeleton, const Branch& fromTip, size_t root,
+	const std::vector<Point3d>& end, KnownClearances& clearances)
+{
+	std::vector<int> target(skeleton.position.size());
+	std::iota(target.begin(), target.end(), 0);
+	const int node = fromTip.nodes[root];
+	for (size_t i = 0; i < root; ++i)
+		target[size_t(fromTip.nodes[i])] = node;
+	int last = 0; // the node's number among those that are left
+	for (int w = 0; w < node; ++w)
+		last += target[size_t(w)] == w;
+	CurveSkeleton changed = mergeNodes(skeleton, target);
+	for (const Point3d& p : end) {
+		const int next = int(changed.position.size());
+		changed.position.push_back(p);
+		changed.radius.push_back(clearances.at(p));
+		changed.edges.push_back({last, next});
+		last = next;
+	}
+	std::sort(changed.edges.begin(), changed.edges.end());
+	return changed;
+}
+
+/**
  * The skeleton with the tips of limbs that end in an edge moved to the middle of that edge, see
  * straightEnd(). Within the medial axis of such a limb nothing holds the curve: the flow leaves its
  * end anywhere between the corners.
@@ -285,23 +312,7 @@ inline CurveSkeleton withStraightEnds(CurveSkeleton skeleton, const ClosestSurfa
 		const std::optional<StraightEnd> end = straightEnd(skeleton, branch, surface, clearances);
 		if (!end)
 			continue;
-		std::vector<int> target(skeleton.position.size());
-		std::iota(target.begin(), target.end(), 0);
-		const int root = branch.nodes[end->root];
-		for (size_t i = 0; i < end->root; ++i)
-			target[size_t(branch.nodes[i])] = root;
-		int last = 0; // the root's number among those that are left
-		for (int w = 0; w < root; ++w)
-			last += target[size_t(w)] == w;
-		skeleton = mergeNodes(skeleton, target);
-		for (const Point3d& p : {end->middle, end->tip}) {
-			const int next = int(skeleton.position.size());
-			skeleton.position.push_back(p);
-			skeleton.radius.push_back(clearances.at(p));
-			skeleton.edges.push_back({last, next});
-			last = next;
-		}
-		std::sort(skeleton.edges.begin(), skeleton.edges.end());
+		skeleton = withNewEnd(skeleton, branch, end->root, {end->middle, end->tip}, clearances);
 		neighbours = skeleton.neighbours();
 	}
 	return skeleton;

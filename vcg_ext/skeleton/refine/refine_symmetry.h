@@ -7,6 +7,7 @@
 #ifndef VCG_MCF_REFINE_SYMMETRY_H
 #define VCG_MCF_REFINE_SYMMETRY_H
 
+#include "blade_ends.h"
 #include "holding_balls.h"
 #include "refine_features.h"
 #include "ball_chain.h"
@@ -67,6 +68,23 @@ inline bool isSymmetricAlong(const CurveSkeleton& skeleton, const ClosestSurface
 	return true;
 }
 
+/// The nodes of a tip's terminal branch, from the tip; of a chain from tip to tip the first half.
+inline std::vector<int> limbOf(
+	const CurveSkeleton& skeleton, const std::vector<std::vector<int>>& neighbours, int tip)
+{
+	Branch branch = branchAlong(neighbours, tip, neighbours[size_t(tip)][0]);
+	if (neighbours[size_t(branch.last())].size() > 1)
+		return branch.nodes;
+	const double half = branchLength(skeleton, branch) / 2;
+	double along = 0;
+	size_t count = 1;
+	for (; count < branch.nodes.size() && along < half; ++count)
+		along += Distance(skeleton.position[size_t(branch.nodes[count - 1])],
+			skeleton.position[size_t(branch.nodes[count])]);
+	branch.nodes.resize(count);
+	return branch.nodes;
+}
+
 /// The images of a tip under the maps of a symmetric shape.
 struct TipOrbit
 {
@@ -84,6 +102,10 @@ struct TipOrbit
 	/// a plane through a corner does. On a round rim the place of other tips is arbitrary.
 	bool isHeld = false;
 	double reach = 0; ///< its distance from the middle of all images
+	/// The place that the maps which leave the tip in its limb leave as it is: the mean of the tip's
+	/// images under them.
+	Point3d middle = Point3d(0, 0, 0);
+	bool isBeside = false; ///< whether the tip is clearly beside that, on the rim of a plate
 
 	size_t size() const { return others.size() + 1; }
 	size_t present() const
@@ -117,6 +139,7 @@ inline std::vector<TipOrbit> tipOrbits(const CurveSkeleton& skeleton, const Clos
 	KnownClearances& clearances, const std::vector<Eigen::Isometry3d>& maps)
 {
 	constexpr double always = 0.01, least = 0.02, most = 0.08; // diagonals
+	constexpr double beside = 0.01;                            // diagonals
 	constexpr double ofLength = 0.3;
 	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
 	const std::vector<int> tips = tipsOf(neighbours);
@@ -140,6 +163,7 @@ inline std::vector<TipOrbit> tipOrbits(const CurveSkeleton& skeleton, const Clos
 		};
 		TipOrbit orbit {tip, near, {}};
 		std::vector<const Eigen::Isometry3d*> holding; // that leave the tip in its place
+		Point3d held = own;                            // the sum of its images under these
 		for (const Eigen::Isometry3d& map : maps) {
 			const Point3d place = mapped(map, own);
 			const auto isThere = [&](const TipOrbit::Image& known) {
@@ -147,6 +171,7 @@ inline std::vector<TipOrbit> tipOrbits(const CurveSkeleton& skeleton, const Clos
 			};
 			if (areInOneLimb(place, own)) {
 				holding.push_back(&map);
+				held += place;
 				continue;
 			}
 			if (std::any_of(orbit.others.begin(), orbit.others.end(), isThere))
@@ -166,29 +191,15 @@ inline std::vector<TipOrbit> tipOrbits(const CurveSkeleton& skeleton, const Clos
 		for (const TipOrbit::Image& image : orbit.others)
 			sum += image.place;
 		orbit.reach = Distance(own, sum / double(orbit.size()));
+		orbit.middle = held / double(holding.size() + 1);
+		orbit.isBeside = Distance(own, orbit.middle) > beside
+			&& isInPlate(skeleton, Branch {limbOf(skeleton, neighbours, tip)}, surface);
 		for (const Eigen::Isometry3d* map : holding)
 			for (const TipOrbit::Image& image : orbit.others)
 				orbit.isHeld |= Distance(mapped(*map, image.place), image.place) > near;
 		orbits.push_back(std::move(orbit));
 	}
 	return orbits;
-}
-
-/// The nodes of a tip's terminal branch, from the tip; of a chain from tip to tip the first half.
-inline std::vector<int> limbOf(
-	const CurveSkeleton& skeleton, const std::vector<std::vector<int>>& neighbours, int tip)
-{
-	Branch branch = branchAlong(neighbours, tip, neighbours[size_t(tip)][0]);
-	if (neighbours[size_t(branch.last())].size() > 1)
-		return branch.nodes;
-	const double half = branchLength(skeleton, branch) / 2;
-	double along = 0;
-	size_t count = 1;
-	for (; count < branch.nodes.size() && along < half; ++count)
-		along += Distance(skeleton.position[size_t(branch.nodes[count - 1])],
-			skeleton.position[size_t(branch.nodes[count])]);
-	branch.nodes.resize(count);
-	return branch.nodes;
 }
 
 /**
@@ -198,15 +209,18 @@ inline std::vector<int> limbOf(
  * @param balls       of all nodes; takes in the new ones.
  * @pre the radii are the distances from the surface. @post the same.
  * @return whether it was added: not where the image of the tip is outside or in one of the balls,
- *         or where an edge would leave the surface. @throws Cancelled
+ *         where an edge would leave the surface, or where most of it would lie on the skeleton: then
+ *         the tip's image is a place along another branch. @throws Cancelled
  */
 inline bool addImage(CurveSkeleton& skeleton, const std::vector<std::vector<int>>& neighbours,
 	HoldingBalls& balls, int tip, const Eigen::Isometry3d& map, const ClosestSurface& surface,
 	KnownClearances& clearances)
 {
+	constexpr double least = 0.25; // of the limb outside the ball at its end
 	BallChain image;
 	int joint = -1;
-	for (int v : limbOf(skeleton, neighbours, tip)) {
+	const std::vector<int> limb = limbOf(skeleton, neighbours, tip);
+	for (int v : limb) {
 		const Point3d p = mapped(map, skeleton.position[size_t(v)]);
 		const double radius = clearances.at(p);
 		joint = balls.deepest(p);
@@ -215,7 +229,9 @@ inline bool addImage(CurveSkeleton& skeleton, const std::vector<std::vector<int>
 		image.points.push_back(p);
 		image.radii.push_back(radius);
 	}
-	if (image.points.empty())
+	if (image.points.empty()
+		|| lengthsAlong(image.points).back() < least
+				* (branchLength(skeleton, Branch {limb}) - skeleton.radius[size_t(limb.back())]))
 		return false;
 	if (joint < 0)
 		joint = nearestInView(skeleton, surface, image.points.back(), image.radii.back(),
@@ -342,14 +358,47 @@ inline bool removeStubs(CurveSkeleton& skeleton, const std::vector<TipOrbit>& or
 }
 
 /**
+ * Moves the first tip that is beside the middle of its images in one limb there, see
+ * TipOrbit::middle: on the rim of a plate the flow may end anywhere. Not if the middle cannot be
+ * seen from the branch.
+ * @return whether one was moved; nodes are renumbered then. @throws Cancelled
+ */
+inline bool moveTipToMiddle(CurveSkeleton& skeleton, const std::vector<TipOrbit>& orbits,
+	const ClosestSurface& surface, KnownClearances& clearances)
+{
+	constexpr double before = 2; // ways of the tip: where the new end begins
+	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
+	for (const TipOrbit& orbit : orbits) {
+		if (!orbit.isBeside)
+			continue;
+		const Branch fromTip {limbOf(skeleton, neighbours, orbit.tip)};
+		std::vector<Point3d> points;
+		for (int v : fromTip.nodes)
+			points.push_back(skeleton.position[size_t(v)]);
+		const std::vector<double> along = lengthsAlong(points);
+		const double far = before * Distance(points[0], orbit.middle);
+		const size_t root =
+			size_t(std::lower_bound(along.begin(), along.end() - 1, far) - along.begin());
+		if (root == 0
+			|| !isSegmentInside(surface, points[root], clearances.at(points[root]), orbit.middle,
+				clearances.at(orbit.middle)))
+			continue;
+		skeleton = withNewEnd(skeleton, fromTip, root, {orbit.middle}, clearances);
+		return true;
+	}
+	return false;
+}
+
+/**
  * The skeleton of a symmetric shape with the images of its branches. Where the flow is undecided, as
  * before the corners of a box or a blunt limb, one side may have a branch and the other none. Where
  * at least half of the images of a branch are present, the others are added, see addImages(); short
- * branches of which fewer are present, and branches in plates, are removed, see removeStubs().
- * @return its radii are the distances from the surface; nothing if no image is missing, if as many
+ * branches of which fewer are present, and branches in plates, are removed, see removeStubs(). Tips
+ * that lie beside the middle of their images in the same limb go there, see moveTipToMiddle().
+ * @return its radii are the distances from the surface; nothing if nothing changes, if more images
  *         are missing afterwards, or if some are and there are fewer tips.
- * @throws Cancelled. Complexity: SymmetryFinder, and if a tip's image is missing a closest point
- *         for each node and symmetry.
+ * @throws Cancelled. Complexity: SymmetryFinder, and if a tip's image is missing or beside it a
+ *         closest point for each node and symmetry.
  */
 inline std::optional<CurveSkeleton> withImages(CurveSkeleton skeleton,
 	const SurfaceComponent& component, const ClosestSurface& surface, KnownClearances& clearances,
@@ -363,14 +412,20 @@ inline std::optional<CurveSkeleton> withImages(CurveSkeleton skeleton,
 		return std::count_if(
 			some.begin(), some.end(), [](const TipOrbit& orbit) { return !orbit.isComplete(); });
 	};
+	const auto beside = [](const std::vector<TipOrbit>& some) {
+		return std::count_if(
+			some.begin(), some.end(), [](const TipOrbit& orbit) { return orbit.isBeside; });
+	};
 	const SymmetryFinder finder(component.mesh, component.vertices, surface, progress);
 	// Fitting is expensive: it is skipped where no image is missing under any candidate.
-	if (incomplete(tipOrbits(skeleton, surface, clearances, finder.possible())) == 0)
+	const std::vector<TipOrbit> possible =
+		tipOrbits(skeleton, surface, clearances, finder.possible());
+	if (incomplete(possible) + beside(possible) == 0)
 		return std::nullopt;
 	std::vector<Eigen::Isometry3d> symmetries = finder.found();
 	std::vector<Eigen::Isometry3d> maps = generatedGroup(symmetries);
 	std::vector<TipOrbit> orbits = tipOrbits(skeleton, surface, clearances, maps);
-	if (incomplete(orbits) == 0)
+	if (incomplete(orbits) + beside(orbits) == 0)
 		return std::nullopt;
 	const auto isWrong = [&](const Eigen::Isometry3d& map) {
 		return !isSymmetricAlong(skeleton, surface, clearances, map, progress);
@@ -391,9 +446,12 @@ inline std::optional<CurveSkeleton> withImages(CurveSkeleton skeleton,
 		orbits = tipOrbits(skeleton, surface, clearances, maps);
 	}
 	const auto left = incomplete(orbits);
-	if (left >= before || (left > 0 && orbits.size() < tips))
+	if (left > before || (left > 0 && orbits.size() < tips))
 		return std::nullopt;
-	return skeleton;
+	size_t moved = 0;
+	for (; moved < tips && moveTipToMiddle(skeleton, orbits, surface, clearances); ++moved)
+		orbits = tipOrbits(skeleton, surface, clearances, maps);
+	return left < before || moved > 0 ? std::optional(skeleton) : std::nullopt;
 }
 
 } // namespace vcg::tri::mcf::refining

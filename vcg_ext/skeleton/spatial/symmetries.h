@@ -424,6 +424,7 @@ public:
 		constexpr double mean = 1.5e-3, farthest = 5e-3; // diagonals
 		constexpr int rounds = 4;
 		constexpr double settled = 1e-4;
+		constexpr double hopeless = 3; // after the first round, by this factor; most candidates are
 		std::vector<Eigen::Isometry3d> maps;
 		const auto tryOut = [&](Eigen::Isometry3d map) {
 			if (!mayBe(map))
@@ -433,6 +434,8 @@ public:
 				const Eigen::Isometry3d before = std::exchange(map, fit.fitted(map, faces));
 				if ((map.matrix() - before.matrix()).norm() < settled)
 					break;
+				if (i == 0 && !fit.holds(map, faces, hopeless * mean, hopeless * farthest))
+					return false;
 			}
 			if (!fit.holds(map, faces, mean, farthest)
 				|| detail::areAlike(map, Eigen::Isometry3d::Identity()))
