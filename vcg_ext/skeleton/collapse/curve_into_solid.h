@@ -311,7 +311,7 @@ private:
 	/**
 	 * Moves a node to the middle of a chord: that from the nearest point of the surface if it is
 	 * next to the node, else of those from the triangles at the vertices that have merged into it
-	 * the one whose middle is nearest. It keeps away from its neighbours: edges have a length.
+	 * the one whose middle is nearest. Not to the place of a neighbour, so that no edge has length 0.
 	 */
 	void moveInside(int A, const std::vector<std::vector<int>>& neighbours)
 	{
@@ -340,14 +340,16 @@ private:
 		for (int i = 0; i < 20 && !isFree(best.at(part)); ++i)
 			part *= 0.9;
 		Point3d moved = best.at(part);
-		// In a corner chords have no length: between the neighbour that is there and the next one.
+		// In a corner chords have no length: there, halfway from the neighbour to another node.
 		if (const auto there = takenBy(moved); there != neighbours[A].end())
 			for (const std::vector<int>& others : {neighbours[A], neighbours[*there]})
 				for (int C : others) {
+					if (C == A || isFree(moved))
+						continue;
 					const Point3d middle = (place[*there] + place[C]) / 2;
 					const Point3d between =
 						solid.isInside(middle) ? middle : closestChord(middle, true).at(1);
-					if (C != A && !isFree(moved) && isFree(between))
+					if (isFree(between))
 						moved = between;
 				}
 		place[A] = moved;

@@ -245,9 +245,9 @@ inline void keepEdgesInside(CurveSkeleton& skeleton, const CurveSkeleton& before
  * is the centre of the maximal ball at node i, projected on the normal plane of the branch at the
  * node, so that nodes keep their spacing. w_i is smaller where the contacts of the ball are near
  * each other and in the ball of a junction, see sharesOfCentring(), and large at tips: the curve
- * must not shrink. It falls as well where the centre lies ahead of or behind the node by more than
- * half the distance from the surface, as on the way from a limb into a round body: there a small
- * error of the tangent moves the projection by much.
+ * must not shrink. It also falls where the centre lies ahead of or behind the node by more than half
+ * the distance from the surface, as on the way from a limb into a round body: there a small error of
+ * the tangent moves the projection far.
  *
  * No node moves by more than half its distance from the surface, and no edge leaves the surface:
  * the nodes of one that would are moved back.

@@ -393,12 +393,12 @@ inline bool moveTipToMiddle(CurveSkeleton& skeleton, const std::vector<TipOrbit>
  * The skeleton of a symmetric shape with the images of its branches. Where the flow is undecided, as
  * before the corners of a box or a blunt limb, one side may have a branch and the other none. Where
  * at least half of the images of a branch are present, the others are added, see addImages(); short
- * branches of which fewer are present, and branches in plates, are removed, see removeStubs(). Tips
- * that lie beside the middle of their images in the same limb go there, see moveTipToMiddle().
- * @return its radii are the distances from the surface; nothing if nothing changes, if more images
- *         are missing afterwards, or if some are and there are fewer tips.
- * @throws Cancelled. Complexity: SymmetryFinder, and if a tip's image is missing or beside it a
- *         closest point for each node and symmetry.
+ * branches of which fewer are present, and branches in plates, are removed, see removeStubs(). None of
+ * this if as many images are missing afterwards, or if some are and there are fewer tips. At last, tips
+ * in plates go to the middle of their images in the same limb, see moveTipToMiddle().
+ * @return its radii are the distances from the surface; nothing if nothing changes.
+ * @throws Cancelled. Complexity: SymmetryFinder, and if a tip is not where symmetry wants it a closest
+ *         point for each node and symmetry.
  */
 inline std::optional<CurveSkeleton> withImages(CurveSkeleton skeleton,
 	const SurfaceComponent& component, const ClosestSurface& surface, KnownClearances& clearances,
@@ -417,7 +417,7 @@ inline std::optional<CurveSkeleton> withImages(CurveSkeleton skeleton,
 			some.begin(), some.end(), [](const TipOrbit& orbit) { return orbit.isBeside; });
 	};
 	const SymmetryFinder finder(component.mesh, component.vertices, surface, progress);
-	// Fitting is expensive: it is skipped where no image is missing under any candidate.
+	// Fitting is expensive: it is skipped where nothing is to be done under any candidate.
 	const std::vector<TipOrbit> possible =
 		tipOrbits(skeleton, surface, clearances, finder.possible());
 	if (incomplete(possible) + beside(possible) == 0)
@@ -436,6 +436,7 @@ inline std::optional<CurveSkeleton> withImages(CurveSkeleton skeleton,
 	const bool isClosed = isGroup(maps);
 	measureNodes(skeleton, clearances);
 	orbits = tipOrbits(skeleton, surface, clearances, maps);
+	const CurveSkeleton given = skeleton;
 	const auto before = incomplete(orbits);
 	const size_t tips = orbits.size();
 	for (int round = 0; round < maxRounds && incomplete(orbits) > 0; ++round) {
@@ -446,12 +447,15 @@ inline std::optional<CurveSkeleton> withImages(CurveSkeleton skeleton,
 		orbits = tipOrbits(skeleton, surface, clearances, maps);
 	}
 	const auto left = incomplete(orbits);
-	if (left > before || (left > 0 && orbits.size() < tips))
-		return std::nullopt;
+	const bool isBetter = left < before && (left == 0 || orbits.size() >= tips);
+	if (!isBetter) {
+		skeleton = given;
+		orbits = tipOrbits(skeleton, surface, clearances, maps);
+	}
 	size_t moved = 0;
 	for (; moved < tips && moveTipToMiddle(skeleton, orbits, surface, clearances); ++moved)
 		orbits = tipOrbits(skeleton, surface, clearances, maps);
-	return left < before || moved > 0 ? std::optional(skeleton) : std::nullopt;
+	return isBetter || moved > 0 ? std::optional(skeleton) : std::nullopt;
 }
 
 } // namespace vcg::tri::mcf::refining
