@@ -72,6 +72,46 @@ TEST(BridgeGaps, AMissingPieceOfALimb)
 	}
 }
 
+TEST(BridgeGaps, AFarPartOfALimbThatIsAlignedWithTheRest)
+{
+	// A gap of 90 radii; the outer part is turned around the near end of the gap.
+	const auto torn = [](double degrees) {
+		const double c = std::cos(degrees * M_PI / 180), s = std::sin(degrees * M_PI / 180);
+		return mended(shapes::transformed(without(shapes::capsule(60, 0.2, 24),
+											  [](const Point3d& p) { return std::abs(p[0]) < 9; }),
+			[&](const Point3d& p) {
+				return p[0] > 0
+					? Point3d(9 + c * (p[0] - 9) - s * p[1], s * (p[0] - 9) + c * p[1], p[2])
+					: p;
+			}));
+	};
+	for (double degrees : {0, 30}) {
+		EXPECT_EQ(torn(degrees).gaps, 1) << degrees;
+		EXPECT_EQ(torn(degrees).pieces, 1) << degrees;
+		EXPECT_EQ(torn(degrees).euler, 2) << degrees;
+	}
+	EXPECT_EQ(torn(50).gaps, 0);
+	EXPECT_EQ(torn(50).pieces, 2);
+}
+
+TEST(BridgeGaps, ATwigAheadOfAMuchThickerOne)
+{
+	const auto openAt = [](double radius, double side, const Point3d& at) {
+		return shapes::moved(without(shapes::capsule(6, radius, 24),
+								 [&](const Point3d& p) { return side * p[0] > 2; }),
+			at);
+	};
+	for (double ratio : {2, 4}) {
+		const Outcome made =
+			mended(shapes::joined({openAt(0.6, 1, {0, 0, 0}), openAt(0.6 / ratio, -1, {7, 0, 1})}));
+		EXPECT_EQ(made.gaps, 1) << ratio;
+		EXPECT_EQ(made.euler, 2) << ratio;
+	}
+	// Ahead of its side it is another one.
+	EXPECT_EQ(
+		mended(shapes::joined({openAt(0.6, 1, {0, 0, 0}), openAt(0.15, -1, {3, 0, 4})})).gaps, 0);
+}
+
 TEST(BridgeGaps, RaggedEndsThatAreCutAtASlant)
 {
 	std::mt19937 random(7);
@@ -195,6 +235,17 @@ TEST(BridgeGaps, LimbsAroundALostJunction)
 	}
 }
 
+TEST(BridgeGaps, ALimbJoinsATubeRatherThanAnotherLimb)
+{
+	// The limbs aside see each other, too; a tube between them would leave both apart from the rest.
+	for (double gap : {0.6, 1.2}) {
+		const Outcome made = mended(limbsAround({0, 125, 180, 235}, gap));
+		EXPECT_EQ(made.gaps, 3) << gap;
+		EXPECT_EQ(made.pieces, 1) << gap;
+		EXPECT_EQ(made.euler, 2) << gap;
+	}
+}
+
 TEST(BridgeGaps, ALimbThatLooksPastATubeStaysApart)
 {
 	const shapes::Soup torn =
@@ -255,8 +306,8 @@ TEST(BridgeGaps, ALimbLeadsIntoAWideHoleInAnyDirection)
 
 TEST(BridgeGaps, OnlyLimbsWithinReachAreCompared)
 {
-	// Short tubes in rows along x: the next one in the row is within three diagonals, others are
-	// within 60 radii.
+	// Short tubes in rows along x: the next three in the row are within ten diagonals, others are
+	// within 240 radii.
 	constexpr int rows = 20;
 	std::vector<detail::LimbEnd> ends;
 	for (int i = 0; i < rows * rows * rows; ++i)
@@ -274,13 +325,20 @@ TEST(BridgeGaps, OnlyLimbsWithinReachAreCompared)
 	int asked = 0;
 	const auto facing =
 		detail::facingEnds(ends, GapLimits(), Progress([&](int, const char*) { return ++asked; }));
-	EXPECT_EQ(facing.size(), size_t(2 * (rows - 1) * rows * rows));
-	for (const auto& [apart, a, b] : facing) {
-		EXPECT_EQ(apart, 2);
-		EXPECT_EQ(std::min(a, b) % 2, 1);
-		EXPECT_EQ(std::abs(a - b), 1);
+	int inRow = 0;
+	for (const detail::FacingLimb& one : facing) {
+		ASSERT_LT(one.tube, 0);
+		const Point3d apart = ends[size_t(one.there)].centre - ends[size_t(one.limb)].centre;
+		const bool isInRow = apart[1] == 0 && apart[2] == 0;
+		inRow += isInRow;
+		EXPECT_LE(apart.Norm(), 10);
+		if (isInRow) {
+			EXPECT_EQ(one.apart, apart.Norm());
+			EXPECT_EQ(std::min(one.limb, one.there) % 2, 1);
+		}
 	}
-	EXPECT_LT(asked, 100); // once in some 30,000 pairs, of 3e8
+	EXPECT_EQ(inRow, (rows - 1 + rows - 2 + rows - 3) * rows * rows);
+	EXPECT_LT(asked, 1000); // once in some 30,000 pairs, of 3e8
 }
 
 TEST(BridgeGaps, AThousandLostJunctionsAreBridged)

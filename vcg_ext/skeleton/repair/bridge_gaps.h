@@ -31,30 +31,41 @@
 
 namespace vcg::tri::mcf {
 
+/// How far from each other the two sides of a gap may be, how far aside, and of how different sizes.
+struct GapReach
+{
+	/// Largest distance of their centres, in mean radii of the two, and in diagonals of the smaller
+	/// piece of surface.
+	double radii, ofPiece;
+	/// Largest angle between the heading of an end and the direction to the other end, degrees.
+	double aside;
+	/// Largest ratio of their radii; a hole that a limb leads into may be wider.
+	double wider;
+
+	double minCosine() const { return std::cos(aside * M_PI / 180); }
+};
+
 /// Which two borders count as the two sides of a gap.
 struct GapLimits
 {
-	/// Largest distance of their centres, in mean radii of the two: between two pieces of surface,
-	/// and within one piece.
-	double apart = 60, inOnePiece = 3;
-	/// The same in diagonals of the smaller piece.
-	double ofPiece = 3;
-	/// Largest angle between the heading of an end and the direction to the other end, degrees.
-	double aside = 60;
-	/// Largest ratio of their radii; a hole in a body's side that a limb leads into may be wider.
-	double wider = 3;
+	/// Between a cut limb and any border.
+	GapReach usual = {60, 3, 60, 3};
+	/// Between cut limbs of two pieces that head for each other more exactly.
+	GapReach aligned = {240, 10, 40, 6};
+	/// Largest distance within one piece of surface, in mean radii.
+	double inOnePiece = 3;
 	/// Largest number of corners of a border.
 	int edges = 1000;
 };
 
 namespace detail {
 
-/// Whether the axis of a limb passes through a hole in the side of a body, which may be wider.
+/// Whether the axis of a limb passes through a hole: in the side of a body, or where a trunk is cut
+/// through, both of which may be wider.
 inline bool leadsInto(const LimbEnd& limb, const LimbEnd& hole)
 {
 	const Point3d apart = hole.centre - limb.centre;
-	return !hole.isCutThrough
-		&& (apart - limb.heading * (limb.heading * apart)).Norm() < hole.radius;
+	return (apart - limb.heading * (limb.heading * apart)).Norm() < hole.radius;
 }
 
 /// The direction in which an end is continued towards another one: its heading, or its normal where
@@ -104,13 +115,30 @@ private:
 	Ticker ticker;
 };
 
-/// Pairs of ends that face each other, nearest first: distance over the cosine of the larger angle,
-/// and their numbers, a cut limb first. @throws Cancelled
-/// Complexity: O(n log n + p log p) for n ends, p of the pairs being within reach.
-inline std::vector<std::tuple<double, int, int>> facingEnds(const std::vector<LimbEnd>& ends,
-	const GapLimits& limits, const Progress& progress = Progress())
+/// A cut limb and what it faces: another end, or a tube between others.
+struct FacingLimb
 {
-	const double straight = std::cos(limits.aside * M_PI / 180);
+	/// Distance over the cosine of the larger angle, mesh units.
+	double apart;
+	int limb;
+	/// The number of the tube; -1: it faces an end.
+	int tube;
+	/// The number of that end, or of the tube's ring closest to the limb's heading.
+	int there;
+
+	bool operator<(const FacingLimb& other) const
+	{
+		return std::tie(apart, limb, tube, there)
+			< std::tie(other.apart, other.limb, other.tube, other.there);
+	}
+};
+
+/// Pairs of ends that face each other, of two cut limbs the narrower one first. @throws Cancelled
+/// Complexity: O(n log n + p log p) for n ends, p of the pairs being within reach.
+inline std::set<FacingLimb> facingEnds(const std::vector<LimbEnd>& ends, const GapLimits& limits,
+	const Progress& progress = Progress())
+{
+	const GapReach &usual = limits.usual, &aligned = limits.aligned;
 	double widestHole = 0;
 	for (const LimbEnd& end : ends)
 		if (!end.isCutThrough)
@@ -118,32 +146,40 @@ inline std::vector<std::tuple<double, int, int>> facingEnds(const std::vector<Li
 	LimbReaches reaches(
 		ends,
 		[&](const LimbEnd& end) {
-			const double widest = std::max(limits.wider * end.radius, widestHole);
-			return std::min(std::max(limits.apart, limits.inOnePiece) * (end.radius + widest) / 2,
-				limits.ofPiece * end.pieceDiagonal);
+			const auto reach = [&](const GapReach& of, double widest) {
+				return std::min(
+					of.radii * (end.radius + std::max(of.wider * end.radius, widest)) / 2,
+					of.ofPiece * end.pieceDiagonal);
+			};
+			return std::max(reach(usual, widestHole), reach(aligned, 0));
 		},
 		progress);
-	std::vector<std::tuple<double, int, int>> facing;
+	std::set<FacingLimb> facing;
 	const auto look = [&](int i, int k) {
 		const LimbEnd &a = ends[size_t(i)], &b = ends[size_t(k)];
+		if (b.isCutThrough && std::tie(a.radius, i) >= std::tie(b.radius, k))
+			return;
 		const Point3d apart = b.centre - a.centre;
 		const double gap = apart.Norm(), radius = (a.radius + b.radius) / 2;
 		const bool isOnePiece = a.piece == b.piece;
-		if (gap > (isOnePiece ? limits.inOnePiece : limits.apart) * radius || !(gap > 0)
-			|| gap > limits.ofPiece * std::min(a.pieceDiagonal, b.pieceDiagonal)
-			|| a.radius > limits.wider * b.radius
-			|| (b.radius > limits.wider * a.radius && !leadsInto(a, b))
+		if (!(gap > 0) || (isOnePiece && gap > limits.inOnePiece * radius)
 			|| ((isOnePiece || a.isOfSpeck || b.isOfSpeck) && !b.isCutThrough))
 			return;
-		const double ofA = a.heading * apart / gap, ofB = -(headingTo(a, b) * apart) / gap;
-		if (std::min(ofA, ofB) >= straight)
-			facing.emplace_back(gap / std::min(ofA, ofB), i, k);
+		const double cosine = std::min(a.heading * apart / gap, -(headingTo(a, b) * apart) / gap);
+		const auto isWithin = [&](const GapReach& reach, bool mayBeWider) {
+			return cosine >= reach.minCosine() && gap <= reach.radii * radius
+				&& gap <= reach.ofPiece * std::min(a.pieceDiagonal, b.pieceDiagonal)
+				&& a.radius <= reach.wider * b.radius
+				&& (b.radius <= reach.wider * a.radius || mayBeWider);
+		};
+		if (isWithin(usual, leadsInto(a, b))
+			|| (b.isCutThrough && !isOnePiece && isWithin(aligned, false)))
+			facing.insert({gap / cosine, i, -1, k});
 	};
 	for (int k = 0; k < int(ends.size()); ++k) {
 		const Point3d& centre = ends[size_t(k)].centre;
 		reaches.forEachReaching(Box3d(centre, centre), [&](int i) { look(i, k); });
 	}
-	std::sort(facing.begin(), facing.end());
 	return facing;
 }
 
@@ -181,8 +217,7 @@ public:
 	{
 		const char* const what = "Bridging gaps";
 		progress.report(0.2, what);
-		const std::vector<std::tuple<double, int, int>> facing =
-			facingEnds(ends, limits, progress.cancelOnly());
+		std::set<FacingLimb> facing = facingEnds(ends, limits, progress.cancelOnly());
 		if (facing.empty())
 			return 0;
 		given = triangles;
@@ -192,17 +227,27 @@ public:
 			for (int v : end.corner)
 				isCorner[size_t(v)] = 1;
 		edges = edgesBetween(triangles, isCorner, progress);
-		for (const auto& [apart, i, k] : facing) {
+		LimbReaches reaches(
+			ends, [&](const LimbEnd& end) { return reachOf(end); }, progress);
+		std::map<int, std::vector<FacingLimb>> failed; // by tube
+		while (!facing.empty()) {
 			progress.report(0.6, what);
-			const LimbEnd &a = ends[size_t(i)], &b = ends[size_t(k)];
-			// A second tube between two pieces would close a ring.
-			if (isFree(a) && isFree(b)
-				&& (pieces.find(a.piece) != pieces.find(b.piece)
-					|| (b.centre - a.centre).Norm()
-						<= limits.inOnePiece * (a.radius + b.radius) / 2))
-				join(a, b);
+			const FacingLimb nearest = *facing.begin();
+			facing.erase(facing.begin());
+			const size_t before = tubes.size();
+			if (nearest.tube < 0)
+				joinEnds(ends[size_t(nearest.limb)], ends[size_t(nearest.there)]);
+			else if (joinToTube(nearest)) {
+				// In the wall that is left, holes for others may be elsewhere.
+				const std::vector<FacingLimb> again = std::move(failed[nearest.tube]);
+				facing.insert(again.begin(), again.end());
+				failed.erase(nearest.tube);
+			}
+			else
+				failed[nearest.tube].push_back(nearest);
+			for (size_t t = before; t < tubes.size(); ++t)
+				lookAtTube(int(t), reaches, facing);
 		}
-		joinToTubes(progress);
 		for (const LimbTube& tube : tubes)
 			triangles.insert(triangles.end(), tube.faces.begin(), tube.faces.end());
 		return int(tubes.size());
@@ -232,10 +277,14 @@ private:
 	bool crossesElsewhere(const Triangle& t, const LimbEnd& a, const LimbEnd& b) const
 	{
 		constexpr double near = 3; // radii
+		const auto isNear = [&](int v) {
+			const Point3d& p = points[size_t(v)];
+			return (p - a.centre).Norm() <= near * a.radius
+				|| (p - b.centre).Norm() <= near * b.radius;
+		};
 		return crossesOthers(*tree, given, points, t, [&](int f) {
-			const Point3d& p = points[size_t(given[size_t(f)][0])];
-			return (p - a.centre).Norm() > near * a.radius
-				&& (p - b.centre).Norm() > near * b.radius;
+			const Triangle& other = given[size_t(f)];
+			return std::none_of(other.begin(), other.end(), isNear);
 		});
 	}
 
@@ -266,84 +315,89 @@ private:
 		return true;
 	}
 
+	/// Joins two ends, unless one of them is taken or a second tube between two pieces would close a
+	/// ring.
+	void joinEnds(const LimbEnd& a, const LimbEnd& b)
+	{
+		const bool isNear =
+			(b.centre - a.centre).Norm() <= limits.inOnePiece * (a.radius + b.radius) / 2;
+		if (!isFree(a) || !isFree(b) || !(pieces.find(a.piece) != pieces.find(b.piece) || isNear))
+			return;
+		// Where borders are ragged, a tube may fit in one direction only.
+		if (!join(a, b) && b.isCutThrough)
+			join(b, a);
+	}
+
+	/// Joins a limb to the wall of a tube, as where a junction was lost. @return whether it did.
+	bool joinToTube(const FacingLimb& facing)
+	{
+		const LimbEnd& end = ends[size_t(facing.limb)];
+		const size_t t = size_t(facing.tube);
+		if (!isFree(end) || !areApart(end, t))
+			return false;
+		std::vector<Triangle> around;
+		LimbEnd hole = holeInWall(points, tubes[t], size_t(facing.there), end, around);
+		hole.piece = pieceOfTube[t];
+		if (hole.corner.empty() || !join(end, hole))
+			return false;
+		tubes[t].faces = std::move(around);
+		return true;
+	}
+
 	bool areApart(const LimbEnd& end, size_t tube)
 	{
 		return pieces.find(end.piece) != pieces.find(pieceOfTube[tube]);
 	}
 
+	/// How far a limb reaches, mesh units.
+	static double reachOf(const LimbEnd& end, const GapReach& reach)
+	{
+		return std::min(reach.radii * end.radius, reach.ofPiece * end.pieceDiagonal);
+	}
 	double reachOf(const LimbEnd& end) const
 	{
-		return std::min(limits.apart * end.radius, limits.ofPiece * end.pieceDiagonal);
+		return std::max(reachOf(end, limits.usual), reachOf(end, limits.aligned));
 	}
 
-	/// A limb that faces a tube: distance over the cosine of the angle, end, tube, and its ring in
-	/// the direction closest to the end's heading.
-	using FacingTube = std::tuple<double, int, size_t, size_t>;
-
-	std::optional<FacingTube> facingTube(int i, size_t t) const
+	/// Adds the limbs that face a tube.
+	void lookAtTube(int tube, LimbReaches& reaches, std::set<FacingLimb>& facing)
 	{
+		Box3d box;
+		for (const Point3d& p : tubes[size_t(tube)].path)
+			box.Add(p);
+		reaches.forEachReaching(box, [&](int i) {
+			const LimbEnd& end = ends[size_t(i)];
+			if (areApart(end, size_t(tube)) && isFree(end))
+				if (const auto found = facingTube(i, tube))
+					facing.insert(*found);
+		});
+	}
+
+	std::optional<FacingLimb> facingTube(int i, int t) const
+	{
+		constexpr double betterAsEnd = 1.2; // a tube has to be so much nearer than an end
 		const LimbEnd& end = ends[size_t(i)];
-		if (end.radius > limits.wider * tubes[t].radius)
+		const LimbTube& tube = tubes[size_t(t)];
+		if (end.radius > limits.usual.wider * tube.radius)
 			return std::nullopt;
-		const double reach = reachOf(end);
-		double best = -1;
-		size_t ring = 0;
-		const size_t rings = tubes[t].path.size(), skipped = rings > 2 ? 1 : 0;
-		for (size_t k = skipped; k + skipped < rings; ++k) {
-			const Point3d apart = tubes[t].path[k] - end.centre;
-			if (const double gap = apart.Norm();
-				gap > 0 && gap <= reach && end.heading * apart > best * gap) {
-				best = end.heading * apart / gap;
+		double best = -1, gap = 0;
+		int ring = 0;
+		const int rings = int(tube.path.size()), skipped = rings > 2 ? 1 : 0;
+		for (int k = skipped; k + skipped < rings; ++k) {
+			const Point3d apart = tube.path[size_t(k)] - end.centre;
+			if (const double distance = apart.Norm();
+				distance > 0 && distance <= reachOf(end) && end.heading * apart > best * distance) {
+				best = end.heading * apart / distance;
+				gap = distance;
 				ring = k;
 			}
 		}
-		if (!(best >= std::cos(limits.aside * M_PI / 180)))
-			return std::nullopt;
-		return FacingTube((tubes[t].path[ring] - end.centre).Norm() / best, i, t, ring);
-	}
-
-	/// Where a junction was lost, joins the ends that are left to tubes between others, the nearest
-	/// first, the new tubes included.
-	void joinToTubes(const Progress& progress)
-	{
-		LimbReaches reaches(
-			ends, [&](const LimbEnd& end) { return reachOf(end); }, progress);
-		std::set<FacingTube> facing;
-		size_t seen = 0; // tubes
-		const auto lookAtNewTubes = [&] {
-			for (; seen < tubes.size(); ++seen) {
-				Box3d box;
-				for (const Point3d& p : tubes[seen].path)
-					box.Add(p);
-				if (box.IsNull())
-					continue;
-				reaches.forEachReaching(box, [&](int i) {
-					if (areApart(ends[size_t(i)], seen) && isFree(ends[size_t(i)]))
-						if (const auto found = facingTube(i, seen))
-							facing.insert(*found);
-				});
-			}
+		const auto isWithin = [&](const GapReach& reach) {
+			return best >= reach.minCosine() && gap <= reachOf(end, reach);
 		};
-		std::map<size_t, std::vector<FacingTube>> failed; // by tube
-		for (lookAtNewTubes(); !facing.empty(); lookAtNewTubes()) {
-			progress.report(0.8, "Bridging gaps");
-			const FacingTube nearest = *facing.begin();
-			facing.erase(facing.begin());
-			const auto& [apart, i, t, ring] = nearest;
-			if (!areApart(ends[size_t(i)], t) || !isFree(ends[size_t(i)]))
-				continue;
-			std::vector<Triangle> around;
-			LimbEnd hole = holeInWall(points, tubes[t], ring, ends[size_t(i)], around);
-			hole.piece = pieceOfTube[t];
-			if (hole.corner.empty() || !join(ends[size_t(i)], hole)) {
-				failed[t].push_back(nearest);
-				continue;
-			}
-			tubes[t].faces = std::move(around);
-			// In the wall that is left, holes for others may be elsewhere.
-			facing.insert(failed[t].begin(), failed[t].end());
-			failed.erase(t);
-		}
+		if (!isWithin(limits.usual) && !isWithin(limits.aligned))
+			return std::nullopt;
+		return FacingLimb {betterAsEnd * gap / best, i, t, ring};
 	}
 };
 

@@ -24,7 +24,7 @@ namespace vcg::tri::mcf::detail {
 struct LimbTube
 {
 	std::vector<Triangle> faces;
-	/// The centres of its rings; empty for a band between ends that are near each other.
+	/// The centres of its rings; for a band between ends that are near each other its middle.
 	std::vector<Point3d> path;
 	double radius = 0;
 };
@@ -82,7 +82,8 @@ inline LimbTube tubeBetween(std::vector<Point3d>& points, const LimbEnd& a, cons
 	const Point3d from = beyond(a), to = beyond(b);
 	const double gap = (to - from).Norm(), radius = (a.radius + b.radius) / 2;
 	if (gap < radius || (to - from) * (b.centre - a.centre) <= 0)
-		return {bandBetween(points, a, b), {}, std::min(a.radius, b.radius)};
+		return {
+			bandBetween(points, a, b), {(a.centre + b.centre) / 2.0}, std::min(a.radius, b.radius)};
 	const int rings = int(std::ceil(gap / radius)) + 1;
 	// A hole in the side of a body may be wider than the limb there.
 	const double narrower = std::min(a.radius, b.radius);
