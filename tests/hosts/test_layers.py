@@ -387,10 +387,10 @@ class TestMeanwhile:
 
     @pytest.fixture
     def layers(self) -> pymeshlab.MeshSet:
-        """A surface, which is current, and one with other vertices."""
+        """A surface, which is current and takes much longer than 0.1 s, and one with other vertices."""
         layers = document(arrays("hand"), arrays("box8"))
         layers.set_current_mesh(0)
-        layers.meshing_surface_subdivision_midpoint(iterations=1)
+        layers.meshing_surface_subdivision_midpoint(iterations=3, threshold=pymeshlab.PercentageValue(0))
         return layers
 
     @pytest.mark.parametrize("parameters", [{"target_length": pymeshlab.PercentageValue(0.9)}, {"resample": False}])
