@@ -208,6 +208,35 @@ TEST(MakeSolid, LeavesWhatIsTooThinToBeWrappedAndSaysSo)
 	EXPECT_EQ(piecesOf(made.surface.mesh), 2);
 }
 
+TEST(MakeSolid, WrapsThinBodiesOfWhichNothingIsLost)
+{
+	// The same two wires, 2.4 times as thick as the lattice's edges are long, and thinner between them.
+	const double length = 100, thick = 2.4 * 2.4 * 8 * length / 150000;
+	const shapes::Soup wire = shapes::box(length, thick, thick);
+	const SolidSurface made =
+		solid(shapes::joined({wire, shapes::moved(wire, {length / 2, 0.4 * thick, 0.2 * thick})}));
+	EXPECT_EQ(made.report.outcome, SolidReport::Wrapped);
+	EXPECT_EQ(checks::structureError(made.surface.mesh), "");
+	EXPECT_EQ(piecesOf(made.surface.mesh), 1);
+	const double volume = (2 * length - length / 2 * 0.6 * 0.8) * thick * thick;
+	EXPECT_NEAR(volumeIn(made.surface.mesh), volume, 0.1 * volume);
+}
+
+TEST(MakeSolid, MeasuresWhatAWrapLeavesOut)
+{
+	// Of two bars one has lost half; what is inside of the other is not lost.
+	const shapes::Soup bar = shapes::refined(shapes::box(10, 1, 1), 5),
+					   inner = shapes::refined(
+						   shapes::moved(shapes::box(8, 0.1, 0.1), {1, 0.4, 0.4}), 4);
+	const SurfaceMesh given = shapes::joined({bar, shapes::moved(bar, {0, 5, 0}), inner}).mesh();
+	const SurfaceMesh wrapped =
+		shapes::joined({bar, shapes::moved(shapes::box(5, 1, 1), {0, 5, 0})}).mesh();
+	const double area = 2 * (40 + 2) + 2 * 8 * 0.2 + 0.02;
+	EXPECT_NEAR(detail::partLeftOut(given, wrapped, 1e-3, Progress()), (20 + 1) / area, 0.01);
+	EXPECT_NEAR(detail::partLeftOut(given, wrapped, 1, Progress()), (16 + 1) / area, 0.01);
+	EXPECT_EQ(detail::partLeftOut(given, given, 1e-3, Progress()), 0);
+}
+
 TEST(MakeSolid, DoesNotTakeACavityForAnOverlap)
 {
 	// Two small balls that cross in a lens, beside a hollow one: sound, or with a hole to be mended.

@@ -56,6 +56,10 @@ constexpr double layersApart = 0.01;
 /// side s.
 constexpr double usualSquares = 30000, maxSquares = 150000;
 
+/// Thickness in spacings of the finest lattice, see SolidMaker::cellsAcross(): from the first on, a
+/// surface is wrapped; from the second on, if the wrap turns out to lose nothing.
+constexpr double cellsOfThick = 2.5, fewestCells = 1.2;
+
 /// Leaves out cavities, and pieces with less volume than two lattice cubes, except the largest.
 /// @return the number of small pieces; the cavities, and the surface with them.
 inline std::pair<int, LeftOutPieces> dropSmallPieces(
@@ -117,8 +121,8 @@ public:
 			return std::move(solid);
 		if (!error) {
 			if (repair == Repair::Auto
-				&& isToBeWrapped(solid.surface.mesh, solid.surface.turned, solid.surface.notes,
-					progress.part(0.3, 0.4)))
+				&& isToBeWrapped(solid.surface.mesh, solid.surface.turned, fewestCells,
+					solid.surface.notes, progress.part(0.3, 0.4)))
 				wrapSound(progress.part(0.4, 1));
 			return std::move(solid);
 		}
@@ -151,6 +155,8 @@ private:
 	const std::vector<Point3d>& points;
 	const std::vector<Triangle>& triangles;
 	SolidSurface solid;
+	/// cellsAcross() of a surface that is to be wrapped.
+	double cells = 0;
 
 	/// The surface around an open sheet, see thickenedSheets(); wrapped where that crosses itself.
 	SolidSurface thickened(double thickness, Repair repair, const Progress& progress)
@@ -192,9 +198,10 @@ private:
 
 	/// Wraps a sound surface. Keeps it, with a note, if the wrap fails, cuts bodies, see
 	/// isCutInWrap(), or joins none where no noticeable part of the volume is enclosed more than
-	/// once.
+	/// once; where it is thin, also if there are more pieces then, or some of it is left out.
 	void wrapSound(const Progress& progress)
 	{
+		constexpr double mayBeLeftOut = 0.02; // of the area
 		SolidSurface asItIs = std::exchange(solid, {});
 		const SurfaceMesh& mesh = asItIs.surface.mesh;
 		solid.report = asItIs.report;
@@ -226,6 +233,12 @@ private:
 		const bool isJoined = after < before || asItIs.report.overlap >= noticeableOverlap;
 		if (isCutInWrap(mesh, bodies, wrapped, pieces, progress.part(0.95, 1)))
 			keepAsItIs("a wrap would cut thin ones.");
+		else if (cells < cellsOfThick
+			&& (after > before
+				|| partLeftOut(mesh, wrapped, 2 * latticeSpacing(mesh.position, mesh.triangles()),
+					   progress.cancelOnly())
+					> mayBeLeftOut))
+			keepAsItIs("a wrap would lose its thin parts.");
 		else if (!isJoined)
 			keepAsItIs("a wrap would not join them.");
 	}
@@ -234,7 +247,8 @@ private:
 	/// is enclosed more than once; and it is not too thin to be wrapped. Adds a note if a surface
 	/// that crosses itself is kept.
 	/// @param turned  see CheckedSurface::turned.
-	bool isToBeWrapped(const SurfaceMesh& mesh, const std::vector<char>& turned,
+	/// @param minCells  below so many cellsAcross() it is too thin.
+	bool isToBeWrapped(const SurfaceMesh& mesh, const std::vector<char>& turned, double minCells,
 		std::vector<std::string>& notes, const Progress& progress)
 	{
 		const std::vector<Triangle> faces = mesh.triangles(progress);
@@ -253,9 +267,13 @@ private:
 		if (report.overlap < smallestOverlap && pieces == 1)
 			return false;
 		const TriangleTree tree(mesh.position, faces, progress.part(0.3, 0.4));
+		const auto isTooThin = [&](const Progress& part) {
+			cells = cellsAcross(mesh.position, faces, tree, part);
+			return cells < minCells;
+		};
 		if (pieces > 1
 			&& sharedWalls(mesh.position, faces, tree, progress.part(0.4, 0.5)) > noticeableWalls
-			&& !isTooThin(mesh.position, faces, tree, progress.cancelOnly()))
+			&& !isTooThin(progress.cancelOnly()))
 			return true;
 		if (report.overlap < smallestOverlap)
 			return false;
@@ -264,7 +282,7 @@ private:
 		if (!report.selfIntersections) // bodies inside bodies
 			return false;
 		const bool isNoticeable = report.overlap >= noticeableOverlap;
-		if (isNoticeable && !isTooThin(mesh.position, faces, tree, progress.part(0.9, 1)))
+		if (isNoticeable && !isTooThin(progress.part(0.9, 1)))
 			return true;
 		notes.push_back(sentence(3, report.selfIntersections,
 			report.selfIntersections == 1 ? " triangle crosses others; "
@@ -275,19 +293,27 @@ private:
 		return false;
 	}
 
-	/// Whether the finest lattice of a wrap would miss a noticeable part of the surface.
-	static bool isTooThin(const std::vector<Point3d>& points, const std::vector<Triangle>& faces,
-		const TriangleTree& tree, const Progress& progress)
+	/// The spacing of a wrap's finest lattice, mesh units.
+	static double latticeSpacing(
+		const std::vector<Point3d>& points, const std::vector<Triangle>& faces)
 	{
-		constexpr int samples = 4000;
-		constexpr double part = 0.1, cells = 2.5; // of the area; a thickness in lattice spacings
 		double area = 0;
 		for (const Triangle& t : faces)
 			area += areaVector(points, t).Norm();
-		const double minimum = cells * std::sqrt(area / maxSquares);
-		return smallThickness(
-				   placesByArea(points, faces, samples), tree, part, 2 * minimum, progress)
-			< minimum;
+		return std::sqrt(area / maxSquares);
+	}
+
+	/// The thickness that a tenth of the surface is below, in spacings of a wrap's finest lattice; up
+	/// to twice cellsOfThick.
+	static double cellsAcross(const std::vector<Point3d>& points,
+		const std::vector<Triangle>& faces, const TriangleTree& tree, const Progress& progress)
+	{
+		constexpr int samples = 4000;
+		constexpr double part = 0.1; // of the area
+		const double spacing = latticeSpacing(points, faces);
+		return smallThickness(placesByArea(points, faces, samples), tree, part,
+				   2 * cellsOfThick * spacing, progress)
+			/ spacing;
 	}
 
 	bool takeMended(const MendedSurface& mended, Repair repair, const Progress& progress)
@@ -301,7 +327,8 @@ private:
 		}
 		std::vector<std::string> notes;
 		if (repair == Repair::Auto
-			&& isToBeWrapped(checked.mesh, checked.turned, notes, progress.part(0.4, 0.6)))
+			&& isToBeWrapped(
+				checked.mesh, checked.turned, cellsOfThick, notes, progress.part(0.4, 0.6)))
 			return false;
 		std::vector<int> vertexOfInput;
 		vertexOfInput.reserve(points.size());

@@ -12,6 +12,7 @@
 #include "solid_pieces.h"
 
 #include <skeleton/core/progress.h>
+#include <skeleton/core/ticker.h>
 #include <skeleton/mesh/surface_mesh.h>
 #include <skeleton/spatial/integer_winding.h>
 #include <skeleton/spatial/triangle_tree.h>
@@ -286,6 +287,24 @@ inline bool isCutInWrap(const SurfaceMesh& mesh, const ClosedPieces& bodies,
 		all += bodyArea[b];
 	}
 	return cut > noticeable * all;
+}
+
+/// The part of a surface's area that is outside of a wrap and farther from it than a distance.
+/// @throws Cancelled. Complexity: O(F log F).
+inline double partLeftOut(
+	const SurfaceMesh& mesh, const SurfaceMesh& wrapped, double distance, const Progress& progress)
+{
+	constexpr int samples = 4000;
+	const std::vector<SurfacePlace> places =
+		placesByArea(mesh.position, mesh.triangles(progress), samples);
+	const std::vector<Triangle> faces = wrapped.triangles(progress);
+	const TriangleTree tree(wrapped.position, faces, progress.part(0, 0.5));
+	size_t leftOut = 0;
+	cancellableLoop(int(places.size()), progress.cancelOnly(), [&](int i) {
+		const Point3d& p = places[size_t(i)].point;
+		leftOut += tree.closest(p).distance > distance && integerWinding(tree, p) == 0;
+	});
+	return places.empty() ? 0 : double(leftOut) / double(places.size());
 }
 
 } // namespace detail
