@@ -167,10 +167,11 @@ inline std::set<FacingLimb> facingEnds(const std::vector<LimbEnd>& ends, const G
 			return;
 		const double cosine = std::min(a.heading * apart / gap, -(headingTo(a, b) * apart) / gap);
 		const auto isWithin = [&](const GapReach& reach, bool mayBeWider) {
-			return cosine >= reach.minCosine() && gap <= reach.radii * radius
+			return gap <= reach.radii * radius
 				&& gap <= reach.ofPiece * std::min(a.pieceDiagonal, b.pieceDiagonal)
 				&& a.radius <= reach.wider * b.radius
-				&& (b.radius <= reach.wider * a.radius || mayBeWider);
+				&& (b.radius <= reach.wider * a.radius || mayBeWider)
+				&& cosine >= reach.minCosine();
 		};
 		if (isWithin(usual, leadsInto(a, b))
 			|| (b.isCutThrough && !isOnePiece && isWithin(aligned, false)))
