@@ -278,14 +278,16 @@ private:
 	bool crossesElsewhere(const Triangle& t, const LimbEnd& a, const LimbEnd& b) const
 	{
 		constexpr double near = 3; // radii
-		const auto isNear = [&](int v) {
-			const Point3d& p = points[size_t(v)];
-			return (p - a.centre).Norm() <= near * a.radius
-				|| (p - b.centre).Norm() <= near * b.radius;
+		const auto isCornerOf = [](const LimbEnd& end, int v) {
+			return std::find(end.corner.begin(), end.corner.end(), v) != end.corner.end();
 		};
 		return crossesOthers(*tree, given, points, t, [&](int f) {
 			const Triangle& other = given[size_t(f)];
-			return std::none_of(other.begin(), other.end(), isNear);
+			const Point3d& p = points[size_t(other[0])];
+			return (p - a.centre).Norm() > near * a.radius
+				&& (p - b.centre).Norm() > near * b.radius
+				&& std::none_of(other.begin(), other.end(),
+					[&](int v) { return isCornerOf(a, v) || isCornerOf(b, v); });
 		});
 	}
 
