@@ -118,7 +118,7 @@ private:
 /// A cut limb and what it faces: another end, or a tube between others.
 struct FacingLimb
 {
-	/// Distance over the cosine of the larger angle, mesh units.
+	/// Distance over the cosine of the larger angle, mesh units; of a tube, 1.2 times that.
 	double apart;
 	int limb;
 	/// The number of the tube; -1: it faces an end.
@@ -378,29 +378,30 @@ private:
 
 	std::optional<FacingLimb> facingTube(int i, int t) const
 	{
-		constexpr double betterAsEnd = 1.2; // a tube has to be so much nearer than an end
+		constexpr double ofTube = 1.2; // a tube must be nearer than an end by this factor
 		const LimbEnd& end = ends[size_t(i)];
 		const LimbTube& tube = tubes[size_t(t)];
 		if (end.radius > limits.usual.wider * tube.radius)
 			return std::nullopt;
+		const double reach = reachOf(end);
 		double best = -1, gap = 0;
 		int ring = 0;
 		const int rings = int(tube.path.size()), skipped = rings > 2 ? 1 : 0;
 		for (int k = skipped; k + skipped < rings; ++k) {
 			const Point3d apart = tube.path[size_t(k)] - end.centre;
 			if (const double distance = apart.Norm();
-				distance > 0 && distance <= reachOf(end) && end.heading * apart > best * distance) {
+				distance > 0 && distance <= reach && end.heading * apart > best * distance) {
 				best = end.heading * apart / distance;
 				gap = distance;
 				ring = k;
 			}
 		}
-		const auto isWithin = [&](const GapReach& reach) {
-			return best >= reach.minCosine() && gap <= reachOf(end, reach);
+		const auto isWithin = [&](const GapReach& limit) {
+			return best >= limit.minCosine() && gap <= reachOf(end, limit);
 		};
 		if (!isWithin(limits.usual) && !isWithin(limits.aligned))
 			return std::nullopt;
-		return FacingLimb {betterAsEnd * gap / best, i, t, ring};
+		return FacingLimb {ofTube * gap / best, i, t, ring};
 	}
 };
 
