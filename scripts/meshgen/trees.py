@@ -137,6 +137,26 @@ def neuron(seed: int, dendrites: int = 6, levels: int = 2, soma: float = 5.0,
     return line
 
 
+def hedgehog(seed: int, body: float = 5.0) -> Centreline:
+    """A ball with 8 to 24 straight spines: 0.4 to 3 % of its radius thick at the root, half of that at the tip."""
+    rng = np.random.default_rng(seed)
+    line = Centreline()
+    centre = line.add(np.zeros(3), body)
+    spines = int(rng.integers(8, 25))
+    ways: list[Array] = []
+    while len(ways) < spines:
+        way = rng.normal(size=3)
+        way /= np.linalg.norm(way)
+        if all(way @ other < np.cos(0.35) for other in ways):
+            ways.append(way)
+    for way in ways:
+        radius = body * 10 ** rng.uniform(np.log10(0.004), np.log10(0.03))
+        root = line.add(way * (body - 2 * radius), radius)
+        line.edges.append((centre, root))
+        line.add(way * body * rng.uniform(2, 3.5), radius / 2, root)
+    return line
+
+
 def arterial(seed: int, levels: int = 4) -> Centreline:
     """A vessel tree with a stenosis in its trunk: for 4 of its length a quarter as wide."""
     rng = np.random.default_rng(seed)
@@ -322,6 +342,7 @@ FAMILIES: dict[str, Callable[[int], Centreline]] = {
     "vessel": lambda seed: tree(seed, levels=5, thickest=1.2, ratio=0.55),
     "hair": lambda seed: tree(seed, levels=5, thickest=0.3, ratio=0.6, shrink=0.8),
     "neuron": lambda seed: neuron(seed),
+    "hedgehog": lambda seed: hedgehog(seed),
     "arterial": lambda seed: arterial(seed),
     "lattice": lambda seed: lattice(2 + seed % 3),
     "creature": lambda seed: creature(seed),

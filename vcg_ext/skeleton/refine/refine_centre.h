@@ -21,6 +21,7 @@
 #include <Eigen/SparseCore>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -71,6 +72,30 @@ inline Point3d tangentAt(const CurveSkeleton& skeleton, const std::vector<int>& 
 	Point3d t = front - back;
 	const double length = t.Norm();
 	return length > 0 ? t / length : Point3d(0, 0, 0);
+}
+
+/// The unit tangent of a branch at one of its inner nodes, from the points at least so far to both
+/// sides of it, or from the branch's ends. Complexity: linear in the nodes up to there.
+inline Point3d tangentOver(const CurveSkeleton& skeleton,
+	const std::vector<std::vector<int>>& neighbours, int v, double length)
+{
+	std::array<Point3d, 2> end;
+	for (int side = 0; side < 2; ++side) {
+		int from = v, to = neighbours[v][side];
+		double way = Distance(skeleton.position[from], skeleton.position[to]);
+		while (way < length && neighbours[to].size() == 2) {
+			const int next = neighbours[to][neighbours[to][0] == from];
+			if (next == v) // of a free cycle
+				break;
+			way += Distance(skeleton.position[to], skeleton.position[next]);
+			from = to;
+			to = next;
+		}
+		end[side] = skeleton.position[to];
+	}
+	const Point3d t = end[1] - end[0];
+	const double norm = t.Norm();
+	return norm > 0 ? t / norm : Point3d(0, 0, 0);
 }
 
 /// The gradient of the distance from the surface within the medial axis: half the sum of the unit
@@ -174,14 +199,15 @@ inline void followContacts(std::vector<Contact>& contacts, const CurveSkeleton& 
 
 /**
  * Weight of the centring term per node. Inside the maximal ball of a junction the medial axis of
- * the body dominates, so weights rise with the protrusion of a node's ball from it, in its radii:
- * from `minimum` to 1, which they reach at `whole`.
+ * the body dominates, so weights rise with the protrusion of a node's ball from it: from `minimum`
+ * to 1, which they reach at `whole` radii of the junction's ball, or where the node's own ball is
+ * outside it, as in a twig that stands on a body.
  * @param distance  of each node from the surface.
  */
 inline std::vector<double> sharesOfCentring(const CurveSkeleton& skeleton,
 	const std::vector<std::vector<int>>& neighbours, const std::vector<double>& distance)
 {
-	constexpr double minimum = 0.1, whole = 0.35;
+	constexpr double minimum = 0.02, whole = 0.35;
 	std::vector<double> share(skeleton.position.size(), 1);
 	for (const Branch& branch : skeletonBranches(skeleton))
 		for (int end : {branch.nodes.front(), branch.nodes.back()}) {
@@ -192,8 +218,8 @@ inline std::vector<double> sharesOfCentring(const CurveSkeleton& skeleton,
 					continue;
 				const double out = Distance(skeleton.position[v], skeleton.position[end])
 					+ distance[v] - distance[end];
-				share[v] =
-					std::min(share[v], std::clamp(out / (whole * distance[end]), minimum, 1.0));
+				const double wholly = std::min(whole * distance[end], 2 * distance[v]);
+				share[v] = std::min(share[v], std::clamp(out / wholly, minimum, 1.0));
 			}
 		}
 	return share;
@@ -239,18 +265,38 @@ inline void keepEdgesInside(CurveSkeleton& skeleton, const CurveSkeleton& before
 }
 
 /**
+ * The weights of the points x_{k-1}, x_k, x_{k+1} in d_k, see centre(), which is x_{k-1} - 2 x_k +
+ * x_{k+1} where both edges are equally long. An edge counts as a tenth of their mean length at
+ * least: nodes that nearly coincide must not make the system singular.
+ */
+inline std::array<double, 3> secondDifference(double before, double after)
+{
+	constexpr double shortest = 0.1;
+	const double mean = (before + after) / 2;
+	if (!(mean > 0))
+		return {0, 0, 0};
+	const double a = mean / std::max(before, shortest * mean);
+	const double b = mean / std::max(after, shortest * mean);
+	return {a, -(a + b), b};
+}
+
+/**
  * One round: solves
- *     min  sum_i w_i |x_i - c_i|^2 + kappa sum_k (r_k / R)^2 |x_{k-1} - 2 x_k + x_{k+1}|^2
- * over the inner nodes k of the branches, so that curves may meet at any angle in a junction. c_i
- * is the centre of the maximal ball at node i, projected on the normal plane of the branch at the
- * node, so that nodes keep their spacing. w_i is smaller where the contacts of the ball are near
- * each other and in the ball of a junction, see sharesOfCentring(), and large at tips: the curve
- * must not shrink. It also falls where the centre lies ahead of or behind the node by more than half
- * the distance from the surface, as on the way from a limb into a round body: there a small error of
- * the tangent moves the projection far.
+ *     min  sum_i w_i |x_i - c_i|^2 + kappa sum_k (r_k / R)^2 |d_k|^2,
+ *     d_k = (a + b) / 2 ((x_{k+1} - x_k) / b - (x_k - x_{k-1}) / a),
+ * over the inner nodes k of the branches, so that curves may meet at any angle in a junction. a and
+ * b are the lengths of the edges before and after node k, so that d_k is 0 on any straight branch:
+ * nodes that are closer where the shape is thin stay so. c_i is the centre of the maximal ball at
+ * node i, projected on the normal plane of the branch at the node, so that nodes keep their spacing;
+ * the tangent is that over as long a piece of the branch as the centre lies ahead of the node. w_i
+ * is smaller where the contacts of the ball are near each other and in the ball of a junction, see
+ * sharesOfCentring(), and large at tips: the curve must not shrink. It also falls where the centre
+ * lies ahead of or behind the node by more than half the distance from the surface, as on the way
+ * from a limb into a round body, where the centre says little about the way.
  *
- * No node moves by more than half its distance from the surface, and no edge leaves the surface:
- * the nodes of one that would are moved back.
+ * No node moves by more than half its distance from the surface or a quarter of that of a neighbour
+ * (by the former alone, one that touches the surface, where the curve cuts a hollow corner, could not
+ * move). No edge leaves the surface: the nodes of one that would are moved back.
  * @param kappa for nodes at the skeleton's own spacing whose distance r_k from the surface is R.
  * @param scale where it is smaller than 1, so are that spacing and R.
  * @pre radius holds distances from the surface, or lower bounds. @post lower bounds.
@@ -266,9 +312,11 @@ inline void centre(CurveSkeleton& skeleton, const std::vector<Contact>& contacts
 	const int n = int(skeleton.position.size());
 	std::vector<Eigen::Triplet<double>> entries;
 	Eigen::MatrixX3d right(n, 3);
-	std::vector<double> distance(n);
-	for (int v = 0; v < n; ++v)
+	std::vector<double> distance(n), local(n);
+	for (int v = 0; v < n; ++v) {
 		distance[v] = contacts[v].hit.distance;
+		local[v] = scale.atFace(contacts[v].hit.face);
+	}
 	const std::vector<double> share = sharesOfCentring(skeleton, neighbours, distance);
 	for (int v = 0; v < n; ++v) {
 		const Point3d& x = skeleton.position[v];
@@ -281,7 +329,11 @@ inline void centre(CurveSkeleton& skeleton, const std::vector<Contact>& contacts
 				weightWithoutBall, 1.0);
 			target = contacts[v].target;
 			if (degree == 1 || degree == 2) {
-				const Point3d tangent = tangentAt(skeleton, neighbours[v], v);
+				Point3d tangent = tangentAt(skeleton, neighbours[v], v);
+				// A small turn of the tangent moves the projection of a centre far ahead by a lot.
+				if (degree == 2)
+					tangent =
+						tangentOver(skeleton, neighbours, v, std::abs(tangent * (target - x)));
 				const double along = tangent * (target - x);
 				target -= tangent * along;
 				if (std::abs(along) > distance[v] / 2)
@@ -296,12 +348,13 @@ inline void centre(CurveSkeleton& skeleton, const std::vector<Contact>& contacts
 			continue;
 		// Stiffness grows with the local thickness: within a large ball, small bends mean nothing.
 		// Outside the balls of junctions it is bounded: the bend may be that of an end in a corner.
-		const double reference = referenceRadius * scale.atFace(contacts[v].hit.face);
+		const double reference = referenceRadius * local[v];
 		const double relative = std::clamp(distance[v] / reference, thinnest,
 			share[v] < 1 ? std::numeric_limits<double>::infinity() : thickest);
 		const double stiffness = kappa * relative * relative;
 		const int stencil[3] = {neighbours[v][0], v, neighbours[v][1]};
-		const double second[3] = {1, -2, 1};
+		const std::array<double, 3> second =
+			secondDifference(local[stencil[0]] + local[v], local[v] + local[stencil[2]]);
 		for (int i = 0; i < 3; ++i)
 			for (int j = 0; j < 3; ++j)
 				entries.emplace_back(stencil[i], stencil[j], stiffness * second[i] * second[j]);
@@ -320,11 +373,16 @@ inline void centre(CurveSkeleton& skeleton, const std::vector<Contact>& contacts
 	for (int v = 0; v < n; ++v) {
 		const Point3d x(solution(v, 0), solution(v, 1), solution(v, 2));
 		const Point3d move = x - before.position[v];
-		const double length = move.Norm(), maximum = before.radius[v] / 2;
-		skeleton.position[v] =
-			length > maximum ? before.position[v] + move * (maximum / length) : x;
+		double maximum = before.radius[v] / 2;
+		for (int w : neighbours[v])
+			maximum = std::max(maximum, before.radius[w] / 4);
+		const double length = std::min(move.Norm(), maximum);
+		if (length > 0)
+			skeleton.position[v] = before.position[v] + move * (length / move.Norm());
 		// The distance from the surface cannot fall faster than the node moves.
-		skeleton.radius[v] = before.radius[v] - std::min(length, maximum);
+		skeleton.radius[v] = before.radius[v] - length;
+		if (skeleton.radius[v] <= 0)
+			skeleton.radius[v] = std::max(surface.clearance(skeleton.position[v]), 0.0);
 	}
 	keepEdgesInside(skeleton, before, surface, progress);
 }

@@ -96,6 +96,18 @@ inline void centreRounds(CurveSkeleton& skeleton, const ClosestSurface& surface,
 	}
 }
 
+/// The last step: ends are taken back, see withoutBluntEnds(), and with them branches that were
+/// nothing else. @throws Cancelled
+inline CurveSkeleton withEndsTakenBack(const CurveSkeleton& skeleton, KnownClearances& clearances,
+	const RefineParameters& parameters, const Progress& cancel)
+{
+	CurveSkeleton shorter = withoutBluntEnds(skeleton, clearances, parameters.tipGain);
+	if (!(parameters.spurProminence > 0))
+		return shorter;
+	measureBranchEnds(shorter, clearances);
+	return withoutCornersOfBends(shorter, cancel);
+}
+
 /**
  * Refines the skeleton of one component, in coordinates where the component's diagonal is 1. Stops
  * early where the curve exceeds CurveBounds, or where nodes are outside and cannot be moved in by
@@ -206,7 +218,7 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 			return skeleton;
 		step();
 	}
-	return withoutBluntEnds(skeleton, clearances, parameters.tipGain);
+	return withEndsTakenBack(skeleton, clearances, parameters, cancel);
 }
 
 /**
@@ -237,7 +249,7 @@ inline std::optional<CurveSkeleton> madeSymmetric(const CurveSkeleton& curve,
 	}
 	sample();
 	moveInside(skeleton, surface, cancel);
-	return withoutBluntEnds(skeleton, clearances, parameters.tipGain);
+	return withEndsTakenBack(skeleton, clearances, parameters, cancel);
 }
 
 } // namespace vcg::tri::mcf::refining

@@ -70,15 +70,16 @@ inline std::optional<vcg::Line3d> axisOf(const CurveSkeleton& skeleton, const Br
 /**
  * Whether a terminal branch leads into the corner of a bend: its junction joins two limbs that turn
  * by more than 60 degrees, and whose axes meet within the ball of its tip. The curve cuts the
- * corner, and the branch is what it leaves out, not a third limb.
- * @pre the radius of junctions and tips is their distance from the surface.
+ * corner, and the branch is what it leaves out, not a third limb. One that sticks out by
+ * minBluntHeight is.
+ * @pre the radius of junctions and tips is their distance from the surface; the diagonal is 1.
  */
 inline bool isCornerOfBend(const CurveSkeleton& skeleton,
 	const std::vector<std::vector<int>>& neighbours, const Branch& fromJunction)
 {
 	constexpr double widestBend = 120 * M_PI / 180;
 	const int junction = fromJunction.first(), tip = fromJunction.last();
-	if (neighbours[junction].size() != 3)
+	if (neighbours[junction].size() != 3 || protrusion(skeleton, tip, junction) >= minBluntHeight)
 		return false;
 	std::vector<vcg::Line3d> axes;
 	for (int w : neighbours[junction])
@@ -93,6 +94,23 @@ inline bool isCornerOfBend(const CurveSkeleton& skeleton,
 	vcg::LineLineDistance(axes[0], axes[1], parallel, apart, onOne, onOther);
 	return !parallel
 		&& Distance((onOne + onOther) / 2, skeleton.position[tip]) < skeleton.radius[tip];
+}
+
+/**
+ * Removes terminal branches into the corners of bends, see isCornerOfBend(). Where a branch goes on
+ * past the corner, it is recognised only when its end has been taken back, see withoutBluntEnds().
+ * @pre as there. @throws Cancelled
+ */
+inline CurveSkeleton withoutCornersOfBends(
+	const CurveSkeleton& skeleton, const Progress& progress = Progress())
+{
+	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
+	return withoutTerminalBranches(
+		skeleton, 0,
+		[&](const CurveSkeleton& s, const Branch& fromJunction) {
+			return isCornerOfBend(s, neighbours, fromJunction) ? -1.0 : 0.0;
+		},
+		progress);
 }
 
 /**
