@@ -69,8 +69,8 @@ inline std::optional<vcg::Line3d> axisOf(const CurveSkeleton& skeleton, const Br
 
 /**
  * Whether a terminal branch leads into the corner of a bend: its junction joins two limbs that turn
- * by more than 60 degrees, and whose axes meet within the ball of its tip. The curve cuts the
- * corner, and the branch is what it leaves out, not a third limb. One that sticks out by
+ * by more than 60 degrees, and whose axes meet nearer to its tip than the mean radius of the balls
+ * at its two ends. The curve cuts the corner, and the branch is what it leaves out, not a third limb. One that sticks out by
  * minBluntHeight is.
  * @pre the radius of junctions and tips is their distance from the surface; the diagonal is 1.
  */
@@ -92,8 +92,8 @@ inline bool isCornerOfBend(const CurveSkeleton& skeleton,
 	double apart = 0;
 	Point3d onOne, onOther; // where they are nearest to each other
 	vcg::LineLineDistance(axes[0], axes[1], parallel, apart, onOne, onOther);
-	return !parallel
-		&& Distance((onOne + onOther) / 2, skeleton.position[tip]) < skeleton.radius[tip];
+	const double near = (skeleton.radius[junction] + skeleton.radius[tip]) / 2;
+	return !parallel && Distance((onOne + onOther) / 2, skeleton.position[tip]) < near;
 }
 
 /**
