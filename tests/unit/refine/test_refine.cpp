@@ -202,6 +202,27 @@ TEST(Refine, RemovesATipThatLiesOnAnotherBranch)
 	}
 }
 
+TEST(Refine, RemovesATipWhoseBallHoldsAnotherBranch)
+{
+	// Beside a long branch along the x axis, another one from its start, at an angle.
+	const auto tipsLeft = [](double degrees, double length, double radius) {
+		const double angle = degrees * M_PI / 180;
+		SurfaceMesh none;
+		CurveSkeleton s =
+			CurveMaker()
+				.line({-3, 0, 0}, {0, 0, 0}, 10)
+				.line({0, 0, 0}, {3, 0, 0}, 10)
+				.line({0, 0, 0}, {length * std::cos(angle), length * std::sin(angle), 0}, 4)
+				.in(none);
+		s.radius.assign(s.position.size(), radius);
+		return tips(refining::withoutDoubledTips(s)).size();
+	};
+	EXPECT_EQ(tipsLeft(15, 1, 0.3), 2u) << "0.26 apart";
+	EXPECT_EQ(tipsLeft(15, 1, 0.2), 3u) << "a thin limb beside another";
+	EXPECT_EQ(tipsLeft(45, 0.5, 0.6), 3u) << "a short limb of a thick body";
+	EXPECT_EQ(tipsLeft(90, 0.5, 0.6), 3u);
+}
+
 TEST(Refine, SamplesEvenlyAtTheSpacing)
 {
 	const SurfaceMesh mesh = shapes::capsule(3, 0.35, 48).mesh();

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 /// @file
-/// @brief Refinement, the folds: branches that double back, and tips that lie on another branch.
+/// @brief Refinement, the folds: branches that double back, and tips beside another branch.
 
 #ifndef VCG_MCF_FOLDS_H
 #define VCG_MCF_FOLDS_H
@@ -66,40 +66,35 @@ inline CurveSkeleton withoutFolds(
 	return mergeNodes(skeleton, target);
 }
 
-/// Whether a branch lies on the one that leaves its first node towards `next`: all its nodes are
-/// nearer to that than a quarter of their radius. Complexity: linear in the branch, and in as much
-/// of the other.
-inline bool liesOn(const CurveSkeleton& skeleton, const std::vector<std::vector<int>>& neighbours,
-	const Branch& branch, int next)
+/// Whether a terminal branch ends beside the one that leaves its first node towards `next`: the ball
+/// of its tip holds a point of that, nearer to the tip than half of the branch is long. Limbs that part
+/// by 30 degrees or more end farther apart. Complexity: linear in the branch, and in as much of the
+/// other.
+inline bool endsBeside(const CurveSkeleton& skeleton,
+	const std::vector<std::vector<int>>& neighbours, const Branch& fromJunction, int next)
 {
-	constexpr double near = 0.25;
-	std::array<int, 2> edge = {branch.first(), next};
-	for (size_t i = 1; i < branch.nodes.size(); ++i) {
-		const Point3d& p = skeleton.position[branch.nodes[i]];
-		const auto distance = [&](const std::array<int, 2>& to) {
-			return Distance(
-				p, closestOnSegment(skeleton.position[to[0]], skeleton.position[to[1]], p).point);
-		};
-		double nearest = distance(edge);
-		while (neighbours[edge[1]].size() == 2) {
-			const std::vector<int>& ahead = neighbours[edge[1]];
-			const std::array<int, 2> following = {edge[1], ahead[ahead[0] == edge[0]]};
-			const double further = distance(following);
-			if (further > nearest || following[1] == branch.first())
-				break;
-			edge = following;
-			nearest = further;
-		}
-		if (nearest > near * skeleton.radius[branch.nodes[i]])
+	const Point3d& tip = skeleton.position[fromJunction.last()];
+	const double radius = skeleton.radius[fromJunction.last()];
+	const double length = branchLength(skeleton, fromJunction);
+	std::array<int, 2> edge = {fromJunction.first(), next};
+	for (double along = 0; along <= length + radius;) {
+		const Point3d &a = skeleton.position[edge[0]], &b = skeleton.position[edge[1]];
+		if (Distance(tip, closestOnSegment(a, b, tip).point) < std::min(radius, length / 2))
+			return true;
+		const std::vector<int>& ahead = neighbours[edge[1]];
+		if (ahead.size() != 2 || edge[1] == fromJunction.first())
 			return false;
+		along += Distance(a, b);
+		edge = {edge[1], ahead[ahead[0] == edge[0]]};
 	}
-	return true;
+	return false;
 }
 
 /**
- * Removes terminal branches that lie on another branch of their junction, which are left where a
- * branch doubled back at the junction. What had merged into them goes to the junction.
- * @pre radius holds the distances from the surface, or lower bounds. @throws Cancelled
+ * Removes terminal branches that end beside another branch of their junction, see endsBeside(): they
+ * are left where a branch doubled back at the junction, or grow beside one that is not in the middle.
+ * What had merged into them goes to the junction.
+ * @pre the radius of tips is their distance from the surface, or a lower bound. @throws Cancelled
  */
 inline CurveSkeleton withoutDoubledTips(
 	CurveSkeleton skeleton, const Progress& progress = Progress())
@@ -119,7 +114,7 @@ inline CurveSkeleton withoutDoubledTips(
 		std::reverse(branch.nodes.begin(), branch.nodes.end());
 		const auto isDoubled = [&](int next) {
 			return next != branch.nodes[1] && target[next] == next
-				&& liesOn(skeleton, neighbours, branch, next);
+				&& endsBeside(skeleton, neighbours, branch, next);
 		};
 		if (std::none_of(neighbours[junction].begin(), neighbours[junction].end(), isDoubled))
 			continue;

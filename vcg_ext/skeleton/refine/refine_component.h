@@ -105,7 +105,7 @@ inline CurveSkeleton withEndsTakenBack(const CurveSkeleton& skeleton, KnownClear
 	if (!(parameters.spurProminence > 0))
 		return shorter;
 	measureBranchEnds(shorter, clearances);
-	return withoutCornersOfBends(shorter, cancel);
+	return withoutCornersOfBends(withoutDoubledTips(std::move(shorter), cancel), cancel);
 }
 
 /**
@@ -168,7 +168,9 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 		progress.report(double(done) / total, what);
 	};
 	const auto unfold = [&] {
-		skeleton = withoutDoubledTips(withoutFolds(std::move(skeleton), surface, cancel), cancel);
+		skeleton = withoutFolds(std::move(skeleton), surface, cancel);
+		measureBranchEnds(skeleton, clearances);
+		skeleton = withoutDoubledTips(std::move(skeleton), cancel);
 	};
 	const auto extend = [&] {
 		measureBranchEnds(skeleton, clearances);
