@@ -188,9 +188,9 @@ inline std::optional<CurveSkeleton> broughtBack(
  * Refines the skeleton of one component and checks the result. Where lengths follow the local
  * thickness, what has left the surface is brought back, see broughtBack(). What still fails is
  * tried again with lengths that are the same everywhere. If the curve then leaves the surface or
- * grows too long, the last attempt uses exact closest points, and what has left the surface is
- * brought back, too: where the shape is thinner than the samples of its surface are apart, the fast
- * ones take the wrong wall. Not if the curve has more than 10000 nodes: that would take minutes.
+ * grows too long, the last attempt uses exact closest points: where the shape is thinner than the
+ * samples of its surface are apart, the fast ones take the wrong wall. Not if the curve has more
+ * than 10000 nodes: that would take minutes.
  * @param refined  the unrefined curve; receives the refined one if that has no defect.
  * @param surface  of the component; uses exact closest points from the last attempt on.
  * @throws Cancelled
@@ -200,7 +200,6 @@ inline Defect refineChecked(CurveSkeleton& refined, ClosestSurface& surface,
 	const Progress& progress)
 {
 	constexpr size_t maxNodesOfExact = 10000;
-	constexpr double longestSlip = 1.1; // times the curve: a longer one goes another way
 	constexpr double usual = 0.8,
 					 second = 0.9; // of the time: few shapes need more than one attempt
 	const CurveSkeleton unrefined = refined;
@@ -214,11 +213,9 @@ inline Defect refineChecked(CurveSkeleton& refined, ClosestSurface& surface,
 			nodes = curve.position.size();
 			const Progress end = progress.cancelOnly();
 			Defect defect = defectOf(curve, unrefined, spacing, inside, end);
-			if (defect == Defect::Outside && (!own.isUniform() || surface.isExact()))
-				if (auto back = broughtBack(curve, component, end); back
-					&& defectOfShape(*back, unrefined, spacing) == Defect::None
-					&& (!own.isUniform()
-						|| statistics(*back).length <= longestSlip * statistics(curve).length)) {
+			if (defect == Defect::Outside && !own.isUniform())
+				if (auto back = broughtBack(curve, component, end);
+					back && defectOfShape(*back, unrefined, spacing) == Defect::None) {
 					curve = std::move(*back);
 					defect = Defect::None;
 				}
