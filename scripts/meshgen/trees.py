@@ -114,19 +114,24 @@ def tree(seed: int, levels: int = 4, thickest: float = 1.5, ratio: float = 0.6,
     return line
 
 
+def ways_apart(count: int, largest_cosine: float, rng: np.random.Generator) -> list[Array]:
+    """Unit vectors, no two of which have a larger cosine."""
+    ways: list[Array] = []
+    while len(ways) < count:
+        way = rng.normal(size=3)
+        way /= np.linalg.norm(way)
+        if all(way @ other < largest_cosine for other in ways):
+            ways.append(way)
+    return ways
+
+
 def neuron(seed: int, dendrites: int = 6, levels: int = 2, soma: float = 5.0,
            radius: float = 0.25, ratio: float = 0.6) -> Centreline:
     """A ball with thin forking dendrites."""
     rng = np.random.default_rng(seed)
     line = Centreline()
     centre = line.add(np.zeros(3), soma)
-    ways: list[Array] = []
-    while len(ways) < dendrites:
-        way = rng.normal(size=3)
-        way /= np.linalg.norm(way)
-        if all(way @ other < 0.6 for other in ways):
-            ways.append(way)
-    for way in ways:
+    for way in ways_apart(dendrites, 0.6, rng):
         # The first piece is a round cone of the dendrite's own radius that starts in the soma.
         root = line.add(way * (soma - 2 * radius), radius)
         line.edges.append((centre, root))
@@ -138,18 +143,11 @@ def neuron(seed: int, dendrites: int = 6, levels: int = 2, soma: float = 5.0,
 
 
 def hedgehog(seed: int, body: float = 5.0) -> Centreline:
-    """A ball with 8 to 24 straight spines: 0.4 to 3 % of its radius thick at the root, half of that at the tip."""
+    """A ball with 8 to 24 straight spines: radii at the root 0.4 to 3 % of its own, half of that at the tip."""
     rng = np.random.default_rng(seed)
     line = Centreline()
     centre = line.add(np.zeros(3), body)
-    spines = int(rng.integers(8, 25))
-    ways: list[Array] = []
-    while len(ways) < spines:
-        way = rng.normal(size=3)
-        way /= np.linalg.norm(way)
-        if all(way @ other < np.cos(0.35) for other in ways):
-            ways.append(way)
-    for way in ways:
+    for way in ways_apart(int(rng.integers(8, 25)), np.cos(0.35), rng):
         radius = body * 10 ** rng.uniform(np.log10(0.004), np.log10(0.03))
         root = line.add(way * (body - 2 * radius), radius)
         line.edges.append((centre, root))

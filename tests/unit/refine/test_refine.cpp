@@ -631,8 +631,8 @@ TEST(Refine, ABranchThatWasOnlyAnEndPastTheCornerOfABendGoesWithIt)
 			whole, junction, curves::addNode(whole, Point3d(end, 0, 0) * size, radius * size));
 		return tips(refining::withoutCornersOfBends(curves::tracked(whole))).size();
 	};
-	EXPECT_EQ(tipsLeft(1.7, 0.4), 3u) << "past the corner, as it is extended";
-	EXPECT_EQ(tipsLeft(1.1, 1), 2u) << "taken back";
+	EXPECT_EQ(tipsLeft(1.7, 0.4), 3u) << "overshoots the corner";
+	EXPECT_EQ(tipsLeft(1.1, 1), 2u) << "trimmed";
 }
 
 TEST(Refine, GrowsABranchIntoALimbThatTheCurveLacks)

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Mean Curvature Skeletons contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The centring of nodes: what unequal edges, hollow corners and thin twigs must not do to it.
+// The centring of nodes: what unequal edges, concave corners and thin twigs must not do to it.
 
 #include "curves.h"
 #include "shapes.h"
@@ -36,13 +36,13 @@ TEST(RefineCentre, TheSecondDifferenceOfAStraightBranchIsZeroWhateverTheLengthsO
 	}
 	for (const auto& [before, after] : {std::pair(0.0, 1.0), std::pair(1.0, 0.0)})
 		for (double weight : refining::secondDifference(before, after))
-			EXPECT_LE(std::abs(weight), 11) << "nodes that coincide";
+			EXPECT_LE(std::abs(weight), 11) << "one length is 0";
 	EXPECT_EQ(refining::secondDifference(0, 0), (std::array<double, 3> {0, 0, 0}));
 }
 
-TEST(RefineCentre, ANodeThatTouchesAHollowCornerLeavesIt)
+TEST(RefineCentre, ANodeThatTouchesAConcaveCornerLeavesIt)
 {
-	// Two square tubes of width 1 that meet at a right angle; their hollow corner is at (1, 1).
+	// Two square tubes of width 1 that meet at a right angle; their concave corner is at (1, 1).
 	const SurfaceMesh elbow = shapes::subdivided(shapes::cells(10, 10, 1, [](int i, int j, int) {
 		return i == 0 || j == 0;
 	})).mesh();

@@ -102,6 +102,24 @@ private:
 	}
 };
 
+/// The first node that is at least `length` from a node, along the branch that leaves it towards `to`;
+/// the end of the branch if that is nearer. Complexity: linear in the nodes up to there.
+inline int nodeAlong(const CurveSkeleton& skeleton, const std::vector<std::vector<int>>& neighbours,
+	int start, int to, double length)
+{
+	int from = start;
+	double along = Distance(skeleton.position[from], skeleton.position[to]);
+	while (along < length && neighbours[to].size() == 2) {
+		const int next = neighbours[to][neighbours[to][0] == from];
+		if (next == start) // of a free cycle
+			break;
+		along += Distance(skeleton.position[to], skeleton.position[next]);
+		from = to;
+		to = next;
+	}
+	return to;
+}
+
 /// Length of a branch, mesh units.
 inline double branchLength(const CurveSkeleton& skeleton, const Branch& branch)
 {

@@ -67,33 +67,39 @@ inline CurveSkeleton withoutFolds(
 }
 
 /// Whether a terminal branch ends beside the one that leaves its first node towards `next`: the ball
-/// of its tip holds a point of that, nearer to the tip than half of the branch is long. Limbs that part
-/// by 30 degrees or more end farther apart. Complexity: linear in the branch, and in as much of the
-/// other.
+/// of its tip contains a point of that branch, at most length + radius along it and closer to the tip
+/// than half the length. Limbs that part at 30 degrees or more end farther apart.
+/// @param length  of the terminal branch.
+/// Complexity: linear in the nodes of the other branch up to about a radius from its start, or for as
+/// long as it runs beside the terminal branch.
 inline bool endsBeside(const CurveSkeleton& skeleton,
-	const std::vector<std::vector<int>>& neighbours, const Branch& fromJunction, int next)
+	const std::vector<std::vector<int>>& neighbours, const Branch& fromJunction, double length,
+	int next)
 {
 	const Point3d& tip = skeleton.position[fromJunction.last()];
 	const double radius = skeleton.radius[fromJunction.last()];
-	const double length = branchLength(skeleton, fromJunction);
+	const double near = std::min(radius, length / 2);
 	std::array<int, 2> edge = {fromJunction.first(), next};
-	for (double along = 0; along <= length + radius;) {
+	for (double left = length + radius; left >= 0;) {
 		const Point3d &a = skeleton.position[edge[0]], &b = skeleton.position[edge[1]];
-		if (Distance(tip, closestOnSegment(a, b, tip).point) < std::min(radius, length / 2))
+		const double step = Distance(a, b);
+		if (Distance(tip, a) > near + std::max(left, step)) // what is left does not reach the ball
+			return false;
+		if (Distance(tip, closestOnSegment(a, b, tip).point) < near)
 			return true;
 		const std::vector<int>& ahead = neighbours[edge[1]];
 		if (ahead.size() != 2 || edge[1] == fromJunction.first())
 			return false;
-		along += Distance(a, b);
+		left -= step;
 		edge = {edge[1], ahead[ahead[0] == edge[0]]};
 	}
 	return false;
 }
 
 /**
- * Removes terminal branches that end beside another branch of their junction, see endsBeside(): they
- * are left where a branch doubled back at the junction, or grow beside one that is not in the middle.
- * What had merged into them goes to the junction.
+ * Removes terminal branches that end beside another branch of their junction, see endsBeside(). They
+ * remain where a branch doubled back at the junction, or grow beside a branch that is off the medial
+ * axis. What had merged into them goes to the junction.
  * @pre the radius of tips is their distance from the surface, or a lower bound. @throws Cancelled
  */
 inline CurveSkeleton withoutDoubledTips(
@@ -112,9 +118,10 @@ inline CurveSkeleton withoutDoubledTips(
 		if (neighbours[junction].size() < 3)
 			continue;
 		std::reverse(branch.nodes.begin(), branch.nodes.end());
+		const double length = branchLength(skeleton, branch);
 		const auto isDoubled = [&](int next) {
 			return next != branch.nodes[1] && target[next] == next
-				&& endsBeside(skeleton, neighbours, branch, next);
+				&& endsBeside(skeleton, neighbours, branch, length, next);
 		};
 		if (std::none_of(neighbours[junction].begin(), neighbours[junction].end(), isDoubled))
 			continue;

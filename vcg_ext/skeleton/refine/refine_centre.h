@@ -74,28 +74,15 @@ inline Point3d tangentAt(const CurveSkeleton& skeleton, const std::vector<int>& 
 	return length > 0 ? t / length : Point3d(0, 0, 0);
 }
 
-/// The unit tangent of a branch at one of its inner nodes, from the points at least so far to both
-/// sides of it, or from the branch's ends. Complexity: linear in the nodes up to there.
+/// The unit tangent of a branch at an inner node: of the chord between the first nodes at least
+/// `length` away on both sides, or the ends of the branch. Complexity: linear in the nodes between.
 inline Point3d tangentOver(const CurveSkeleton& skeleton,
 	const std::vector<std::vector<int>>& neighbours, int v, double length)
 {
-	std::array<Point3d, 2> end;
-	for (int side = 0; side < 2; ++side) {
-		int from = v, to = neighbours[v][side];
-		double way = Distance(skeleton.position[from], skeleton.position[to]);
-		while (way < length && neighbours[to].size() == 2) {
-			const int next = neighbours[to][neighbours[to][0] == from];
-			if (next == v) // of a free cycle
-				break;
-			way += Distance(skeleton.position[to], skeleton.position[next]);
-			from = to;
-			to = next;
-		}
-		end[side] = skeleton.position[to];
-	}
-	const Point3d t = end[1] - end[0];
-	const double norm = t.Norm();
-	return norm > 0 ? t / norm : Point3d(0, 0, 0);
+	const auto end = [&](int to) {
+		return skeleton.position[nodeAlong(skeleton, neighbours, v, to, length)];
+	};
+	return (end(neighbours[v][1]) - end(neighbours[v][0])).Normalize();
 }
 
 /// The gradient of the distance from the surface within the medial axis: half the sum of the unit
@@ -201,7 +188,7 @@ inline void followContacts(std::vector<Contact>& contacts, const CurveSkeleton& 
  * Weight of the centring term per node. Inside the maximal ball of a junction the medial axis of
  * the body dominates, so weights rise with the protrusion of a node's ball from it: from `minimum`
  * to 1, which they reach at `whole` radii of the junction's ball, or where the node's own ball is
- * outside it, as in a twig that stands on a body.
+ * outside that ball, as in a thin twig on a thick body.
  * @param distance  of each node from the surface.
  */
 inline std::vector<double> sharesOfCentring(const CurveSkeleton& skeleton,
@@ -218,8 +205,8 @@ inline std::vector<double> sharesOfCentring(const CurveSkeleton& skeleton,
 					continue;
 				const double out = Distance(skeleton.position[v], skeleton.position[end])
 					+ distance[v] - distance[end];
-				const double wholly = std::min(whole * distance[end], 2 * distance[v]);
-				share[v] = std::min(share[v], std::clamp(out / wholly, minimum, 1.0));
+				const double full = std::min(whole * distance[end], 2 * distance[v]);
+				share[v] = std::min(share[v], std::clamp(out / full, minimum, 1.0));
 			}
 		}
 	return share;
@@ -266,8 +253,8 @@ inline void keepEdgesInside(CurveSkeleton& skeleton, const CurveSkeleton& before
 
 /**
  * The weights of the points x_{k-1}, x_k, x_{k+1} in d_k, see centre(), which is x_{k-1} - 2 x_k +
- * x_{k+1} where both edges are equally long. An edge counts as a tenth of their mean length at
- * least: nodes that nearly coincide must not make the system singular.
+ * x_{k+1} where both lengths are equal. A length counts as at least a tenth of their mean, which
+ * keeps the system well conditioned where the scale jumps.
  */
 inline std::array<double, 3> secondDifference(double before, double after)
 {
@@ -285,18 +272,19 @@ inline std::array<double, 3> secondDifference(double before, double after)
  *     min  sum_i w_i |x_i - c_i|^2 + kappa sum_k (r_k / R)^2 |d_k|^2,
  *     d_k = (a + b) / 2 ((x_{k+1} - x_k) / b - (x_k - x_{k-1}) / a),
  * over the inner nodes k of the branches, so that curves may meet at any angle in a junction. a and
- * b are the lengths of the edges before and after node k, so that d_k is 0 on any straight branch:
- * nodes that are closer where the shape is thin stay so. c_i is the centre of the maximal ball at
- * node i, projected on the normal plane of the branch at the node, so that nodes keep their spacing;
- * the tangent is that over as long a piece of the branch as the centre lies ahead of the node. w_i
+ * b are the lengths that the local scale asks for before and after node k, up to a common factor:
+ * where the edges have these lengths, d_k is 0 on a straight branch, and nodes that are closer
+ * together where the shape is thin stay so. c_i is the centre of the maximal ball at node i,
+ * projected on the normal plane of the branch at the node, so that nodes keep their spacing. If the
+ * centre lies far ahead, the tangent is that of a longer piece of the branch, see tangentOver(). w_i
  * is smaller where the contacts of the ball are near each other and in the ball of a junction, see
  * sharesOfCentring(), and large at tips: the curve must not shrink. It also falls where the centre
  * lies ahead of or behind the node by more than half the distance from the surface, as on the way
  * from a limb into a round body, where the centre says little about the way.
  *
  * No node moves by more than half its distance from the surface or a quarter of that of a neighbour
- * (by the former alone, one that touches the surface, where the curve cuts a hollow corner, could not
- * move). No edge leaves the surface: the nodes of one that would are moved back.
+ * (without the latter, a node that touches the surface at a concave corner could not move). No edge
+ * leaves the surface: the nodes of one that would are moved back.
  * @param kappa for nodes at the skeleton's own spacing whose distance r_k from the surface is R.
  * @param scale where it is smaller than 1, so are that spacing and R.
  * @pre radius holds distances from the surface, or lower bounds. @post lower bounds.
@@ -330,7 +318,7 @@ inline void centre(CurveSkeleton& skeleton, const std::vector<Contact>& contacts
 			target = contacts[v].target;
 			if (degree == 1 || degree == 2) {
 				Point3d tangent = tangentAt(skeleton, neighbours[v], v);
-				// A small turn of the tangent moves the projection of a centre far ahead by a lot.
+				// The farther ahead the centre, the more an error of the tangent moves its projection.
 				if (degree == 2)
 					tangent =
 						tangentOver(skeleton, neighbours, v, std::abs(tangent * (target - x)));
@@ -376,9 +364,9 @@ inline void centre(CurveSkeleton& skeleton, const std::vector<Contact>& contacts
 		double maximum = before.radius[v] / 2;
 		for (int w : neighbours[v])
 			maximum = std::max(maximum, before.radius[w] / 4);
-		const double length = std::min(move.Norm(), maximum);
+		const double norm = move.Norm(), length = std::min(norm, maximum);
 		if (length > 0)
-			skeleton.position[v] = before.position[v] + move * (length / move.Norm());
+			skeleton.position[v] = before.position[v] + move * (length / norm);
 		// The distance from the surface cannot fall faster than the node moves.
 		skeleton.radius[v] = before.radius[v] - length;
 		if (skeleton.radius[v] <= 0)

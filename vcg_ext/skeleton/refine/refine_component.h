@@ -96,9 +96,9 @@ inline void centreRounds(CurveSkeleton& skeleton, const ClosestSurface& surface,
 	}
 }
 
-/// The last step: ends are taken back, see withoutBluntEnds(), and with them branches that were
-/// nothing else. @throws Cancelled
-inline CurveSkeleton withEndsTakenBack(const CurveSkeleton& skeleton, KnownClearances& clearances,
+/// The last step: trims the ends of branches, see withoutBluntEnds(), and removes branches of which
+/// only a doubled tip or the corner of a bend is left. @throws Cancelled
+inline CurveSkeleton withTrimmedEnds(const CurveSkeleton& skeleton, KnownClearances& clearances,
 	const RefineParameters& parameters, const Progress& cancel)
 {
 	CurveSkeleton shorter = withoutBluntEnds(skeleton, clearances, parameters.tipGain);
@@ -220,7 +220,7 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 			return skeleton;
 		step();
 	}
-	return withEndsTakenBack(skeleton, clearances, parameters, cancel);
+	return withTrimmedEnds(skeleton, clearances, parameters, cancel);
 }
 
 /**
@@ -251,7 +251,7 @@ inline std::optional<CurveSkeleton> madeSymmetric(const CurveSkeleton& curve,
 	}
 	sample();
 	moveInside(skeleton, surface, cancel);
-	return withEndsTakenBack(skeleton, clearances, parameters, cancel);
+	return withTrimmedEnds(skeleton, clearances, parameters, cancel);
 }
 
 } // namespace vcg::tri::mcf::refining

@@ -40,19 +40,9 @@ struct TipRule
 inline Point3d tipDirection(
 	const CurveSkeleton& skeleton, const std::vector<std::vector<int>>& neighbours, int tip)
 {
-	double along = 0;
-	int from = tip, to = neighbours[tip].front();
-	for (;;) {
-		along += Distance(skeleton.position[from], skeleton.position[to]);
-		if (along >= skeleton.radius[tip] || neighbours[to].size() != 2)
-			break;
-		const int next = neighbours[to][0] == from ? neighbours[to][1] : neighbours[to][0];
-		from = to;
-		to = next;
-	}
-	const Point3d direction = skeleton.position[tip] - skeleton.position[to];
-	const double length = direction.Norm();
-	return length > 0 ? direction / length : Point3d(0, 0, 0);
+	const int from =
+		nodeAlong(skeleton, neighbours, tip, neighbours[tip].front(), skeleton.radius[tip]);
+	return (skeleton.position[tip] - skeleton.position[from]).Normalize();
 }
 
 /**

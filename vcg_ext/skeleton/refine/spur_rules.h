@@ -69,9 +69,9 @@ inline std::optional<vcg::Line3d> axisOf(const CurveSkeleton& skeleton, const Br
 
 /**
  * Whether a terminal branch leads into the corner of a bend: its junction joins two limbs that turn
- * by more than 60 degrees, and whose axes meet nearer to its tip than the mean radius of the balls
- * at its two ends. The curve cuts the corner, and the branch is what it leaves out, not a third limb. One that sticks out by
- * minBluntHeight is.
+ * by more than 60 degrees, and whose axes meet closer to its tip than the mean radius of the balls
+ * at its two ends. The curve cuts the corner, and the branch is what it leaves out, not a third
+ * limb. A branch that sticks out by minBluntHeight is a limb.
  * @pre the radius of junctions and tips is their distance from the surface; the diagonal is 1.
  */
 inline bool isCornerOfBend(const CurveSkeleton& skeleton,
@@ -97,9 +97,9 @@ inline bool isCornerOfBend(const CurveSkeleton& skeleton,
 }
 
 /**
- * Removes terminal branches into the corners of bends, see isCornerOfBend(). Where a branch goes on
- * past the corner, it is recognised only when its end has been taken back, see withoutBluntEnds().
- * @pre as there. @throws Cancelled
+ * Removes terminal branches into the corners of bends, see isCornerOfBend(). A branch that overshoots
+ * the corner is recognized only after its end has been trimmed by withoutBluntEnds().
+ * @pre as isCornerOfBend(). @throws Cancelled
  */
 inline CurveSkeleton withoutCornersOfBends(
 	const CurveSkeleton& skeleton, const Progress& progress = Progress())
