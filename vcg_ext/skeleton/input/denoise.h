@@ -159,6 +159,23 @@ private:
 	double maximum, products = 0, squares = 0;
 };
 
+/// The mean of lengths that are given one by one.
+class MeanEdge
+{
+public:
+	void add(double length)
+	{
+		sum += length;
+		++count;
+	}
+	/// 0 if there is none.
+	double mean() const { return count > 0 ? sum / count : 0; }
+
+private:
+	double sum = 0;
+	int count = 0;
+};
+
 } // namespace detail
 
 /**
@@ -338,7 +355,7 @@ struct NoiseReport
  * mean edge (clean surfaces show up to 0.04 % or 4 %), 10 rounds up to 0.15 %, 40 above. So
  * treated, models with 0.1 to 0.5 % of noise give the clean model's branches. Nothing is done where
  * the mean edge is longer than 3 % of the diagonal, since noise cannot be told from shape there,
- * thin or not; nor where the whiteness, see NoiseMeasure, is below 0.6: clean surfaces whose facets
+ * thin or not, nor in the thin parts or in the others if their own edges are; nor where the whiteness, see NoiseMeasure, is below 0.6: clean surfaces whose facets
  * deviate that much have up to 0.5, those with noise of 0.5 % of the diagonal 0.72 to 1.
  *
  * Thin parts are left out of that and judged by themselves, since neither their facets nor the
@@ -371,34 +388,34 @@ inline NoiseReport measureNoise(const MeasuredSurface& surface,
 		whereThin = noise.levels(progress.part(0.85, 0.9), isThin, thickness);
 	}
 	const int components = surface.components();
-	std::vector<double> edgeSum(components, 0);
-	std::vector<int> edgeCount(components, 0);
+	std::vector<detail::MeanEdge> edges(components), thinEdges(components), thickEdges(components);
 	detail::reportedLoop(
 		mesh.halfEdgeSlots(), progress.part(0.9, 1), detail::measuringNoise, [&](int h) {
 			if (!mesh.isEdge(h))
 				return;
+			const double length = std::sqrt(mesh.squaredLength(h));
 			const int c = surface.component()[mesh.origin(h)];
-			edgeSum[c] += std::sqrt(mesh.squaredLength(h));
-			++edgeCount[c];
+			edges[c].add(length);
+			for (int v : {mesh.origin(h), mesh.target(h)})
+				(!isThin.empty() && isThin[v] ? thinEdges : thickEdges)[c].add(length);
 		});
 	NoiseReport report;
 	double ofNoise = 0, ofThinNoise = 0; // the largest deviations of what gets rounds
 	double ofAll = 0, ofAllThin = 0;     // and of everything
 	for (int c = 0; c < components; ++c) {
-		const double edge = edgeSum[c] / edgeCount[c] / surface.diagonal(c);
+		const double edge = edges[c].mean() / surface.diagonal(c);
 		const auto isClean = [&](const NoiseLevel& own) {
 			const double level = own.deviation / surface.diagonal(c);
 			return level < minimum || level < minOfEdge * edge || own.whiteness < minWhiteness;
 		};
-		if (edge > coarsestEdge) {
-			report.rounds.push_back(0);
-			report.roundsWhereThin.push_back(0);
-			continue;
-		}
-		const double level = whereThick[c].deviation / surface.diagonal(c);
+		const auto isCoarse = [&](const detail::MeanEdge& own) {
+			return std::max(own.mean(), edges[c].mean()) > coarsestEdge * surface.diagonal(c);
+		};
+		const bool isFacets = isCoarse(thickEdges[c]);
+		const double level = isFacets ? 0 : whereThick[c].deviation / surface.diagonal(c);
 		// Both must be noisy: where most is thin, the rest is a few vertices of its thickest part.
-		const bool clean = isClean(all[c]) || isClean(whereThick[c]);
-		const bool isShape = whereThin[c].relative > maxOfThickness;
+		const bool clean = isFacets || isClean(all[c]) || isClean(whereThick[c]);
+		const bool isShape = isCoarse(thinEdges[c]) || whereThin[c].relative > maxOfThickness;
 		const double relative = isShape ? 0 : whereThin[c].relative;
 		const bool cleanWhereThin =
 			relative < minOfThickness || whereThin[c].whiteness < minWhiteness;
