@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 using namespace vcg::tri::mcf;
@@ -129,6 +130,24 @@ TEST(BladeEnds, TheTipsOfTwoLimbsStay)
 		along({fork, {0.25, 0.55, 0.05}, {0.25, 0.95, 0.05}}, along({{0.15, 0.1, 0.05}, fork})));
 	CurveInShape scene(shapes::scaled(hand, 0.05), curve);
 	EXPECT_EQ(tipsWithoutForks(scene).size(), 3u);
+}
+
+TEST(BladeEnds, AStubAtTheRootOfASpineDoesNotEndBesideItsTip)
+{
+	// Along x: a ball of radius 0.2 about the origin, with a spine of radius 0.003 from it to 0.5.
+	constexpr double ball = 0.2, spine = 0.003;
+	std::vector<std::pair<double, double>> profile;
+	for (int i = 32; i > 0; --i)
+		if (const double y = ball * std::sin(i * M_PI / 32); y > spine)
+			profile.emplace_back(ball * std::cos(i * M_PI / 32), y);
+	for (double x = ball; x < 0.5; x += spine)
+		profile.emplace_back(x, spine);
+	profile.emplace_back(0.5, 0);
+	profile.insert(profile.begin(), {-ball, 0});
+	const Point3d root(ball + 0.005, 0, 0), stub(ball + 0.007, 0.001, 0), tip(0.49, 0, 0);
+	CurveInShape scene(shapes::revolved(profile, 12),
+		along({root, stub}, along({root, tip}, along({{0, 0, 0}, root}))));
+	EXPECT_EQ(tipsWithoutForks(scene), scene.tips());
 }
 
 TEST(BladeEnds, EachPointOfAStarHasOneTipHalfWayUp)

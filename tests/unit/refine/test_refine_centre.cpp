@@ -63,6 +63,30 @@ TEST(RefineCentre, ANodeThatTouchesAConcaveCornerLeavesIt)
 	EXPECT_GT(nearest, 0.4) << "the middle of the tubes has 0.5, that of the bend more";
 }
 
+TEST(RefineCentre, AThinTwigIsNotDrawnAsideByTheFacetsOfItsBody)
+{
+	// Three limbs on a ball of radius 1. Below their roots, nodes at a depth of 0.1 stick out of it by 0.04.
+	const auto shareBelow = [](double limb) {
+		CurveSkeleton s;
+		s.position = {{0, 0, 0}};
+		std::vector<double> distance = {1};
+		for (const Point3d& d : {Point3d(1, 0, 0), Point3d(0, 1, 0), Point3d(0, 0, 1)})
+			for (const double x : {0.94, 1.5, 2.0}) {
+				const int v = int(s.position.size());
+				s.position.push_back(d * x);
+				distance.push_back(x < 1 ? 0.1 : limb);
+				s.edges.push_back({x < 1 ? 0 : v - 1, v});
+			}
+		const std::vector<double> share = refining::sharesOfCentring(s, s.neighbours(), distance);
+		EXPECT_EQ(share.back(), 1);
+		return share[1];
+	};
+	const double ofThick = shareBelow(0.15), ofTwig = shareBelow(0.01);
+	EXPECT_NEAR(ofThick, 0.04 / 0.2, 1e-12) << "of the 0.2 by which its ball would be outside";
+	EXPECT_LT(ofTwig, 0.3 * ofThick);
+	EXPECT_GT(shareBelow(0.05), ofTwig);
+}
+
 TEST(RefineCentre, ATwigEntersARoundBodyAlongItsAxis)
 {
 	constexpr double twig = 0.01; // radii of the ball

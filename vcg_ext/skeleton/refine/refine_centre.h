@@ -189,24 +189,40 @@ inline void followContacts(std::vector<Contact>& contacts, const CurveSkeleton& 
  * the body dominates, so weights rise with the protrusion of a node's ball from it: from `minimum`
  * to 1, which they reach at `whole` radii of the junction's ball, or where the node's own ball is
  * outside that ball, as in a thin twig on a thick body.
+ *
+ * The thinner the twig, the less the body says about its axis: facets of the body stick out of the
+ * junction's ball, too, and draw the curve aside. Weights of a twig that is `thin` rise with the
+ * protrusion to the power of up to 2, from as little as `minimumOfThin`.
  * @param distance  of each node from the surface.
  */
 inline std::vector<double> sharesOfCentring(const CurveSkeleton& skeleton,
 	const std::vector<std::vector<int>>& neighbours, const std::vector<double>& distance)
 {
-	constexpr double minimum = 0.02, whole = 0.35;
+	constexpr double minimum = 0.02, minimumOfThin = 2e-4, whole = 0.35;
+	constexpr double thin = 0.15; // radii of the junction's ball
 	std::vector<double> share(skeleton.position.size(), 1);
-	for (const Branch& branch : skeletonBranches(skeleton))
-		for (int end : {branch.nodes.front(), branch.nodes.back()}) {
+	for (Branch branch : skeletonBranches(skeleton))
+		for (int side = 0; side < 2; ++side) {
+			std::reverse(branch.nodes.begin(), branch.nodes.end());
+			const int end = branch.first();
 			if (neighbours[end].size() < 3 || distance[end] <= 0)
 				continue;
+			const auto out = [&](int v) {
+				return Distance(skeleton.position[v], skeleton.position[end]) + distance[v]
+					- distance[end];
+			};
+			const auto left = std::find_if(branch.nodes.begin(), branch.nodes.end(),
+				[&](int v) { return v != end && out(v) >= 2 * distance[v]; });
+			const double thickness =
+				left == branch.nodes.end() ? 1 : distance[*left] / distance[end];
+			const double ofThin = 1 - std::min(thickness / thin, 1.0);
+			const double lowest = std::pow(minimum, 1 - ofThin) * std::pow(minimumOfThin, ofThin);
 			for (int v : branch.nodes) {
 				if (v == end)
 					continue;
-				const double out = Distance(skeleton.position[v], skeleton.position[end])
-					+ distance[v] - distance[end];
 				const double full = std::min(whole * distance[end], 2 * distance[v]);
-				share[v] = std::min(share[v], std::clamp(out / full, minimum, 1.0));
+				const double part = std::clamp(out(v) / full, 0.0, 1.0);
+				share[v] = std::min(share[v], std::max(std::pow(part, 1 + ofThin), lowest));
 			}
 		}
 	return share;
