@@ -13,6 +13,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -112,6 +113,35 @@ TEST(ThinSamples, ATubeIsResampledAlikeHoweverLongItsTrianglesAre)
 	EXPECT_GT(longTriangles.mesh.vertexCount(), 0.85 * compact.mesh.vertexCount());
 	EXPECT_LT(longTriangles.mesh.vertexCount(), 2.0 * compact.mesh.vertexCount());
 	EXPECT_NEAR(longTriangles.mesh.volume(), compact.mesh.volume(), 0.05 * compact.mesh.volume());
+}
+
+TEST(ThinSamples, ARodInLongTrianglesIsThinHoweverManyVerticesTheBodyHasThatItStandsOn)
+{
+	// A ball of radius 20 in compact triangles, and a rod of radius 0.1 with vertices at its ends only.
+	constexpr double ball = 20, rod = 0.1, end = 70;
+	constexpr int rings = 48;
+	std::vector<std::pair<double, double>> profile = {{-ball, 0}};
+	for (int i = 1; i < rings; ++i)
+		profile.emplace_back(-ball * std::cos(i * M_PI / rings), ball * std::sin(i * M_PI / rings));
+	profile.insert(profile.end(), {{ball, rod}, {end, rod}, {end, 0}});
+	const SurfaceMesh mesh = shapes::revolved(profile, 16).mesh();
+	std::vector<std::string> notes;
+	const ResampledSurface resampled = resampledSurface(
+		mesh, Parameters(), Progress(), [&](const std::string& note) { notes.push_back(note); });
+	int along = 0;
+	double longest = 0;
+	for (int h = 0; h < resampled.mesh.halfEdgeSlots(); ++h) {
+		const Point3d &a = resampled.mesh.position[resampled.mesh.origin(h)],
+					  &b = resampled.mesh.position[resampled.mesh.target(h)];
+		if (std::min(a[0], b[0]) < 25 || std::max(a[0], b[0]) > 65)
+			continue;
+		++along;
+		longest = std::max(longest, Distance(a, b));
+	}
+	EXPECT_GT(along, 1000);
+	EXPECT_LT(longest, 2 * rod);
+	ASSERT_FALSE(notes.empty());
+	EXPECT_NE(notes.front().find("thin"), std::string::npos) << notes.front();
 }
 
 TEST(ThinSamples, ANeedleThinnerThanTheShortestEdgesIsResampledAsIfNothingWereThin)

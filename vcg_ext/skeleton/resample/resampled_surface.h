@@ -11,6 +11,7 @@
 #include "target_length.h"
 #include "thin_samples.h"
 
+#include <skeleton/core/large_arrays.h>
 #include <skeleton/core/notes.h>
 #include <skeleton/core/parameters.h>
 #include <skeleton/core/progress.h>
@@ -64,6 +65,65 @@ inline std::vector<double> localThickness(const MeasuredSurface& surface, const 
 	return thickness;
 }
 
+/// The length of the shortest edge at each vertex. @throws Cancelled. Complexity: O(E).
+inline std::vector<double> shortestEdges(const SurfaceMesh& mesh, const Progress& cancel)
+{
+	std::vector<double> shortest = detail::filledArray(
+		size_t(mesh.vertexSlots()), std::numeric_limits<double>::infinity(), cancel);
+	detail::cancellableLoop(mesh.halfEdgeSlots(), cancel, [&](int h) {
+		if (mesh.isEdge(h))
+			for (int v : {mesh.origin(h), mesh.target(h)})
+				shortest[v] = std::min(shortest[v], std::sqrt(mesh.squaredLength(h)));
+	});
+	return shortest;
+}
+
+/**
+ * localThickness() by samples along the long edges of a coarse mesh; empty if it has hardly any or
+ * nothing is thin. Of a rod in long triangles, only the vertices at its two ends show how thin it
+ * is, and the body that it stands on may have many more, a few edges away: see isThin(). Their
+ * shortest edges are no longer than the rod is thick. Where that takes too many samples, those of
+ * the thinnest parts are farther apart.
+ * @return for the surface's vertices.
+ * @throws Cancelled. Complexity: as medialPoles() of at most 40000 samples.
+ */
+inline std::vector<double> thicknessBySamples(
+	const MeasuredSurface& surface, const Parameters& parameters, const Progress& cancel)
+{
+	constexpr double maxSamples = 40000;
+	if (surface.mesh().vertexCount() > maxSamples)
+		return {};
+	const std::vector<double> any(
+		size_t(surface.components()), std::numeric_limits<double>::infinity());
+	std::vector<double> across = shortestEdges(surface.mesh(), cancel);
+	std::optional<SurfaceMesh> sampled;
+	for (double length = shortestLength; !sampled && length < neutralLength; length *= 2) {
+		detail::cancellableLoop(int(across.size()), cancel, [&](int v) {
+			const double diagonal = surface.diagonal(surface.component()[v]);
+			across[v] = std::max(across[v], length * diagonal);
+		});
+		sampled = withThinPartsSampled(surface, across, any, maxSamples, cancel);
+	}
+	if (!sampled)
+		return {};
+	const MeasuredSurface dense(*sampled, cancel);
+	std::vector<double> thickness = localThickness(
+		dense, measuredThinPlaces(dense, parameters, any, cancel), parameters, cancel);
+	if (!thickness.empty())
+		thickness.resize(across.size()); // the surface's own vertices come first
+	return thickness;
+}
+
+/// The smaller one of both at each vertex; empty is infinite everywhere.
+inline std::vector<double> smallerOf(std::vector<double> one, const std::vector<double>& other)
+{
+	if (one.empty())
+		return other;
+	for (size_t v = 0; v < other.size(); ++v)
+		one[v] = std::min(one[v], other[v]);
+	return one;
+}
+
 /// Whether edges may be as short as a sizing field says at a vertex, see shortestLength. Of needles
 /// that are thinner, more samples show no more.
 inline bool isResolvable(const MeasuredSurface& surface, double length, int v)
@@ -94,13 +154,15 @@ inline VertexBudget budgetOf(const SurfaceMesh& mesh)
 }
 
 /// The budget of a mesh that shows the thickness along its triangles, bounded by the input's
-/// vertices: a small mesh of needles would be resampled for minutes. Edges longer than one thickness
-/// hardly reduce the vertices of a tube.
-/// @param sampled see withThinPartsSampled().
-inline VertexBudget budgetWithSamples(const SurfaceMesh& mesh, const SurfaceMesh& sampled)
+/// vertices, or by some times those of an even mesh if that is more: a small mesh of needles would
+/// be resampled for minutes. Edges longer than one thickness hardly reduce the vertices of a tube.
+/// @param sampled see withThinPartsSampled(). @param even vertices of a mesh of even edges.
+inline VertexBudget budgetWithSamples(
+	const SurfaceMesh& mesh, const SurfaceMesh& sampled, double even)
 {
-	constexpr double ofVertex = 120, longest = 1.2;
-	return {std::min(ofVertex * mesh.vertexCount(), budgetOf(sampled).vertices), longest};
+	constexpr double ofVertex = 120, ofEven = 3.5, longest = 1.2;
+	const double ofMesh = std::max(ofVertex * mesh.vertexCount(), ofEven * even);
+	return {std::min(ofMesh, budgetOf(sampled).vertices), longest};
 }
 
 /// withThinPartsSampled() where edges can be short enough for the thickness.
@@ -246,7 +308,8 @@ inline void tellNoise(const NoiseReport& noise, bool isSmoothed, const NoteCallb
 /**
  * Smooths the noise of a surface where there is any, if parameters.denoise is set, and resamples
  * it, with the edge length of defaultTargetLength() or, with parameters.adaptive, less where the
- * shape is thin, see sizingField(), also along long triangles, see withThinPartsSampled().
+ * shape is thin, see sizingField(), also along long triangles, see thicknessBySamples() and
+ * withThinPartsSampled().
  * @param mesh   closed two-manifold, compact.
  * @param given  see sharedAmong() for more than 50 components.
  * @param onNote receives what was found and done; may be empty.
@@ -264,8 +327,10 @@ inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Paramete
 	if (parameters.adaptive) {
 		const std::vector<double> any(
 			size_t(surface.components()), std::numeric_limits<double>::infinity());
-		places = measuredThinPlaces(surface, parameters, any, progress.part(0.05, 0.19));
-		thickness = localThickness(surface, *places, parameters, progress.part(0.19, 0.2));
+		places = measuredThinPlaces(surface, parameters, any, progress.part(0.05, 0.18));
+		thickness =
+			smallerOf(localThickness(surface, *places, parameters, progress.part(0.18, 0.19)),
+				thicknessBySamples(surface, parameters, progress.part(0.19, 0.2).cancelOnly()));
 	}
 	result.noise = measureNoise(surface, progress.part(0.2, 0.25), thickness);
 	const bool smooth = parameters.denoise && result.noise.isNoisy();
@@ -279,8 +344,10 @@ inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Paramete
 					sampledWhereResolvable(calm, thickness, parameters, progress.cancelOnly())) {
 				const MeasuredSurface dense(*sampled, progress.cancelOnly());
 				std::vector<std::string> notes;
+				const double even =
+					expectedVertices(calm, length, SizingField(), progress.cancelOnly());
 				const std::optional<SizingField> field = fieldOfResampling(dense, length,
-					parameters, std::nullopt, budgetWithSamples(calm.mesh(), *sampled),
+					parameters, std::nullopt, budgetWithSamples(calm.mesh(), *sampled, even),
 					progress.cancelOnly(), [&](const std::string& note) { notes.push_back(note); });
 				if (field && !field->empty()) {
 					for (const std::string& note : notes)
