@@ -355,8 +355,9 @@ struct NoiseReport
  * mean edge (clean surfaces show up to 0.04 % or 4 %), 10 rounds up to 0.15 %, 40 above. So
  * treated, models with 0.1 to 0.5 % of noise give the clean model's branches. Nothing is done where
  * the mean edge is longer than 3 % of the diagonal, since noise cannot be told from shape there,
- * thin or not, nor in the thin parts or in the others if their own edges are; nor where the whiteness, see NoiseMeasure, is below 0.6: clean surfaces whose facets
- * deviate that much have up to 0.5, those with noise of 0.5 % of the diagonal 0.72 to 1.
+ * thin or not, nor in the thin parts or in the others if their own edges are that long; nor where
+ * the whiteness, see NoiseMeasure, is below 0.6: clean surfaces whose facets deviate that much have
+ * up to 0.5, those with noise of 0.5 % of the diagonal 0.72 to 1.
  *
  * Thin parts are left out of that and judged by themselves, since neither their facets nor the
  * effect of noise on them depends on the diagonal: no rounds below 5 % of the local thickness
