@@ -112,6 +112,37 @@ INSTANTIATE_TEST_SUITE_P(ClosestSurface, OnShapes,
 	testing::Values(shapes::torus(), shapes::capsule(), shapes::sphere(2), shapes::box(3, 2, 1),
 		shapes::plate(2), shapes::jittered(shapes::torus(1, 0.4), 0.01)));
 
+TEST(ClosestSurface, BesideAFaceThatIsFoldedOverItsNeighboursIsInside)
+{
+	// A block whose top goes to B, back to C and on, through itself: the normals at C, the lowest
+	// place of the fold, nearly cancel, and their sum points down.
+	const std::vector<Point3d> outline = {
+		{-1, 0, 0}, {0.2, 0, -0.1}, {-0.2, 0, -0.13}, {1, 0, 0}, {1, 0, -2}, {-1, 0, -2}};
+	const int n = int(outline.size());
+	shapes::Soup block;
+	for (const double y : {-2.0, 2.0})
+		for (const Point3d& p : outline)
+			block.points.emplace_back(p[0], y, p[2]);
+	for (int i = 0; i < n; ++i) {
+		const int j = (i + 1) % n;
+		block.triangles.push_back({i, i + n, j});
+		block.triangles.push_back({j, i + n, j + n});
+	}
+	for (int i = 0; i + 2 < n; ++i) { // both caps are fans around the last corner
+		block.triangles.push_back({n - 1, i, i + 1});
+		block.triangles.push_back({2 * n - 1, i + 1 + n, i + n});
+	}
+	SurfaceMesh mesh = block.mesh();
+	if (mesh.volume() < 0)
+		mesh = shapes::insideOut(block).mesh();
+	const ClosestSurface closest(mesh, allVertices(mesh), mesh.bounds().Diag() / 50);
+	for (double x = -0.4; x < -0.2; x += 0.03)
+		for (double z = -0.6; z < -0.25; z += 0.1) {
+			ASSERT_GT(checks::windingNumber(mesh, {x, 0, z}), 0.5);
+			EXPECT_GT(closest.clearance({x, 0, z}), 0) << x << " " << z;
+		}
+}
+
 TEST(ClosestSurface, BallInATubeHasTheTubesRadius)
 {
 	const SurfaceMesh mesh = shapes::capsule(2, 0.35, 128).mesh();
