@@ -78,9 +78,24 @@ inline std::vector<double> shortestEdges(const SurfaceMesh& mesh, const Progress
 	return shortest;
 }
 
+/// The part of the area whose thickness is finite. @throws Cancelled. Complexity: O(F).
+inline double thinPart(
+	const SurfaceMesh& mesh, const std::vector<double>& thickness, const Progress& cancel)
+{
+	double thin = 0, all = 0;
+	detail::cancellableLoop(mesh.faceSlots(), cancel, [&](int f) {
+		const double area = mesh.doubleAreaVector(f).Norm();
+		all += area;
+		for (int v : mesh.triangle(f))
+			if (std::isfinite(thickness[v]))
+				thin += area / 3;
+	});
+	return all > 0 ? thin / all : 0;
+}
+
 /**
- * localThickness() by samples along the long edges of a coarse mesh; empty if it has hardly any or
- * nothing is thin. Of a rod in long triangles, only the vertices at its two ends show how thin it
+ * localThickness() by samples along the long edges of a coarse mesh; empty if it has hardly any,
+ * nothing is thin, or most of the area is, as of a flat cone. Of a rod in long triangles, only the vertices at its two ends show how thin it
  * is, and the body that it stands on may have many more, a few edges away: see isThin(). Their
  * shortest edges are no longer than the rod is thick. Where that takes too many samples, those of
  * the thinnest parts are farther apart.
@@ -90,7 +105,7 @@ inline std::vector<double> shortestEdges(const SurfaceMesh& mesh, const Progress
 inline std::vector<double> thicknessBySamples(
 	const MeasuredSurface& surface, const Parameters& parameters, const Progress& cancel)
 {
-	constexpr double maxSamples = 40000;
+	constexpr double maxSamples = 40000, maxThinPart = 0.6;
 	if (surface.mesh().vertexCount() > maxSamples)
 		return {};
 	const std::vector<double> any(
@@ -109,8 +124,9 @@ inline std::vector<double> thicknessBySamples(
 	const MeasuredSurface dense(*sampled, cancel);
 	std::vector<double> thickness = localThickness(
 		dense, measuredThinPlaces(dense, parameters, any, cancel), parameters, cancel);
-	if (!thickness.empty())
-		thickness.resize(across.size()); // the surface's own vertices come first
+	if (thickness.empty() || thinPart(*sampled, thickness, cancel) > maxThinPart)
+		return {};
+	thickness.resize(across.size()); // the surface's own vertices come first
 	return thickness;
 }
 
@@ -156,7 +172,8 @@ inline VertexBudget budgetOf(const SurfaceMesh& mesh)
 /// The budget of a mesh that shows the thickness along its triangles, bounded by the input's
 /// vertices, or by some times those of an even mesh if that is more: a small mesh of needles would
 /// be resampled for minutes. Edges longer than one thickness hardly reduce the vertices of a tube.
-/// @param sampled see withThinPartsSampled(). @param even vertices of a mesh of even edges.
+/// @param sampled see withThinPartsSampled().
+/// @param even    vertices of a mesh of even edges; 0 where the vertices alone show what is thin.
 inline VertexBudget budgetWithSamples(
 	const SurfaceMesh& mesh, const SurfaceMesh& sampled, double even)
 {
@@ -323,14 +340,14 @@ inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Paramete
 	const Parameters parameters = sharedAmong(given, surface.diagonals());
 	ResampledSurface result;
 	std::optional<ThinPlaces> places;
-	std::vector<double> thickness;
+	std::vector<double> thickness, bySamples;
 	if (parameters.adaptive) {
 		const std::vector<double> any(
 			size_t(surface.components()), std::numeric_limits<double>::infinity());
 		places = measuredThinPlaces(surface, parameters, any, progress.part(0.05, 0.18));
-		thickness =
-			smallerOf(localThickness(surface, *places, parameters, progress.part(0.18, 0.19)),
-				thicknessBySamples(surface, parameters, progress.part(0.19, 0.2).cancelOnly()));
+		bySamples = thicknessBySamples(surface, parameters, progress.part(0.19, 0.2).cancelOnly());
+		thickness = smallerOf(
+			localThickness(surface, *places, parameters, progress.part(0.18, 0.19)), bySamples);
 	}
 	result.noise = measureNoise(surface, progress.part(0.2, 0.25), thickness);
 	const bool smooth = parameters.denoise && result.noise.isNoisy();
@@ -344,8 +361,9 @@ inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Paramete
 					sampledWhereResolvable(calm, thickness, parameters, progress.cancelOnly())) {
 				const MeasuredSurface dense(*sampled, progress.cancelOnly());
 				std::vector<std::string> notes;
-				const double even =
-					expectedVertices(calm, length, SizingField(), progress.cancelOnly());
+				const double even = bySamples.empty()
+					? 0
+					: expectedVertices(calm, length, SizingField(), progress.cancelOnly());
 				const std::optional<SizingField> field = fieldOfResampling(dense, length,
 					parameters, std::nullopt, budgetWithSamples(calm.mesh(), *sampled, even),
 					progress.cancelOnly(), [&](const std::string& note) { notes.push_back(note); });
