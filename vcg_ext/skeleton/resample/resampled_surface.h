@@ -95,10 +95,10 @@ inline double thinPart(
 
 /**
  * localThickness() by samples along the long edges of a coarse mesh; empty if it has hardly any,
- * nothing is thin, or most of the area is, as of a flat cone. Of a rod in long triangles, only the vertices at its two ends show how thin it
- * is, and the body that it stands on may have many more, a few edges away: see isThin(). Their
- * shortest edges are no longer than the rod is thick. Where that takes too many samples, those of
- * the thinnest parts are farther apart.
+ * nothing is thin, or most of the area is, as of a flat cone. Of a rod in long triangles, only the
+ * vertices at its two ends show how thin it is, and the body that it stands on may have many more, a
+ * few edges away: see isThin(). Their shortest edges are no longer than the rod is thick. Where that
+ * takes too many samples, those of the thinnest parts are farther apart.
  * @return for the surface's vertices.
  * @throws Cancelled. Complexity: as medialPoles() of at most 40000 samples.
  */
