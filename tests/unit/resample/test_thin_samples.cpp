@@ -117,7 +117,7 @@ TEST(ThinSamples, ATubeIsResampledAlikeHoweverLongItsTrianglesAre)
 
 TEST(ThinSamples, ARodInLongTrianglesIsThinHoweverManyVerticesTheBodyHasThatItStandsOn)
 {
-	// A ball of radius 20 in compact triangles, and a rod of radius 0.1 with vertices at its ends only.
+	// A ball of radius 20 in compact triangles, and a rod of radius 0.1 with vertices at its ends.
 	constexpr double ball = 20, rod = 0.1, end = 70;
 	constexpr int rings = 48;
 	std::vector<std::pair<double, double>> profile = {{-ball, 0}};
@@ -142,6 +142,18 @@ TEST(ThinSamples, ARodInLongTrianglesIsThinHoweverManyVerticesTheBodyHasThatItSt
 	EXPECT_LT(longest, 2 * rod);
 	ASSERT_FALSE(notes.empty());
 	EXPECT_NE(notes.front().find("thin"), std::string::npos) << notes.front();
+}
+
+TEST(ThinSamples, AFlatConeInLongTrianglesIsNotThin)
+{
+	// More than half of its area is thin: only bodies with rods are resolved by so many vertices.
+	for (const double height : {0.05, 0.07}) {
+		const SurfaceMesh cone = shapes::revolved({{-height, 0}, {0, 1}, {height, 0}}, 185).mesh();
+		Parameters parameters;
+		const int adaptive = resampledSurface(cone, parameters).mesh.vertexCount();
+		parameters.adaptive = false;
+		EXPECT_EQ(adaptive, resampledSurface(cone, parameters).mesh.vertexCount()) << height;
+	}
 }
 
 TEST(ThinSamples, ANeedleThinnerThanTheShortestEdgesIsResampledAsIfNothingWereThin)

@@ -11,13 +11,13 @@
 #include <skeleton/core/progress.h>
 #include <skeleton/core/ticker.h>
 #include <skeleton/input/soup_repair.h>
+#include <skeleton/mesh/shortest_edges.h>
 #include <skeleton/mesh/surface_mesh.h>
 #include <skeleton/spatial/triangle_tree.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -89,14 +89,7 @@ inline ClosedSeams closeSeams(const std::vector<Point3d>& points, std::vector<Tr
 				points[size_t(segments[size_t(e)][0])], points[size_t(segments[size_t(e)][1])]);
 		};
 		// A hundredth of a sliver's long edge may reach other vertices: the shortest edge counts.
-		std::vector<double> shortest(points.size(), std::numeric_limits<double>::infinity());
-		for (const Triangle& t : triangles)
-			for (size_t k = 0; k < 3; ++k) {
-				const int a = t[k], b = t[(k + 1) % 3];
-				const double whole = Distance(points[size_t(a)], points[size_t(b)]);
-				for (int v : {a, b})
-					shortest[size_t(v)] = std::min(shortest[size_t(v)], whole);
-			}
+		const std::vector<double> shortest = shortestEdges(points, triangles, part);
 		std::vector<std::vector<std::pair<double, int>>> onEdge(border.size());
 		int merged = 0, junctions = 0;
 		detail::Ticker visits(part.cancelOnly(), detail::repairing, double(border.size()));

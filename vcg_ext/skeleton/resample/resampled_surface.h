@@ -11,13 +11,14 @@
 #include "target_length.h"
 #include "thin_samples.h"
 
-#include <skeleton/core/large_arrays.h>
 #include <skeleton/core/notes.h>
 #include <skeleton/core/parameters.h>
 #include <skeleton/core/progress.h>
 #include <skeleton/core/ticker.h>
 #include <skeleton/input/denoise.h>
+#include <skeleton/mesh/marked_regions.h>
 #include <skeleton/mesh/measured_surface.h>
+#include <skeleton/mesh/shortest_edges.h>
 #include <skeleton/mesh/surface_mesh.h>
 #include <skeleton/mesh/components_at_rest.h>
 #include <skeleton/poles/poles.h>
@@ -65,31 +66,16 @@ inline std::vector<double> localThickness(const MeasuredSurface& surface, const 
 	return thickness;
 }
 
-/// The length of the shortest edge at each vertex. @throws Cancelled. Complexity: O(E).
-inline std::vector<double> shortestEdges(const SurfaceMesh& mesh, const Progress& cancel)
-{
-	std::vector<double> shortest = detail::filledArray(
-		size_t(mesh.vertexSlots()), std::numeric_limits<double>::infinity(), cancel);
-	detail::cancellableLoop(mesh.halfEdgeSlots(), cancel, [&](int h) {
-		if (mesh.isEdge(h))
-			for (int v : {mesh.origin(h), mesh.target(h)})
-				shortest[v] = std::min(shortest[v], std::sqrt(mesh.squaredLength(h)));
-	});
-	return shortest;
-}
-
-/// The part of the area whose thickness is finite. @throws Cancelled. Complexity: O(F).
+/// The part of the area whose thickness is finite. @throws Cancelled. Complexity: O(V).
 inline double thinPart(
 	const SurfaceMesh& mesh, const std::vector<double>& thickness, const Progress& cancel)
 {
+	const std::vector<double> area = vertexAreas(mesh, cancel);
 	double thin = 0, all = 0;
-	detail::cancellableLoop(mesh.faceSlots(), cancel, [&](int f) {
-		const double area = mesh.doubleAreaVector(f).Norm();
-		all += area;
-		for (int v : mesh.triangle(f))
-			if (std::isfinite(thickness[v]))
-				thin += area / 3;
-	});
+	for (size_t v = 0; v < area.size(); ++v) {
+		all += area[v];
+		thin += std::isfinite(thickness[v]) ? area[v] : 0;
+	}
 	return all > 0 ? thin / all : 0;
 }
 
@@ -110,14 +96,16 @@ inline std::vector<double> thicknessBySamples(
 		return {};
 	const std::vector<double> any(
 		size_t(surface.components()), std::numeric_limits<double>::infinity());
-	std::vector<double> across = shortestEdges(surface.mesh(), cancel);
+	std::vector<double> across =
+		shortestEdges(surface.mesh().position, surface.mesh().triangles(cancel), cancel);
 	std::optional<SurfaceMesh> sampled;
 	for (double length = shortestLength; !sampled && length < neutralLength; length *= 2) {
-		detail::cancellableLoop(int(across.size()), cancel, [&](int v) {
-			const double diagonal = surface.diagonal(surface.component()[v]);
-			across[v] = std::max(across[v], length * diagonal);
-		});
-		sampled = withThinPartsSampled(surface, across, any, maxSamples, cancel);
+		for (size_t v = 0; v < across.size(); ++v)
+			across[v] = std::max(across[v], length * surface.diagonal(surface.component()[v]));
+		const ThinSampling sampling = thinSampling(surface, across, any, cancel);
+		if (!sampling.isAnyLong)
+			return {};
+		sampled = withThinPartsSampled(surface, sampling, maxSamples, cancel);
 	}
 	if (!sampled)
 		return {};
@@ -130,7 +118,7 @@ inline std::vector<double> thicknessBySamples(
 	return thickness;
 }
 
-/// The smaller one of both at each vertex; empty is infinite everywhere.
+/// The minimum of both at each vertex; empty is infinite everywhere.
 inline std::vector<double> smallerOf(std::vector<double> one, const std::vector<double>& other)
 {
 	if (one.empty())
@@ -170,8 +158,8 @@ inline VertexBudget budgetOf(const SurfaceMesh& mesh)
 }
 
 /// The budget of a mesh that shows the thickness along its triangles, bounded by the input's
-/// vertices, or by some times those of an even mesh if that is more: a small mesh of needles would
-/// be resampled for minutes. Edges longer than one thickness hardly reduce the vertices of a tube.
+/// vertices, or by 3.5 times those of an even mesh if that is more: a small mesh of needles would be
+/// resampled for minutes. Edges longer than one thickness hardly reduce the vertices of a tube.
 /// @param sampled see withThinPartsSampled().
 /// @param even    vertices of a mesh of even edges; 0 where the vertices alone show what is thin.
 inline VertexBudget budgetWithSamples(

@@ -23,53 +23,83 @@ namespace vcg::tri::mcf {
 /// Edges longer than this many local thicknesses hide how thin the shape is between their ends.
 constexpr double longestOfThickness = 3;
 
+/// The samples that the long edges of thin parts need, see thinSampling().
+struct ThinSampling
+{
+	/// Of each vertex, mesh units: pieces of edges are no longer.
+	std::vector<double> longest;
+	/// Vertices of the surface with these samples.
+	double vertices = 0;
+	/// Whether more than a few edges of the thin parts are long. Of dense meshes below 0.001 are, of
+	/// trees in long triangles 0.9, by length.
+	bool isAnyLong = false;
+};
+
 /**
- * The surface with long edges cut where it is thin: the local thickness is measured at vertices,
- * and triangles as long as a rod have none along it. Pieces are no longer than longestOfThickness,
- * or up to twice that where it takes too many vertices; between the ends of an edge the thickness
- * counts as linear.
- *
- * @param thickness   of each vertex, mesh units, infinite where the shape is not thin.
- * @param thick       of each component, mesh units: from this thickness on a vertex is not thin.
- * @param maxVertices of the result.
- * @return a compact mesh whose first vertices are the surface's; nothing if hardly any edge is that
- *         long, or if too many vertices would be needed.
- * @throws Cancelled. Complexity: as withCutEdges().
+ * Which samples the long edges of a surface need where it is thin: the local thickness is measured
+ * at vertices, and triangles as long as a rod have none along it. Pieces are no longer than
+ * longestOfThickness; between the ends of an edge the thickness counts as linear.
+ * @param thickness of each vertex, mesh units, infinite where the shape is not thin.
+ * @param thick     of each component, mesh units: from this thickness on a vertex is not thin.
+ * @throws Cancelled. Complexity: O(E).
  */
-inline std::optional<SurfaceMesh> withThinPartsSampled(const MeasuredSurface& surface,
-	const std::vector<double>& thickness, const std::vector<double>& thick, double maxVertices,
+inline ThinSampling thinSampling(const MeasuredSurface& surface,
+	const std::vector<double>& thickness, const std::vector<double>& thick,
 	const Progress& progress = Progress())
 {
-	constexpr const char* const what = "Measuring the local thickness";
-	constexpr double mostOfLongest = 2;
-	constexpr double fewLong = 0.05; // dense meshes have below 0.001, trees in long triangles 0.9
+	constexpr double fewLong = 0.05;
 	const SurfaceMesh& mesh = surface.mesh();
-	std::vector<double> longest;
-	longest.reserve(thickness.size());
-	detail::reportedLoop(int(thickness.size()), progress.cancelOnly(), what, [&](int v) {
-		longest.push_back(
+	ThinSampling result;
+	result.longest.reserve(thickness.size());
+	detail::cancellableLoop(int(thickness.size()), progress, [&](int v) {
+		result.longest.push_back(
 			longestOfThickness * std::min(thickness[v], thick[surface.component()[v]]));
 	});
-	double needed = mesh.vertexCount();
+	result.vertices = mesh.vertexCount();
 	double thinLength = 0, longLength = 0; // of the edges where the shape is thin
-	detail::reportedLoop(mesh.halfEdgeSlots(), progress.cancelOnly(), what, [&](int h) {
+	detail::cancellableLoop(mesh.halfEdgeSlots(), progress, [&](int h) {
 		if (!mesh.isEdge(h))
 			return;
 		const int a = mesh.origin(h), b = mesh.target(h);
 		const double length = std::sqrt(mesh.squaredLength(h));
-		const double pieces = piecesOfEdge(length, longest[a], longest[b]);
+		const double pieces = piecesOfEdge(length, result.longest[a], result.longest[b]);
 		if (std::isfinite(std::min(thickness[a], thickness[b]))) {
 			thinLength += length;
 			longLength += pieces > 1 ? length : 0;
 		}
-		needed += pieces - 1;
+		result.vertices += pieces - 1;
 	});
-	const double longer = std::max(1.0, needed / maxVertices);
-	if (longLength <= fewLong * thinLength || longer > mostOfLongest)
+	result.isAnyLong = longLength > fewLong * thinLength;
+	return result;
+}
+
+/**
+ * The surface with long edges cut where it is thin; pieces are up to twice as long as wanted where
+ * there would be too many vertices.
+ * @param maxVertices of the result.
+ * @return a compact mesh whose first vertices are the surface's; nothing if hardly any edge is long,
+ *         or if too many vertices would be needed.
+ * @throws Cancelled. Complexity: as withCutEdges().
+ */
+inline std::optional<SurfaceMesh> withThinPartsSampled(const MeasuredSurface& surface,
+	ThinSampling sampling, double maxVertices, const Progress& progress = Progress())
+{
+	constexpr double mostOfLongest = 2;
+	const double longer = std::max(1.0, sampling.vertices / maxVertices);
+	if (!sampling.isAnyLong || longer > mostOfLongest)
 		return std::nullopt;
-	for (double& length : longest)
+	for (double& length : sampling.longest)
 		length *= longer;
-	return withCutEdges(surface, longest, progress);
+	return withCutEdges(surface, sampling.longest, progress);
+}
+
+/// The same with thinSampling(). @throws Cancelled
+inline std::optional<SurfaceMesh> withThinPartsSampled(const MeasuredSurface& surface,
+	const std::vector<double>& thickness, const std::vector<double>& thick, double maxVertices,
+	const Progress& progress = Progress())
+{
+	return withThinPartsSampled(
+		surface, thinSampling(surface, thickness, thick, progress), maxVertices, progress);
 }
 
 } // namespace vcg::tri::mcf

@@ -179,7 +179,7 @@ public:
 	 * "Signed distance computation using the angle weighted pseudonormal", IEEE TVCG 11(3), 2005).
 	 * Where that sum nearly cancels, or a face is a sliver, the winding number decides: at the
 	 * bottom of a slit, or the edge of a blade, thinner than the precision of the coordinates, and
-	 * at a triangle that is folded over its neighbours, beside which the normal is wrong.
+	 * at a triangle that is folded over its neighbours, beside which the normal may be wrong.
 	 * @param progress cancels what the first such query builds, in O(F log F).
 	 */
 	bool isInside(const Point3d& query, const Hit& hit, const Progress& progress = Progress()) const
@@ -188,7 +188,8 @@ public:
 		const detail::TrianglePoint on = detail::closestOnTriangle(
 			surface.position[surface.origin(h)], surface.position[surface.origin(h + 1)],
 			surface.position[surface.origin(h + 2)], query);
-		constexpr double minNormal = 0.2; // part of the sum of the lengths: edges of 23 degrees
+		constexpr double minNormal =
+			0.2; // of the sum of the lengths; an edge of 23 degrees has 0.2
 		Point3d normal(0, 0, 0);
 		double weights = 0;
 		bool isClear = true;
