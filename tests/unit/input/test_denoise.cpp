@@ -166,7 +166,8 @@ TEST(Noise, WhatDeviatesByMoreThanTheThicknessIsShape)
 	}
 }
 
-/// A noisy ring with 180 of its 200 cross-sections in the first fifth of its way around, or evenly spread; thick but there.
+/// The noise of a rough ring that has 180 of its 200 cross-sections in the first fifth of its way
+/// around, or all evenly spread, and counts as thin at these 180.
 NoiseReport noiseOfRing(bool isEven)
 {
 	const double minor = 0.1, infinite = std::numeric_limits<double>::infinity();
@@ -182,9 +183,9 @@ NoiseReport noiseOfRing(bool isEven)
 	return measureNoise(noisy(ring, 0.015), Progress(), thickness);
 }
 
-TEST(Noise, IsNotToldFromLongTrianglesOfTheThickParts)
+TEST(Noise, IsNotMeasuredInLongTrianglesOfTheThickParts)
 {
-	// The mean edge of the whole says nothing about them: the thin parts have nearly all vertices.
+	// The mean edge of the whole surface is short: the thin parts have nearly all vertices.
 	ASSERT_GT(noiseOfRing(true).rounds[0], 0);
 	EXPECT_EQ(noiseOfRing(false).rounds[0], 0);
 	EXPECT_GT(noiseOfRing(false).roundsWhereThin[0], 0);

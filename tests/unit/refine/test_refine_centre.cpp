@@ -65,7 +65,8 @@ TEST(RefineCentre, ANodeThatTouchesAConcaveCornerLeavesIt)
 
 TEST(RefineCentre, AThinTwigIsNotDrawnAsideByTheFacetsOfItsBody)
 {
-	// Three limbs on a ball of radius 1. Below their roots, nodes at a depth of 0.1 stick out of it by 0.04.
+	// Three limbs on a ball of radius 1. Beneath their roots, the balls of nodes at a depth of 0.1
+	// stick out of it by 0.04.
 	const auto shareBelow = [](double limb) {
 		CurveSkeleton s;
 		s.position = {{0, 0, 0}};
