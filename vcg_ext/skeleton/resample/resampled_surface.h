@@ -85,14 +85,18 @@ inline double thinPart(
  * vertices at its two ends show how thin it is, and the body that it stands on may have many more, a
  * few edges away: see isThin(). Their shortest edges are no longer than the rod is thick. Where that
  * takes too many samples, those of the thinnest parts are farther apart.
+ * @param known  localThickness() by the vertices alone.
  * @return for the surface's vertices.
  * @throws Cancelled. Complexity: as medialPoles() of at most 40000 samples.
  */
-inline std::vector<double> thicknessBySamples(
-	const MeasuredSurface& surface, const Parameters& parameters, const Progress& cancel)
+inline std::vector<double> thicknessBySamples(const MeasuredSurface& surface,
+	const std::vector<double>& known, const Parameters& parameters, const Progress& cancel)
 {
 	constexpr double maxSamples = 40000, maxThinPart = 0.6;
-	if (surface.mesh().vertexCount() > maxSamples)
+	const auto isMostlyThin = [&](const SurfaceMesh& mesh, const std::vector<double>& thickness) {
+		return !thickness.empty() && thinPart(mesh, thickness, cancel) > maxThinPart;
+	};
+	if (surface.mesh().vertexCount() > maxSamples || isMostlyThin(surface.mesh(), known))
 		return {};
 	const std::vector<double> any(
 		size_t(surface.components()), std::numeric_limits<double>::infinity());
@@ -112,7 +116,7 @@ inline std::vector<double> thicknessBySamples(
 	const MeasuredSurface dense(*sampled, cancel);
 	std::vector<double> thickness = localThickness(
 		dense, measuredThinPlaces(dense, parameters, any, cancel), parameters, cancel);
-	if (thickness.empty() || thinPart(*sampled, thickness, cancel) > maxThinPart)
+	if (thickness.empty() || isMostlyThin(*sampled, thickness))
 		return {};
 	thickness.resize(across.size()); // the surface's own vertices come first
 	return thickness;
@@ -333,9 +337,10 @@ inline ResampledSurface resampledSurface(const SurfaceMesh& mesh, const Paramete
 		const std::vector<double> any(
 			size_t(surface.components()), std::numeric_limits<double>::infinity());
 		places = measuredThinPlaces(surface, parameters, any, progress.part(0.05, 0.18));
-		bySamples = thicknessBySamples(surface, parameters, progress.part(0.19, 0.2).cancelOnly());
-		thickness = smallerOf(
-			localThickness(surface, *places, parameters, progress.part(0.18, 0.19)), bySamples);
+		thickness = localThickness(surface, *places, parameters, progress.part(0.18, 0.19));
+		bySamples = thicknessBySamples(
+			surface, thickness, parameters, progress.part(0.19, 0.2).cancelOnly());
+		thickness = smallerOf(std::move(thickness), bySamples);
 	}
 	result.noise = measureNoise(surface, progress.part(0.2, 0.25), thickness);
 	const bool smooth = parameters.denoise && result.noise.isNoisy();
