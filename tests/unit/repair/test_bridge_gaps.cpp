@@ -166,6 +166,23 @@ TEST(BridgeGaps, ARingIsClosedOverAShortGapOnly)
 	EXPECT_EQ(ring(1.5).gaps, 0);
 }
 
+TEST(BridgeGaps, ASlitWhereALongTriangleIsMissingIsNoEnd)
+{
+	const shapes::Soup frame = shapes::torus(1, 0.05, 4, 4);
+	const size_t count = frame.triangles.size();
+	for (size_t i = 0; i < count; ++i)
+		for (size_t k = 0; k < i; ++k) {
+			shapes::Soup open = frame;
+			open.triangles.erase(open.triangles.begin() + std::ptrdiff_t(i));
+			open.triangles.erase(open.triangles.begin() + std::ptrdiff_t(k));
+			const Outcome made = mended(open);
+			EXPECT_EQ(made.gaps, 0) << i << " " << k;
+			EXPECT_EQ(made.pieces, 1) << i << " " << k;
+			EXPECT_EQ(made.euler, 0) << i << " " << k;
+			EXPECT_NEAR(made.volume, volumeOf(frame), 0.1 * volumeOf(frame)) << i << " " << k;
+		}
+}
+
 TEST(BridgeGaps, EndsThatDoNotLookAtEachOtherStayApart)
 {
 	const auto openAt = [](double side, const Point3d& at) {

@@ -13,6 +13,7 @@
 #include <functional>
 #include <limits>
 #include <random>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -132,6 +133,38 @@ shapes::Soup openWing(const std::function<bool(int)>& meetAt, double gap, double
 	return wing;
 }
 
+TEST(Mend, TrianglesThatAreMissingAtTheInnerCornersOfAFrameAreHolesOfTheirOwn)
+{
+	// Around such a corner there are more than 360 degrees: seen from outside, the fans that are left
+	// overlap.
+	const shapes::Soup frame = shapes::torus(1, 0.2, 3, 4);
+	const double volume = frame.mesh().volume();
+	for (size_t v = 0; v < frame.points.size(); ++v) {
+		std::vector<size_t> around;
+		for (size_t f = 0; f < frame.triangles.size(); ++f)
+			if (std::count(frame.triangles[f].begin(), frame.triangles[f].end(), int(v)))
+				around.push_back(f);
+		for (size_t f : around)
+			for (size_t g : around) {
+				const std::set<int> both = [&] {
+					std::set<int> ids(frame.triangles[f].begin(), frame.triangles[f].end());
+					ids.insert(frame.triangles[g].begin(), frame.triangles[g].end());
+					return ids;
+				}();
+				if (!(f < g) || both.size() != 5)
+					continue;
+				shapes::Soup open = frame;
+				open.triangles.erase(open.triangles.begin() + std::ptrdiff_t(g));
+				open.triangles.erase(open.triangles.begin() + std::ptrdiff_t(f));
+				const MendedSurface surface = mendedOf(open);
+				expectMended(surface, open, 1, 0);
+				EXPECT_EQ(surface.report.holesClosed, 2) << f << " " << g;
+				EXPECT_EQ(surface.report.verticesParted, 0) << f << " " << g;
+				EXPECT_NEAR(enclosedVolume(surface), volume, 1e-9) << f << " " << g;
+			}
+	}
+}
+
 TEST(Mend, AWingsOpenEndAndTheSlitsOfItsTrailingEdgeAreHolesOfTheirOwn)
 {
 	const shapes::Soup wing = openWing([](int i) { return i % 2 == 0; }, 0.03, 0);
@@ -208,6 +241,19 @@ TEST(Mend, LeavesALargeHole)
 	EXPECT_FALSE(surface.closed);
 	EXPECT_EQ(surface.report.holesLeft, 1);
 	EXPECT_EQ(surface.report.holesClosed, 0);
+}
+
+TEST(Mend, FillsALargeHoleInAFlatFace)
+{
+	// One of the two triangles of a side: a third of the area that is left.
+	const shapes::Soup plate = shapes::box(4, 4, 0.1);
+	for (size_t f = 0; f < plate.triangles.size(); ++f) {
+		shapes::Soup open = plate;
+		open.triangles.erase(open.triangles.begin() + std::ptrdiff_t(f));
+		const MendedSurface surface = mendedOf(open);
+		expectMended(surface, open);
+		EXPECT_NEAR(enclosedVolume(surface), 1.6, 1e-12);
+	}
 }
 
 TEST(Mend, DoesNotFillAcrossTheShape)

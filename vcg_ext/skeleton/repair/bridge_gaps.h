@@ -162,8 +162,9 @@ inline std::set<FacingLimb> facingEnds(const std::vector<LimbEnd>& ends, const G
 		const Point3d apart = b.centre - a.centre;
 		const double gap = apart.Norm(), radius = (a.radius + b.radius) / 2;
 		const bool isOnePiece = a.piece == b.piece;
-		if (!(gap > 0) || (isOnePiece && gap > limits.inOnePiece * radius)
-			|| ((isOnePiece || a.isOfSpeck || b.isOfSpeck) && !b.isCutThrough))
+		if (!(gap > 0) || ((a.isOfSpeck || b.isOfSpeck) && !b.isCutThrough))
+			return;
+		if (isOnePiece && !(gap <= limits.inOnePiece * radius && a.isOfTube && b.isOfTube))
 			return;
 		const double cosine = std::min(a.heading * apart / gap, -(headingTo(a, b) * apart) / gap);
 		const auto isWithin = [&](const GapReach& reach, bool mayBeWider) {

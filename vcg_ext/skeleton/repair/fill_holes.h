@@ -40,7 +40,8 @@ struct FilledHoles
 struct HoleLimits
 {
 	/// Largest area of a filling in the largest piece of surface, as a fraction of the piece's area
-	/// (others may be torn off and short); and of all fillings of any piece together.
+	/// (others may be torn off and short), unless it continues a flat face, see continuesFlatly(); and
+	/// of all fillings of any piece together.
 	double area = 0.2, allAreas = 0.5;
 	/// Largest number of border edges of a hole; the time grows with its cube.
 	int edges = 200;
@@ -234,8 +235,9 @@ inline BorderFan borderFan(const std::vector<Point3d>& points,
  * The loops of half-edges around the holes of a coherently oriented surface, as they run in the
  * faces. Where several fans of faces meet at a vertex, a loop continues at the next fan across the
  * gap, so that the gap can be filled and the vertex is not split. Where the fans face different
- * ways, a loop stays with its fan, and is split where it returns to the vertex: the open end of a
- * wing and the slit along its trailing edge are separate holes. Where faces at a crowded edge still
+ * ways, or overlap seen from outside, a loop stays with its fan, and is split where it returns to the
+ * vertex: the open end of a wing and the slit along its trailing edge are separate holes, and so are
+ * two triangles missing at the corner of a box. Where faces at a crowded edge still
  * disagree, a border may end at a vertex: it is no hole.
  * @throws Cancelled. Complexity: O(F + B log B) for B faces at border vertices.
  */
@@ -254,7 +256,7 @@ inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& point
 		fansAt[origin(h)].push_back(borderFan(points, triangles, partner, h));
 	});
 	std::map<int, int> following; // of the half-edge into a vertex
-	std::set<int> splitting;      // vertices whose fans face different ways
+	std::set<int> splitting;      // vertices whose fans face different ways or overlap
 	for (const auto& [v, around] : fansAt) {
 		Point3d normal(0, 0, 0);
 		for (const BorderFan& fan : around)
@@ -262,8 +264,6 @@ inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& point
 		bool alike = true;
 		for (const BorderFan& fan : around)
 			alike &= fan.normal * normal > 0;
-		if (!alike)
-			splitting.insert(v);
 		// Seen from outside, each fan extends counter-clockwise from its border `out` to `into`.
 		Point3d x, y;
 		vcg::GetUV(normal, x, y);
@@ -281,6 +281,8 @@ inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& point
 		const std::vector<size_t> next = nextAngles(from, to, ticker);
 		const bool isRound =
 			alike && std::set<size_t>(next.begin(), next.end()).size() == around.size();
+		if (!isRound)
+			splitting.insert(v);
 		for (size_t i = 0; i < around.size(); ++i)
 			following[around[i].into] = around[isRound ? next[i] : i].out;
 	}
@@ -375,6 +377,27 @@ struct BorderPolygon
 		return {corners[size_t(t[0])], corners[size_t(t[1])], corners[size_t(t[2])]};
 	}
 };
+
+/// Whether most of a filling lies in the planes of faces at the border, as where one of the two
+/// triangles of a plate's side is missing. @param filling  see PolygonFilling::triangles().
+inline bool continuesFlatly(const BorderPolygon& border, const std::vector<Triangle>& filling)
+{
+	constexpr double maxTurn = 1.5e-4; // 1 - cosine, of a degree
+	constexpr double most = 0.5;
+	const int last = int(border.points.size()) - 1;
+	double flat = 0, all = 0;
+	for (const Triangle& t : filling) {
+		const Point3d vector = areaVector(border.points, t);
+		const double area = vector.Norm();
+		const auto isFlush = [&](int a, int b) {
+			const bool isSide = b == a + 1 || (a == last && b == 0);
+			return isSide && area - vector * border.outside[size_t(a)] < maxTurn * area;
+		};
+		all += area;
+		flat += isFlush(t[0], t[1]) || isFlush(t[1], t[2]) || isFlush(t[2], t[0]) ? area : 0;
+	}
+	return flat > most * all;
+}
 
 /// @param loop half-edges, as holeLoops() has them. @param piece of each face.
 inline BorderPolygon borderPolygon(const std::vector<Point3d>& points,
@@ -572,13 +595,15 @@ inline FilledHoles fillHoles(const std::vector<Point3d>& points, std::vector<Tri
 			const double turn = best.weight().turn;
 			size = best.weight().area;
 			const bool anyhow = std::isfinite(turn) && size <= limits.anyhow * surface;
-			if (!(turn <= maxTurn || anyhow) || (isMain && size > limits.area * surface)
-				|| before + size > limits.allAreas * surface)
+			if (!(turn <= maxTurn || anyhow) || before + size > limits.allAreas * surface)
+				return false;
+			const std::vector<Triangle> filling = best.triangles();
+			if (isMain && size > limits.area * surface && !detail::continuesFlatly(border, filling))
 				return false;
 			made.clear();
 			chords.clear();
 			bool fits = true;
-			for (const Triangle& t : best.triangles()) {
+			for (const Triangle& t : filling) {
 				made.push_back(border.triangle(t));
 				for (const auto& [a, b] : {std::pair(t[0], t[1]), std::pair(t[1], t[2])})
 					if (b - a > 1)

@@ -42,6 +42,9 @@ struct LimbEnd
 	/// Whether the surface heads out of the hole all around: a limb that is cut through, not a
 	/// hole in the side of a body.
 	bool isCutThrough = false;
+	/// Whether it is cut through, and the surface behind runs out of the hole, too, as a tube does:
+	/// behind a slit, as where a long triangle is missing, it runs along it.
+	bool isOfTube = false;
 
 	/// Whether the border visits no vertex twice.
 	bool isOnce() const
@@ -89,7 +92,10 @@ inline Point3d axisBehind(const std::vector<Point3d>& points,
 inline LimbEnd limbEnd(const std::vector<Point3d>& points, const std::vector<Triangle>& triangles,
 	const std::vector<int>& partner, const std::vector<int>& loop)
 {
-	constexpr double likeATube = 0.7; // part of the perimeter of a disc with the hole's area
+	// Perimeters of a disc with the hole's area. Flat limbs that are ten times as wide as thick have 2;
+	// slits along an edge of the surface, as where a long triangle is missing there, more.
+	constexpr double likeATube = 0.7, likeASlit = 2;
+	constexpr double minAlong = 0.5; // cosine
 	LimbEnd end;
 	for (auto h = loop.rbegin(); h != loop.rend(); ++h) {
 		end.corner.push_back(triangles[size_t(*h) / 3][size_t(SurfaceMesh::next(*h)) % 3]);
@@ -111,15 +117,17 @@ inline LimbEnd limbEnd(const std::vector<Point3d>& points, const std::vector<Tri
 		if (const double norm = outOfFace.Norm(); norm > 0)
 			onwards += outOfFace * (edge.Norm() / norm);
 	}
-	end.isCutThrough = onwards.Norm() > likeATube * 2 * M_PI * end.radius;
-	if (end.isCutThrough)
-		end.radius = onwards.Norm() / (2 * M_PI);
 	end.out = area.Norm() > 0 ? area / area.Norm() : area;
-	end.heading = end.isCutThrough ? onwards : area;
-	if (end.heading.Norm() > 0)
-		end.heading /= end.heading.Norm();
-	if (end.isCutThrough)
-		end.heading = axisBehind(points, triangles, partner, loop, end);
+	end.heading = end.out;
+	const double perimeter = onwards.Norm(), ofDisc = 2 * M_PI * end.radius;
+	if (!(perimeter > likeATube * ofDisc && perimeter < likeASlit * ofDisc))
+		return end;
+	end.isCutThrough = true;
+	end.radius = perimeter / (2 * M_PI);
+	end.heading = onwards / perimeter;
+	const Point3d axis = axisBehind(points, triangles, partner, loop, end);
+	end.isOfTube = axis * end.heading > minAlong;
+	end.heading = axis;
 	return end;
 }
 
