@@ -146,11 +146,8 @@ TEST(Mend, TrianglesThatAreMissingAtTheInnerCornersOfAFrameAreHolesOfTheirOwn)
 				around.push_back(f);
 		for (size_t f : around)
 			for (size_t g : around) {
-				const std::set<int> both = [&] {
-					std::set<int> ids(frame.triangles[f].begin(), frame.triangles[f].end());
-					ids.insert(frame.triangles[g].begin(), frame.triangles[g].end());
-					return ids;
-				}();
+				std::set<int> both(frame.triangles[f].begin(), frame.triangles[f].end());
+				both.insert(frame.triangles[g].begin(), frame.triangles[g].end());
 				if (!(f < g) || both.size() != 5)
 					continue;
 				shapes::Soup open = frame;
@@ -260,7 +257,7 @@ TEST(Mend, FillsALargeHoleThatContinuesAFlatFace)
 		if (detail::areaVector(plate.points, plate.triangles[f])[2] > 1)
 			top.push_back(f);
 	ASSERT_EQ(top.size(), 2u);
-	// One of its two triangles is a third of the area that is left. Both are a lid.
+	// Either of the two is a third of the area that is left. Both together are a lid.
 	EXPECT_EQ(filled(plate, {top[0]}), 1);
 	EXPECT_EQ(filled(plate, {top[1]}), 1);
 	EXPECT_EQ(filled(plate, {top[0], top[1]}), 0);

@@ -40,8 +40,8 @@ struct FilledHoles
 struct HoleLimits
 {
 	/// Largest area of a filling in the largest piece of surface, as a fraction of the piece's area
-	/// (others may be torn off and short), unless it continues a flat face, see continuesFlatly(); and
-	/// of all fillings of any piece together.
+	/// (others may be torn off and short), unless it continues flat faces, see
+	/// detail::continuesFlatly(); and of all fillings of any piece together.
 	double area = 0.2, allAreas = 0.5;
 	/// Largest number of border edges of a hole; the time grows with its cube.
 	int edges = 200;
@@ -235,10 +235,10 @@ inline BorderFan borderFan(const std::vector<Point3d>& points,
  * The loops of half-edges around the holes of a coherently oriented surface, as they run in the
  * faces. Where several fans of faces meet at a vertex, a loop continues at the next fan across the
  * gap, so that the gap can be filled and the vertex is not split. Where the fans face different
- * ways, or overlap seen from outside, a loop stays with its fan, and is split where it returns to the
- * vertex: the open end of a wing and the slit along its trailing edge are separate holes, and so are
- * two triangles missing at the corner of a box. Where faces at a crowded edge still
- * disagree, a border may end at a vertex: it is no hole.
+ * ways, or overlap when seen from outside, a loop stays with its fan, and is split where it returns
+ * to the vertex: the open end of a wing and the slit along its trailing edge are separate holes, and
+ * so are two triangles missing at a vertex with more than 360 degrees around it. Where faces at a
+ * crowded edge still disagree, a border may end at a vertex: it is no hole.
  * @throws Cancelled. Complexity: O(F + B log B) for B faces at border vertices.
  */
 inline std::vector<std::vector<int>> holeLoops(const std::vector<Point3d>& points,

@@ -42,8 +42,8 @@ struct LimbEnd
 	/// Whether the surface heads out of the hole all around: a limb that is cut through, not a
 	/// hole in the side of a body.
 	bool isCutThrough = false;
-	/// Whether it is cut through, and the surface behind runs out of the hole, too, as a tube does:
-	/// behind a slit, as where a long triangle is missing, it runs along it.
+	/// Whether it is cut through, and the axis of the surface behind leads out of the hole, as that
+	/// of a tube does. Behind a slit the axis is parallel to the slit.
 	bool isOfTube = false;
 
 	/// Whether the border visits no vertex twice.
@@ -92,10 +92,10 @@ inline Point3d axisBehind(const std::vector<Point3d>& points,
 inline LimbEnd limbEnd(const std::vector<Point3d>& points, const std::vector<Triangle>& triangles,
 	const std::vector<int>& partner, const std::vector<int>& loop)
 {
-	// Perimeters of a disc with the hole's area. Flat limbs that are ten times as wide as thick have 2;
-	// slits along an edge of the surface, as where a long triangle is missing there, more.
+	// In perimeters of a disc with the hole's area. The end of a flat limb, ten times as wide as thick,
+	// has 2; a slit where a long triangle is missing along an edge of the surface has more.
 	constexpr double likeATube = 0.7, likeASlit = 2;
-	constexpr double minAlong = 0.5; // cosine
+	constexpr double minAlong = 0.5; // cosine of 60 degrees, see GapReach::aside
 	LimbEnd end;
 	for (auto h = loop.rbegin(); h != loop.rend(); ++h) {
 		end.corner.push_back(triangles[size_t(*h) / 3][size_t(SurfaceMesh::next(*h)) % 3]);
