@@ -147,7 +147,23 @@ TEST(BladeEnds, AStubAtTheRootOfASpineDoesNotEndBesideItsTip)
 	const Point3d root(ball + 0.005, 0, 0), stub(ball + 0.007, 0.001, 0), tip(0.49, 0, 0);
 	CurveInShape scene(shapes::revolved(profile, 12),
 		along({root, stub}, along({root, tip}, along({{0, 0, 0}, root}))));
-	EXPECT_EQ(tipsWithoutForks(scene), scene.tips());
+	EXPECT_EQ(tipsWithoutForks(scene).back(), tip);
+}
+
+TEST(BladeEnds, OfATailAndAStubBesideItsRootTheStubGoes)
+{
+	// A body of 10 cells a side, and a tail of 16, four wide and two thick.
+	const auto isTail = [](int j, int k) { return j >= 3 && j < 7 && k >= 4 && k < 6; };
+	const shapes::Soup soup =
+		shapes::cells(26, 10, 10, [&](int i, int j, int k) { return i < 10 || isTail(j, k); });
+	const Point3d body(0.25, 0.25, 0.25), root(0.6, 0.25, 0.25), stub(0.65, 0.2, 0.25),
+		tip(1.2, 0.25, 0.25);
+	CurveInShape scene(
+		shapes::scaled(soup, 0.05), along({root, stub}, along({root, tip}, along({body, root}))));
+	const std::vector<Point3d> tips = tipsWithoutForks(scene);
+	ASSERT_EQ(tips.size(), 2u);
+	EXPECT_LT(Distance(tips[0], body), 0.01);
+	EXPECT_LT(Distance(tips[1], tip), 0.01);
 }
 
 TEST(BladeEnds, EachPointOfAStarHasOneTipHalfWayUp)

@@ -831,6 +831,17 @@ TEST(Refine, StubsInPlatesAreTakenBack)
 	EXPECT_EQ(tipsLeft(plate, inPlate(3)), 2u) << "three radii";
 	EXPECT_EQ(tipsLeft(plate, inPlate(12)), 3u) << "a lobe has a branch like that";
 
+	const SurfaceMesh forked = shapes::cells(90, 60, 14, [](int i, int j, int) {
+		return i >= 30 || j < 20 || j >= 40;
+	}).mesh();
+	const Point3d fork(36, 30, 7);
+	const CurveSkeleton inForked = CurveMaker()
+									   .line(fork, {84, 30, 7}, 48)
+									   .line(fork, {30, 10, 7}, 20)
+									   .line(fork, {30, 50, 7}, 20)
+									   .in(forked);
+	EXPECT_EQ(tipsLeft(forked, inForked), 3u) << "half of the curve";
+
 	const SurfaceMesh bars = shapes::cells(60, 30, 2, [](int i, int j, int) {
 		return j < 2 || (i >= 29 && i < 31);
 	}).mesh();

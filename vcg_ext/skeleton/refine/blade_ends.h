@@ -91,7 +91,8 @@ inline double largestRadiusAround(const CurveSkeleton& skeleton,
  * the longer one: their tips are on one ridge, see areOnOneRidge(), side by side as seen from the
  * junction, no farther apart than longestEnd radii of the limb, whose largest ball near the junction
  * tells how thick it is, and the shape ends ahead of them. Near an edge the balls are too small to
- * tell tips apart by them. A stub at the root of a thin limb does not end beside the limb's tip.
+ * tell tips apart by them. A tip that sticks out of the junction's ball twice as far as the other stays:
+ * the other one is a stub at the root of a limb.
  * @pre the radius of tips is their distance from the surface. @throws Cancelled
  * Complexity: O(T^2) for T tips, and some distances for each pair that is near.
  */
@@ -99,7 +100,7 @@ inline CurveSkeleton withoutForkedEnds(const CurveSkeleton& skeleton, const Clos
 	KnownClearances& clearances, const Progress& progress = Progress())
 {
 	constexpr double opposite = -0.7;          // cosine
-	constexpr double shortest = 0.1;           // of both branches, distances of the tips
+	constexpr double asFar = 0.5;              // as the other tip
 	constexpr double ahead = 0.75, around = 2; // distances of the tips
 	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
 	const auto endTogether = [&](const Branch& fromJunction, int other) {
@@ -107,7 +108,10 @@ inline CurveSkeleton withoutForkedEnds(const CurveSkeleton& skeleton, const Clos
 					  &q = skeleton.position[size_t(other)],
 					  &joint = skeleton.position[size_t(fromJunction.first())];
 		const double apart = Distance(p, q);
-		if (std::min(Distance(p, joint), Distance(q, joint)) < shortest * apart)
+		const auto reach = [&](const Point3d& tip) {
+			return Distance(tip, joint) + clearances.at(tip) - clearances.at(joint);
+		};
+		if (reach(q) < asFar * reach(p))
 			return false;
 		if ((p - joint) * (q - joint) < opposite * Distance(p, joint) * Distance(q, joint))
 			return false;

@@ -160,15 +160,19 @@ inline double lackOfLobe(const CurveSkeleton& skeleton, const Branch& fromJuncti
  * Removes terminal branches that stay within a plate and are shorter than twice the minimum height
  * of a lobe, or than that height if there is no other tip; the shortest first. Where the flow
  * leaves such stubs is chance, and next to one growFeatures() would take the rim for several lobes.
+ * A branch that is half of the curve is no stub, however thick its plate is.
  * @pre the radius of junctions and tips is their distance from the surface. @throws Cancelled
  */
 inline CurveSkeleton withoutStubsInPlates(const CurveSkeleton& skeleton,
 	const ClosestSurface& surface, const Progress& progress = Progress())
 {
+	const double half = statistics(skeleton).length / 2;
 	return withoutTerminalBranches(
 		skeleton, 0,
 		[&](const CurveSkeleton& s, const Branch& fromJunction, const std::set<int>& tips) {
-			return lackOfLobe(s, fromJunction, tips.size() > 1 ? 2 : 1, surface);
+			return branchLength(s, fromJunction) < half
+				? lackOfLobe(s, fromJunction, tips.size() > 1 ? 2 : 1, surface)
+				: 0.0;
 		},
 		progress);
 }
