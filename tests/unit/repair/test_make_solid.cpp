@@ -208,6 +208,18 @@ TEST(MakeSolid, LeavesWhatIsTooThinToBeWrappedAndSaysSo)
 	EXPECT_EQ(piecesOf(made.surface.mesh), 2);
 }
 
+TEST(MakeSolid, WallsInsideDoNotMakeAShapeThin)
+{
+	// A row of cubes, each of which ends a little way within the next one.
+	shapes::Soup row;
+	for (int i = 0; i < 12; ++i)
+		row = shapes::joined(
+			{row, shapes::moved(shapes::box(), {0.98 * i, 0.1 * (i % 2), 0.1 * (i % 3)})});
+	const SolidSurface made = solid(row);
+	EXPECT_EQ(made.report.outcome, SolidReport::Wrapped);
+	EXPECT_EQ(piecesOf(made.surface.mesh), 1);
+}
+
 TEST(MakeSolid, WrapsThinBodiesOfWhichNothingIsLost)
 {
 	// The same two wires, 2.4 times as thick as the lattice's edges are long, and thinner between them.

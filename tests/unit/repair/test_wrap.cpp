@@ -161,6 +161,18 @@ TEST(Wrap, OfASoupWithWallsInside)
 	EXPECT_NEAR(volumeOf(surface.points, surface.triangles), 2, 16 * 0.08 * 0.08 / 2);
 }
 
+TEST(Wrap, ClosesASlitThatIsNarrowerThanItsLattice)
+{
+	constexpr double slit = 0.03, spacing = 0.08;
+	shapes::Soup soup =
+		shapes::joined({shapes::box(), shapes::moved(shapes::box(), {1 + slit, 0, 0})});
+	for (Point3d& p : soup.points) { // askew in the lattice
+		p = {p[0] - 0.2 * p[1], p[1] + 0.2 * p[0], p[2]};
+		p = {p[0], p[1] - 0.3 * p[2], p[2] + 0.3 * p[1]};
+	}
+	expectSurface(wrapped(soup, spacing), 2, 1);
+}
+
 TEST(Wrap, OfNothingIsNothing)
 {
 	const shapes::Soup sheet = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};

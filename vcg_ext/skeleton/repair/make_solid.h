@@ -311,7 +311,7 @@ private:
 		constexpr int samples = 4000;
 		constexpr double part = 0.1; // of the area
 		const double spacing = latticeSpacing(points, faces);
-		return smallThickness(placesByArea(points, faces, samples), tree, part,
+		return smallThickness(placesByArea(points, faces, samples), tree, true, part,
 				   2 * cellsOfThick * spacing, progress)
 			/ spacing;
 	}
@@ -431,8 +431,8 @@ private:
 			refuse(error, isFlat(given, faces));
 		const double widest = std::sqrt(area / usualSquares),
 					 narrowest = std::sqrt(area / maxSquares);
-		const double thin =
-			smallThickness(places, tree, thinPart, widest / ofThickness, progress.part(0.2, 0.25));
+		const double thin = smallThickness(
+			places, tree, isClosed, thinPart, widest / ofThickness, progress.part(0.2, 0.25));
 		const double spacing = std::clamp(ofThickness * thin, narrowest, widest);
 		WrappedSurface made = wrap(tree, winding, spacing, maxNodes, progress.part(0.25, 0.8));
 		if (made.triangles.empty())

@@ -188,27 +188,54 @@ inline double sharedWalls(const std::vector<Point3d>& points,
 	return double(std::count_if(shared.begin(), shared.end(), isWall)) / double(places.size());
 }
 
-/// The thickness below which the fraction `part` of the area lies, measured inwards along the
-/// normals; at most `maximum`. Mesh units.
+/**
+ * The thickness below which the fraction `part` of the area lies, measured inwards along the
+ * normals; at most `maximum`. Mesh units.
+ * @param isClosed  then places and walls within the solid that the pieces make together do not count:
+ *                  it is left where the winding number becomes 0.
+ */
 inline double smallThickness(const std::vector<SurfacePlace>& places, const TriangleTree& tree,
-	double part, double maximum, const Progress& progress)
+	bool isClosed, double part, double maximum, const Progress& progress)
 {
 	constexpr int pieces = 8; // short segments meet few boxes
+	constexpr double close = 1e-6, within = -1;
+	const double step = close * tree.allNodes()[0].box.Diag();
 	std::vector<double> thickness(places.size(), maximum);
 	forEachBlock(int(places.size()), progress, "Measuring the thickness", [&](int begin, int end) {
+		std::vector<std::pair<double, bool>> crossings;
 		for (int i = begin; i < end; ++i) {
 			const SurfacePlace& at = places[size_t(i)];
 			double& found = thickness[size_t(i)];
+			int winding = 1;
+			if (isClosed) {
+				winding = integerWinding(tree, at.point - at.normal * step);
+				if (winding > 1 || integerWinding(tree, at.point + at.normal * step) > 0) {
+					found = within;
+					continue;
+				}
+			}
 			for (int k = 0; k < pieces && found == maximum; ++k) {
 				const double from = maximum * k / pieces, length = maximum / pieces;
+				crossings.clear();
 				tree.forEachCrossing(at.point - at.normal * from,
 					at.point - at.normal * (from + length), [&](int, double t, bool leaves) {
-						if (leaves && from + t * length > 1e-6 * maximum)
-							found = std::min(found, from + t * length);
+						if (from + t * length > close * maximum)
+							crossings.emplace_back(from + t * length, leaves);
 					});
+				std::sort(crossings.begin(), crossings.end());
+				for (const auto& [depth, leaves] : crossings) {
+					winding += leaves ? -1 : int(isClosed);
+					if (winding <= 0) {
+						found = depth;
+						break;
+					}
+				}
 			}
 		}
 	});
+	thickness.erase(std::remove(thickness.begin(), thickness.end(), within), thickness.end());
+	if (thickness.empty())
+		return maximum;
 	const auto middle = thickness.begin() + long(part * double(thickness.size()));
 	std::nth_element(thickness.begin(), middle, thickness.end());
 	return *middle;

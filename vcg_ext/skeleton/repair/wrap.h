@@ -40,7 +40,7 @@ struct WrappedSurface
 namespace detail {
 
 /**
- * Extracts the surface { w = 1/2 } from the tetrahedra of a lattice, without its fins.
+ * Extracts the surface { w = 1/2 } from the tetrahedra of a lattice, without its fins and slits.
  *
  * w is found at the nodes near the triangles, where it jumps, and then, until there are no new ones,
  * at those of all tetrahedra around edges where w - 1/2 changes its sign: so the surface is followed
@@ -198,6 +198,8 @@ private:
 				for (int i = from + begin; i < from + end; ++i)
 					value[size_t(i)] = windingAt(i);
 			});
+			if (from == 0)
+				fillSlits(progress.cancelOnly());
 			reportedLoop(
 				to - from, progress.part(0.9, from < first ? 1 : 0.9), wrapping, [&](int i) {
 					const int node = from + i;
@@ -210,6 +212,33 @@ private:
 			limitNodes();
 			from = to;
 		}
+	}
+
+	/**
+	 * Takes what is in slits for inside, as between bodies that nearly touch: where a slit is narrower
+	 * than the lattice, some nodes happen to be in it, and the surface around them has handles.
+	 * @pre the nodes are those near triangles.
+	 */
+	void fillSlits(const Progress& progress)
+	{
+		constexpr double narrow =
+			M_SQRT1_2; // spacings: how far apart the densest layers of nodes are
+		std::vector<char> isFilled(size_t(lattice.size()), 0);
+		forEachBlock(lattice.size(), progress, wrapping, [&](int begin, int end) {
+			for (int node = begin; node < end; ++node)
+				for (int d = 0; d < Lattice::forward && !isInside(node); ++d) {
+					const int one = lattice.neighbour(node, d),
+							  other = lattice.neighbour(node, Lattice::opposite(d));
+					if (one < 0 || other < 0 || !isInside(one) || !isInside(other))
+						continue;
+					const double width = (crossing(node, one) + crossing(node, other))
+						* Distance(lattice.position(node), lattice.position(one));
+					isFilled[size_t(node)] |= width < narrow * lattice.spacing();
+				}
+		});
+		for (size_t node = 0; node < isFilled.size(); ++node)
+			if (isFilled[node])
+				value[node] = 1;
 	}
 
 	/**
