@@ -221,8 +221,7 @@ private:
 	 */
 	void fillSlits(const Progress& progress)
 	{
-		constexpr double narrow =
-			M_SQRT1_2; // spacings: how far apart the densest layers of nodes are
+		constexpr double narrow = M_SQRT1_2; // spacings; of the densest layers of nodes
 		std::vector<char> isFilled(size_t(lattice.size()), 0);
 		forEachBlock(lattice.size(), progress, wrapping, [&](int begin, int end) {
 			for (int node = begin; node < end; ++node)
