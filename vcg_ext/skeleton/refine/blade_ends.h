@@ -91,16 +91,16 @@ inline double largestRadiusAround(const CurveSkeleton& skeleton,
  * the longer one: their tips are on one ridge, see areOnOneRidge(), side by side as seen from the
  * junction, no farther apart than longestEnd radii of the limb, whose largest ball near the junction
  * tells how thick it is, and the shape ends ahead of them. Near an edge the balls are too small to
- * tell tips apart by them. A tip that sticks out of the junction's ball twice as far as the other stays:
- * the other one is a stub at the root of a limb.
- * @pre the radius of tips is their distance from the surface. @throws Cancelled
+ * tell tips apart by them. A tip stays if its protrusion() is more than twice that of the other, which
+ * is then a stub at the root of the limb.
+ * @pre the radius of junctions and tips is their distance from the surface. @throws Cancelled
  * Complexity: O(T^2) for T tips, and some distances for each pair that is near.
  */
 inline CurveSkeleton withoutForkedEnds(const CurveSkeleton& skeleton, const ClosestSurface& surface,
 	KnownClearances& clearances, const Progress& progress = Progress())
 {
 	constexpr double opposite = -0.7;          // cosine
-	constexpr double asFar = 0.5;              // as the other tip
+	constexpr double asFar = 0.5;              // protrusions
 	constexpr double ahead = 0.75, around = 2; // distances of the tips
 	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
 	const auto endTogether = [&](const Branch& fromJunction, int other) {
@@ -108,10 +108,8 @@ inline CurveSkeleton withoutForkedEnds(const CurveSkeleton& skeleton, const Clos
 					  &q = skeleton.position[size_t(other)],
 					  &joint = skeleton.position[size_t(fromJunction.first())];
 		const double apart = Distance(p, q);
-		const auto reach = [&](const Point3d& tip) {
-			return Distance(tip, joint) + clearances.at(tip) - clearances.at(joint);
-		};
-		if (reach(q) < asFar * reach(p))
+		const int tip = fromJunction.last(), junction = fromJunction.first();
+		if (protrusion(skeleton, other, junction) < asFar * protrusion(skeleton, tip, junction))
 			return false;
 		if ((p - joint) * (q - joint) < opposite * Distance(p, joint) * Distance(q, joint))
 			return false;
@@ -326,7 +324,7 @@ inline CurveSkeleton withStraightEnds(CurveSkeleton skeleton, const ClosestSurfa
 }
 
 /// withoutForkedEnds(), then withStraightEnds(): one tip for each edge, in its middle.
-/// @pre the radius of tips is their distance from the surface. @throws Cancelled
+/// @pre the radius of junctions and tips is their distance from the surface. @throws Cancelled
 inline CurveSkeleton withOneTipAtEdges(const CurveSkeleton& skeleton, const ClosestSurface& surface,
 	KnownClearances& clearances, const Progress& progress = Progress())
 {

@@ -62,6 +62,9 @@ struct SurfacePlace
 	Point3d point, normal;
 };
 
+/// How far from a surface the winding numbers on its two sides are taken, of the diagonal.
+constexpr double besideSurface = 1e-6;
+
 /// About `count` places, spread evenly over the area: centroids of triangles, and further points of
 /// large ones.
 inline std::vector<SurfacePlace> placesByArea(
@@ -126,7 +129,6 @@ template <class Winding>
 Enclosure enclosureOf(const std::vector<SurfacePlace>& places, const Winding& winding,
 	double diagonal, const Progress& progress)
 {
-	constexpr double close = 1e-6; // of the diagonal
 	constexpr double likeASheet =
 		0.65; // a flat sheet has 1/2 on its inside, half a sphere 0.75 to 0.85
 	std::vector<double> inside(places.size());
@@ -134,7 +136,7 @@ Enclosure enclosureOf(const std::vector<SurfacePlace>& places, const Winding& wi
 		int(places.size()), progress, "Measuring the winding number", [&](int begin, int end) {
 			for (int i = begin; i < end; ++i) {
 				const SurfacePlace& at = places[size_t(i)];
-				inside[size_t(i)] = winding(at.point - at.normal * (close * diagonal));
+				inside[size_t(i)] = winding(at.point - at.normal * (besideSurface * diagonal));
 			}
 		});
 	Enclosure found;
@@ -164,8 +166,7 @@ inline double sharedWalls(const std::vector<Point3d>& points,
 	const std::vector<Triangle>& triangles, const TriangleTree& tree, const Progress& progress)
 {
 	constexpr int samples = 2000;
-	constexpr double close = 1e-6; // of the diagonal
-	const double step = close * tree.allNodes()[0].box.Diag();
+	const double step = besideSurface * tree.allNodes()[0].box.Diag();
 	const std::vector<SurfacePlace> places = placesByArea(points, triangles, samples);
 	const auto isShared = [&](const SurfacePlace& at, const auto& isOne) {
 		return isOne(at.point + at.normal * step) && isOne(at.point - at.normal * step);
@@ -189,51 +190,59 @@ inline double sharedWalls(const std::vector<Point3d>& points,
 }
 
 /**
- * The thickness below which the fraction `part` of the area lies, measured inwards along the
- * normals; at most `maximum`. Mesh units.
- * @param isClosed  then places and walls within the solid that the pieces make together do not count:
- *                  it is left where the winding number becomes 0.
+ * The depth, inwards along the normal, at which the solid ends behind a place of its surface; at most
+ * `maximum`. Mesh units.
+ * @param winding   the winding number just inside of the place.
+ * @param isClosed  then crossings into the solid count, too: it ends where the winding number is 0,
+ *                  not at walls inside.
+ */
+inline double thicknessAt(
+	const SurfacePlace& at, const TriangleTree& tree, int winding, bool isClosed, double maximum)
+{
+	constexpr int pieces = 8;        // short segments meet few boxes
+	constexpr double ownFace = 1e-6; // of `maximum`
+	std::vector<std::pair<double, bool>> crossings;
+	for (int k = 0; k < pieces; ++k) {
+		const double from = maximum * k / pieces, length = maximum / pieces;
+		crossings.clear();
+		tree.forEachCrossing(at.point - at.normal * from, at.point - at.normal * (from + length),
+			[&](int, double t, bool leaves) {
+				if (const double depth = from + t * length; depth > ownFace * maximum)
+					crossings.emplace_back(depth, leaves);
+			});
+		std::sort(crossings.begin(), crossings.end());
+		for (const auto& [depth, leaves] : crossings) {
+			winding += leaves ? -1 : int(isClosed);
+			if (winding <= 0)
+				return depth;
+		}
+	}
+	return maximum;
+}
+
+/**
+ * The thickness below which the fraction `part` of the area lies, see thicknessAt(); at most
+ * `maximum`. Mesh units.
+ * @param isClosed  then walls inside the solid that all pieces make together do not count as area.
  */
 inline double smallThickness(const std::vector<SurfacePlace>& places, const TriangleTree& tree,
 	bool isClosed, double part, double maximum, const Progress& progress)
 {
-	constexpr int pieces = 8; // short segments meet few boxes
-	constexpr double close = 1e-6, within = -1;
-	const double step = close * tree.allNodes()[0].box.Diag();
-	std::vector<double> thickness(places.size(), maximum);
+	constexpr double inside = -1;
+	const double step = besideSurface * tree.allNodes()[0].box.Diag();
+	std::vector<double> thickness(places.size());
 	forEachBlock(int(places.size()), progress, "Measuring the thickness", [&](int begin, int end) {
-		std::vector<std::pair<double, bool>> crossings;
 		for (int i = begin; i < end; ++i) {
 			const SurfacePlace& at = places[size_t(i)];
-			double& found = thickness[size_t(i)];
-			int winding = 1;
-			if (isClosed) {
-				winding = integerWinding(tree, at.point - at.normal * step);
-				if (winding > 1 || integerWinding(tree, at.point + at.normal * step) > 0) {
-					found = within;
-					continue;
-				}
-			}
-			for (int k = 0; k < pieces && found == maximum; ++k) {
-				const double from = maximum * k / pieces, length = maximum / pieces;
-				crossings.clear();
-				tree.forEachCrossing(at.point - at.normal * from,
-					at.point - at.normal * (from + length), [&](int, double t, bool leaves) {
-						if (from + t * length > close * maximum)
-							crossings.emplace_back(from + t * length, leaves);
-					});
-				std::sort(crossings.begin(), crossings.end());
-				for (const auto& [depth, leaves] : crossings) {
-					winding += leaves ? -1 : int(isClosed);
-					if (winding <= 0) {
-						found = depth;
-						break;
-					}
-				}
-			}
+			const auto windingAt = [&](double height) {
+				return integerWinding(tree, at.point + at.normal * height);
+			};
+			thickness[size_t(i)] = isClosed && windingAt(step) > 0
+				? inside
+				: thicknessAt(at, tree, isClosed ? windingAt(-step) : 1, isClosed, maximum);
 		}
 	});
-	thickness.erase(std::remove(thickness.begin(), thickness.end(), within), thickness.end());
+	thickness.erase(std::remove(thickness.begin(), thickness.end(), inside), thickness.end());
 	if (thickness.empty())
 		return maximum;
 	const auto middle = thickness.begin() + long(part * double(thickness.size()));

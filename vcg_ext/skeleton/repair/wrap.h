@@ -214,26 +214,34 @@ private:
 		}
 	}
 
+	/// Whether a node outside is in a slit: on both sides of it along some direction, the solid is so
+	/// near that a lattice plane of the densest sort need not lie between.
+	bool isInSlit(int node) const
+	{
+		constexpr double narrow = M_SQRT1_2; // spacings: the distance of the densest lattice planes
+		for (int d = 0; d < Lattice::forward; ++d) {
+			const int one = lattice.neighbour(node, d),
+					  other = lattice.neighbour(node, Lattice::opposite(d));
+			if (one < 0 || other < 0 || !isInside(one) || !isInside(other))
+				continue;
+			const double length = Distance(lattice.position(node), lattice.position(one));
+			if ((crossing(node, one) + crossing(node, other)) * length < narrow * lattice.spacing())
+				return true;
+		}
+		return false;
+	}
+
 	/**
-	 * Takes what is in slits for inside, as between bodies that nearly touch: where a slit is narrower
-	 * than the lattice, some nodes happen to be in it, and the surface around them has handles.
+	 * Takes nodes in slits for inside, see isInSlit(), as between bodies that nearly touch: only some of
+	 * the nodes around a narrow slit lie in it, and the surface around those would have handles.
 	 * @pre the nodes are those near triangles.
 	 */
 	void fillSlits(const Progress& progress)
 	{
-		constexpr double narrow = M_SQRT1_2; // spacings; of the densest layers of nodes
 		std::vector<char> isFilled(size_t(lattice.size()), 0);
 		forEachBlock(lattice.size(), progress, wrapping, [&](int begin, int end) {
 			for (int node = begin; node < end; ++node)
-				for (int d = 0; d < Lattice::forward && !isInside(node); ++d) {
-					const int one = lattice.neighbour(node, d),
-							  other = lattice.neighbour(node, Lattice::opposite(d));
-					if (one < 0 || other < 0 || !isInside(one) || !isInside(other))
-						continue;
-					const double width = (crossing(node, one) + crossing(node, other))
-						* Distance(lattice.position(node), lattice.position(one));
-					isFilled[size_t(node)] |= width < narrow * lattice.spacing();
-				}
+				isFilled[size_t(node)] = !isInside(node) && isInSlit(node);
 		});
 		for (size_t node = 0; node < isFilled.size(); ++node)
 			if (isFilled[node])
