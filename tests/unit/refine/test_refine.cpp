@@ -766,6 +766,21 @@ TEST(Refine, TheMiddlesOfAPlatesSidesAreNoLobes)
 	}
 }
 
+TEST(Refine, AThinPlateOfWhichTheFlowLeftADotHasItsCorners)
+{
+	// New branches have nodes as close as the plate is thin, before they are sampled.
+	constexpr double thickness = 0.0065;
+	const SurfaceMesh plate = shapes::refined(shapes::box(1, 1, thickness), 6).mesh();
+	const Point3d middle(0.5, 0.5, thickness / 2);
+	const CurveSkeleton s =
+		refine(CurveMaker().line(middle, middle + Point3d(0.02, 0, 0), 4).in(plate), plate);
+	const std::vector<Point3d> found = tips(s);
+	EXPECT_EQ(found.size(), 4u);
+	for (const Point3d& tip : found)
+		EXPECT_GT(Distance(tip, middle), 0.55);
+	EXPECT_TRUE(isInside(s, plate));
+}
+
 TEST(Refine, GrowsABranchIntoAHighLobeOfAPlate)
 {
 	// A flat clover leaf with three lobes, the curve in two of them.
@@ -1424,7 +1439,7 @@ TEST(Refine, HoweverThinTheShapeTheNodesAreBounded)
 	};
 	const refining::CurveBounds bounds(line(4), spacing);
 	EXPECT_TRUE(bounds.holdAtEnd(line(int(refining::maxNodes(1)))));
-	EXPECT_TRUE(bounds.hold(line(int(2 * refining::maxNodes(1))))) << "on the way";
+	EXPECT_TRUE(bounds.holdNodes(line(int(2 * refining::maxNodes(1))))) << "on the way";
 	EXPECT_FALSE(bounds.holdAtEnd(line(int(2 * refining::maxNodes(1)))));
 }
 
@@ -1445,10 +1460,10 @@ TEST(Refine, ACurveMayGrowIntoLimbsButNotToAndFro)
 		return CurveMaker().chain(points).in(SurfaceMesh());
 	};
 	const refining::CurveBounds bounds(star(2, 0.25), RefineParameters().spacing);
-	EXPECT_TRUE(bounds.hold(star(8, 0.5))) << "limbs of a round body";
-	EXPECT_FALSE(bounds.hold(pacing(8, 0.5))) << "as long";
-	EXPECT_TRUE(bounds.hold(pacing(4, 0.5)));
-	EXPECT_FALSE(bounds.hold(star(20, 0.5)));
+	EXPECT_TRUE(bounds.holdLength(star(8, 0.5))) << "limbs of a round body";
+	EXPECT_FALSE(bounds.holdLength(pacing(8, 0.5))) << "as long";
+	EXPECT_TRUE(bounds.holdLength(pacing(4, 0.5)));
+	EXPECT_FALSE(bounds.holdLength(star(20, 0.5)));
 }
 
 TEST(Refine, AFewEdgesThatHaveLeftTheSurfaceAreBroughtBack)

@@ -61,21 +61,23 @@ public:
 			size_t(denser * (double(nodesBefore) + (longest + ofTip * double(mostTips)) / spacing));
 	}
 
-	/// Whether a curve may be refined further.
-	bool hold(const CurveSkeleton& curve) const
+	/// Whether a curve may be refined further, as far as its length goes.
+	bool holdLength(const CurveSkeleton& curve) const
 	{
 		const SkeletonStatistics its = statistics(curve);
 		const int tips = std::clamp(its.terminals, fewestTips, mostTips);
-		return curve.position.size() <= nodes
-			&& its.length <= longest + ofTip * tips; // false if the length is NaN
+		return its.length <= longest + ofTip * tips; // false if the length is NaN
 	}
 
-	/// Whether a curve may be the result: if hold(), with at most 4/3 maxNodes() nodes more than
-	/// before.
+	/// Whether a sampled curve may be refined further, as far as the number of its nodes goes.
+	bool holdNodes(const CurveSkeleton& curve) const { return curve.position.size() <= nodes; }
+
+	/// Whether a curve may be the result: within both bounds, with at most 4/3 maxNodes() nodes more
+	/// than before.
 	bool holdAtEnd(const CurveSkeleton& curve) const
 	{
 		constexpr double more = 4.0 / 3;
-		return hold(curve)
+		return holdLength(curve) && holdNodes(curve)
 			&& double(curve.position.size())
 			<= double(nodesBefore) + more * maxNodes(statistics(curve).length);
 	}

@@ -135,6 +135,8 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 		done += rounds;
 	};
 	const CurveBounds bounds(skeleton, parameters.spacing * scale.minimum(component.vertices));
+	// New branches of plates have nodes as close as the plate is thin, until the curve is sampled.
+	bool isSampled = true;
 	KnownClearances clearances(surface, cancel);
 	const auto tidy = [&](double spurProminence, double tipDistinctness) {
 		measureBranchEnds(skeleton, clearances);
@@ -163,6 +165,7 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 		// Where straight pieces would leave a needle, it keeps its nodes but for crowded ones.
 		for (int i = 0; i < maxCoarser && isCrowded(); ++i)
 			sampleFrom(coarser * scale.minimum(component.vertices));
+		isSampled = true;
 		moveInside(
 			skeleton, surface, cancel); // long edges of a coarse shape's curve may have left it
 		progress.report(double(done) / total, what);
@@ -184,6 +187,7 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 		}
 		growFeatures(skeleton, component, surface, clearances, features,
 			progress.part(double(done) / total, double(done + 1) / total));
+		isSampled = false;
 		++done;
 		extend();
 	};
@@ -216,7 +220,8 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 		return surface.isExact() && outside > fewOutside + skeleton.radius.size() / partOutside;
 	};
 	for (const std::function<void()>& step : steps) {
-		if (!bounds.hold(skeleton) || (&step == steps + 1 && isHopeless()))
+		if (!bounds.holdLength(skeleton) || (isSampled && !bounds.holdNodes(skeleton))
+			|| (&step == steps + 1 && isHopeless()))
 			return skeleton;
 		step();
 	}
