@@ -768,7 +768,7 @@ TEST(Refine, TheMiddlesOfAPlatesSidesAreNoLobes)
 
 TEST(Refine, AThinPlateOfWhichTheFlowLeftADotHasItsCorners)
 {
-	// New branches have nodes as close as the plate is thin, before they are sampled.
+	// Before they are sampled, the nodes of new branches are half a ball's radius apart.
 	constexpr double thickness = 0.0065;
 	const SurfaceMesh plate = shapes::refined(shapes::box(1, 1, thickness), 6).mesh();
 	const Point3d middle(0.5, 0.5, thickness / 2);

@@ -135,7 +135,7 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 		done += rounds;
 	};
 	const CurveBounds bounds(skeleton, parameters.spacing * scale.minimum(component.vertices));
-	// New branches of plates have nodes as close as the plate is thin, until the curve is sampled.
+	// Until they are sampled, new branches in thin plates have too many nodes for the bound.
 	bool isSampled = true;
 	KnownClearances clearances(surface, cancel);
 	const auto tidy = [&](double spurProminence, double tipDistinctness) {
