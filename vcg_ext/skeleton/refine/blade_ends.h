@@ -66,25 +66,58 @@ inline bool areOnOneRidge(
 	return true;
 }
 
-/// The largest distance from the surface among the nodes within `farthest` of a node along the curve.
-inline double largestRadiusAround(const CurveSkeleton& skeleton,
-	const std::vector<std::vector<int>>& neighbours, KnownClearances& clearances, int node,
-	double farthest)
+/// Balls at the nodes near a node along the curve. Many pairs of tips ask about the same nodes.
+class BallsAlongCurve
 {
-	std::vector<std::pair<int, double>> reached {{node, 0}}; // node, way
-	std::set<int> seen {node};
-	double largest = 0;
-	for (size_t i = 0; i < reached.size(); ++i) {
-		const auto [v, way] = reached[i];
-		const Point3d& p = skeleton.position[size_t(v)];
-		largest = std::max(largest, clearances.at(p));
-		for (int w : neighbours[size_t(v)])
-			if (const double there = way + Distance(p, skeleton.position[size_t(w)]);
-				there <= farthest && seen.insert(w).second)
-				reached.emplace_back(w, there);
+public:
+	BallsAlongCurve(const CurveSkeleton& skeleton, KnownClearances& clearances) :
+			skeleton(skeleton), clearances(clearances), neighbours(skeleton.neighbours()),
+			radius(skeleton.position.size(), -1), seenIn(skeleton.position.size(), 0)
+	{
 	}
-	return largest;
-}
+
+	/// Whether the surface is at least `minimum` away from a node within `farthest` of `node`.
+	/// @throws Cancelled. Complexity: linear in the nodes that are as near.
+	bool isAnyLarge(int node, double farthest, double minimum)
+	{
+		++search;
+		seenIn[size_t(node)] = search;
+		reached.assign(1, {node, 0});
+		for (size_t i = 0; i < reached.size(); ++i) {
+			const auto [v, way] = reached[i];
+			if (radiusOf(v) >= minimum)
+				return true;
+			const Point3d& p = skeleton.position[size_t(v)];
+			for (int w : neighbours[size_t(v)]) {
+				if (seenIn[size_t(w)] == search)
+					continue;
+				const double there = way + Distance(p, skeleton.position[size_t(w)]);
+				if (there > farthest)
+					continue;
+				seenIn[size_t(w)] = search;
+				reached.emplace_back(w, there);
+			}
+		}
+		return false;
+	}
+
+private:
+	double radiusOf(int v)
+	{
+		double& known = radius[size_t(v)];
+		if (known < 0)
+			known = std::max(clearances.at(skeleton.position[size_t(v)]), 0.0);
+		return known;
+	}
+
+	const CurveSkeleton& skeleton;
+	KnownClearances& clearances;
+	const std::vector<std::vector<int>> neighbours;
+	std::vector<double> radius; ///< of each node; -1: not yet measured
+	std::vector<size_t> seenIn; ///< the last search that reached a node
+	size_t search = 0;
+	std::vector<std::pair<int, double>> reached; ///< node, way
+};
 
 /**
  * Of two terminal branches into the same edge, as into both corners of the edge of a wedge, removes
@@ -102,7 +135,7 @@ inline CurveSkeleton withoutForkedEnds(const CurveSkeleton& skeleton, const Clos
 	constexpr double opposite = -0.7;          // cosine
 	constexpr double asFar = 0.5;              // protrusions
 	constexpr double ahead = 0.75, around = 2; // distances of the tips
-	const std::vector<std::vector<int>> neighbours = skeleton.neighbours();
+	BallsAlongCurve balls(skeleton, clearances);
 	const auto endTogether = [&](const Branch& fromJunction, int other) {
 		const Point3d &p = skeleton.position[size_t(fromJunction.last())],
 					  &q = skeleton.position[size_t(other)],
@@ -121,9 +154,7 @@ inline CurveSkeleton withoutForkedEnds(const CurveSkeleton& skeleton, const Clos
 		const double way = Distance(middle, joint);
 		return way > 0 && surface.clearance(middle + (middle - joint) * (ahead * apart / way)) <= 0
 			&& areOnOneRidge(surface, behind(p), behind(q), clearances)
-			&& apart <= longestEnd
-				* largestRadiusAround(
-					skeleton, neighbours, clearances, fromJunction.first(), around * apart);
+			&& balls.isAnyLarge(junction, around * apart, apart / longestEnd);
 	};
 	return withoutTerminalBranches(
 		skeleton, 0,
