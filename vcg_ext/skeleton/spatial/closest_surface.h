@@ -132,17 +132,20 @@ public:
 
 	/**
 	 * Given points that are inside, finds out whether the surface crosses itself around one of them:
-	 * within a limb that reaches into a body, the body is in front of the limb's surface. From then
-	 * on, winding numbers decide there. @throws Cancelled. Complexity: a closest() for each; O(F log F)
-	 * if one is in front of the surface.
+	 * where a limb reaches into a body, the inside of the body lies in front of the limb's surface,
+	 * here by 0.5 % of the diagonal, since walls of thin plates may cross each other by less. From
+	 * then on, winding numbers decide there. @throws Cancelled. Complexity: a closest() for each;
+	 * O(F log F) if one is in front of the surface.
 	 */
 	void considerCrossings(
 		const std::vector<Point3d>& inside, const Progress& progress = Progress())
 	{
+		const double clearly = 0.005 * box.Diag();
 		detail::cancellableLoop(int(inside.size()), progress, [&](int i) {
 			const Point3d& p = inside[size_t(i)];
-			if (!crossesItself && clearance(p, progress) < 0)
-				crossesItself = solid(progress).isInside(solid(progress).in(p));
+			if (!crossesItself && clearance(p, progress) < -clearly)
+				crossesItself = exactClearance(p, progress) < -clearly
+					&& solid(progress).isInside(solid(progress).in(p));
 		});
 	}
 
