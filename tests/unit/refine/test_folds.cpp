@@ -24,7 +24,7 @@ namespace {
 constexpr double tubeRadius = 0.35;
 
 /// Adds a way from point to point, with a node every twentieth.
-CurveMaker along(const std::vector<Point3d>& points, CurveMaker maker = CurveMaker())
+CurveMaker wayThrough(const std::vector<Point3d>& points, CurveMaker maker = CurveMaker())
 {
 	for (size_t i = 1; i < points.size(); ++i)
 		maker.line(points[i - 1], points[i],
@@ -36,7 +36,7 @@ CurveMaker along(const std::vector<Point3d>& points, CurveMaker maker = CurveMak
 struct InTube : CurveInShape
 {
 	explicit InTube(const std::vector<Point3d>& way) :
-			CurveInShape(shapes::capsule(4, tubeRadius, 32), along(way))
+			CurveInShape(shapes::capsule(4, tubeRadius, 32), wayThrough(way))
 	{
 		curve = curves::tracked(curve);
 		refining::measureNodes(curve, clearances);
@@ -103,7 +103,7 @@ TEST(Hairpins, StrandsMoreThanHalfARadiusApartStay)
 
 TEST(Hairpins, ABendStaysHoweverThickTheBodyAroundIt)
 {
-	CurveInShape scene(shapes::sphere(3, 3), along({{2, 0.8, 0}, {0, 0, 0}, {2, -0.8, 0}}));
+	CurveInShape scene(shapes::sphere(3, 3), wayThrough({{2, 0.8, 0}, {0, 0, 0}, {2, -0.8, 0}}));
 	refining::measureNodes(scene.curve, scene.clearances);
 	EXPECT_EQ(withoutHairpins(scene).position, scene.curve.position) << "44 degrees";
 }
