@@ -285,34 +285,13 @@ private:
 		return solid.isInside(half.at(1)) ? half : HalfChord {from, Point3d(0, 0, 0)};
 	}
 
-	/// The half chord from the closest point of the surface, on the line through both points, or its
-	/// part up to the centre of the ball that touches there, see shrunk(): from the rim of a plate,
-	/// the middle of the chord is in the middle of the plate.
+	/// The half chord from the closest point of the surface, on the line through both points.
 	HalfChord closestChord(const Point3d& point, bool isOutside) const
 	{
 		const SolidTest::Closest on = solid.closest(point);
-		return on.distance > 0 ? shrunk(halfChord(
-				   on.point, (isOutside ? on.point - point : point - on.point) / on.distance))
-							   : HalfChord {on.point, Point3d(0, 0, 0)};
-	}
-
-	/// About the radius of the maximal ball that touches where a half chord starts: the ball shrinks
-	/// until no surface is clearly inside (Ma, Bae and Choi 2012). In a faceted tube none is.
-	HalfChord shrunk(HalfChord half) const
-	{
-		constexpr double near = 0.75; // radii
-		constexpr int maxRounds = 16;
-		for (int round = 0; round < maxRounds; ++round) {
-			const SolidTest::Closest contact = solid.closest(half.at(1));
-			if (contact.distance >= near * half.along.Norm())
-				break;
-			const Point3d to = contact.point - half.from;
-			const double part = to.SquaredNorm() / (2 * (to * half.along));
-			if (!(part > 0 && part < 1) || !solid.isInside(half.at(part)))
-				break;
-			half.along *= part;
-		}
-		return half;
+		return on.distance > 0
+			? halfChord(on.point, (isOutside ? on.point - point : point - on.point) / on.distance)
+			: HalfChord {on.point, Point3d(0, 0, 0)};
 	}
 
 	const SurfaceWays& ways()
@@ -351,7 +330,6 @@ private:
 						best = candidate;
 					}
 				}
-			best = shrunk(best);
 		}
 		const auto takenBy = [&](const Point3d& p) {
 			return std::find_if(neighbours[A].begin(), neighbours[A].end(),
