@@ -66,7 +66,8 @@ inline bool areOnOneRidge(
 	return true;
 }
 
-/// Balls at the nodes near a node along the curve. Many pairs of tips ask about the same nodes.
+/// The balls at the nodes near a node along the curve. Many pairs of tips ask about the same nodes, so
+/// that their radii are kept by number: KnownClearances looks them up by position.
 class BallsAlongCurve
 {
 public:
