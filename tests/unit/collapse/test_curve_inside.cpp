@@ -252,6 +252,19 @@ TEST(CurveInside, ANodeFarOutsideGoesToTheNearestPlaceOfTheTrianglesThatMergedIn
 	EXPECT_NEAR(statistics(inside).length, 2, 0.05);
 }
 
+TEST(CurveInside, ANodeBesideTheRimOfAPlateStaysAtTheRim)
+{
+	// From there, the middle of the chord is that of the plate.
+	const shapes::Soup disc = shapes::revolved({{-0.05, 0}, {-0.05, 1}, {0.05, 1}, {0.05, 0}}, 64);
+	for (const double far : {1.005, 1.03}) {
+		Curve curve(disc, {{0, 0.9, -0.2}, {0.01, far, 0}, {0, 0.9, 0.2}}, {{0, 1}, {1, 2}});
+		const CurveSkeleton inside = curve.inside();
+		EXPECT_LT(outside(curve.surface, inside), 5e-7);
+		EXPECT_LT(Distance(inside.position[1], curve.skeleton.position[1]), 0.11) << far;
+		EXPECT_LT(statistics(inside).length, 1.1 * statistics(curve.skeleton).length) << far;
+	}
+}
+
 TEST(CurveInside, BetweenThePlacesThatAreLookedAtNothingIsFartherOutsideThanPromised)
 {
 	// Edges that leave a box by a little more or less than the tolerance, at their middle or at an end.
