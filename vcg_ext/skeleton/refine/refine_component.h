@@ -172,6 +172,7 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 	};
 	const auto unfold = [&] {
 		skeleton = withoutFolds(std::move(skeleton), surface, cancel);
+		skeleton = withoutHairpins(std::move(skeleton), surface, cancel);
 		measureBranchEnds(skeleton, clearances);
 		skeleton = withoutDoubledTips(std::move(skeleton), cancel);
 	};
@@ -198,7 +199,10 @@ inline CurveSkeleton refineComponent(CurveSkeleton skeleton, const ClosestSurfac
 	// extension.
 	constexpr double hopeless = 0;
 	const std::function<void()> steps[] = {
-		[&] { tidy(hopeless, 0); },
+		[&] {
+			tidy(hopeless, 0);
+			skeleton = withoutHairpins(std::move(skeleton), surface, cancel);
+		},
 		[&] { recentre(parameters.stiffRounds, stiffer * kappa, false); },
 		extend,
 		grow,
