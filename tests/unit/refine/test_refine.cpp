@@ -187,6 +187,37 @@ TEST(Refine, UnfoldsACurveThatDoublesBack)
 	EXPECT_EQ(statistics(refined).terminals, 2);
 }
 
+TEST(Refine, AnAxisStaysWhereALimbReachesIntoItsOwnBody)
+{
+	// A body around the x axis from 0 to 1.2, and a tail that is bent back and into the body's side.
+	constexpr double body = 0.5, tail = 0.05, bend = 0.35, length = 1.7;
+	std::vector<std::pair<double, double>> profile = {{0, 0}};
+	for (int i = 1; i <= 12; ++i)
+		profile.emplace_back(0.1 * i, body * std::min(1.0, std::min(0.3 * i, 0.4 * (13 - i))));
+	for (int i = 0; i <= 85; ++i)
+		profile.emplace_back(1.25 + 0.02 * i, tail);
+	profile.emplace_back(1.25 + length + tail, 0);
+	const auto bent = [](const Point3d& p) {
+		const double angle = std::max(0.0, p[0] - 1.25) / bend;
+		return angle > 0 ? Point3d(1.25 + (bend - p[1]) * std::sin(angle),
+				   bend - (bend - p[1]) * std::cos(angle), p[2])
+						 : p;
+	};
+	const SurfaceMesh mesh = shapes::transformed(shapes::revolved(profile, 32), bent).mesh();
+	std::vector<Point3d> axis;
+	for (int i = 0; i <= 70; ++i)
+		axis.push_back(bent(Point3d(0.2 + i * (1.05 + length) / 70, 0, 0)));
+	ASSERT_LT(axis.back()[1], 0.35) << "its end is in the body";
+	const CurveSkeleton curve = CurveMaker().chain(axis).in(mesh);
+	const Refinement refined = refineChecked(curve, mesh);
+	EXPECT_EQ(refined.report.refined, 1);
+	EXPECT_EQ(statistics(refined.skeleton).terminals, 2);
+	double before = 0;
+	for (size_t i = 1; i < axis.size(); ++i)
+		before += Distance(axis[i - 1], axis[i]);
+	EXPECT_NEAR(statistics(refined.skeleton).length, before, 0.1 * before);
+}
+
 TEST(Refine, RemovesATipThatLiesOnAnotherBranch)
 {
 	// On the axis of a tube, from its middle on, a second time: to the end, and a quarter of the way.

@@ -112,6 +112,25 @@ INSTANTIATE_TEST_SUITE_P(ClosestSurface, OnShapes,
 	testing::Values(shapes::torus(), shapes::capsule(), shapes::sphere(2), shapes::box(3, 2, 1),
 		shapes::plate(2), shapes::jittered(shapes::torus(1, 0.4), 0.01)));
 
+TEST(ClosestSurface, AroundALimbThatReachesIntoABodyIsInsideOnceAPointThereIsKnownToBe)
+{
+	// A ball of radius 1, and a tube of radius 0.2 along the x axis from its middle to 2.
+	const SurfaceMesh mesh = shapes::joined(
+		{shapes::sphere(3, 1), shapes::moved(shapes::capsule(2, 0.2, 24), Point3d(1, 0, 0))})
+								 .mesh();
+	ClosestSurface closest(mesh, allVertices(mesh), 0.1);
+	const Point3d around(0.5, 0.3, 0), inLimb(1.5, 0.05, 0), outside(1.5, 0.5, 0);
+	closest.considerCrossings({inLimb});
+	EXPECT_LT(closest.clearance(around), 0) << "the tube's surface faces it";
+	closest.considerCrossings({inLimb, outside});
+	EXPECT_LT(closest.clearance(around), 0) << "a point that is outside of all proves nothing";
+	closest.considerCrossings({inLimb, around});
+	EXPECT_NEAR(closest.clearance(around), 0.1, 0.01);
+	EXPECT_NEAR(closest.clearance({0.5, 0.05, 0}), 0.15, 0.01) << "in both";
+	EXPECT_NEAR(closest.clearance(inLimb), 0.15, 0.01);
+	EXPECT_NEAR(closest.clearance(outside), -0.3, 0.01);
+}
+
 TEST(ClosestSurface, BesideAFaceThatIsFoldedOverItsNeighboursIsInside)
 {
 	// A block whose top goes to B, back to C and on, through itself: the normals at C, the lowest

@@ -203,6 +203,7 @@ inline Defect refineChecked(CurveSkeleton& refined, ClosestSurface& surface,
 	constexpr double usual = 0.8,
 					 second = 0.9; // of the time: few shapes need more than one attempt
 	const CurveSkeleton unrefined = refined;
+	surface.considerCrossings(unrefined.position, progress.cancelOnly());
 	const InsideCheck inside(surface, component);
 	size_t nodes = 0;
 	const auto attempt = [&](LocalScale own, double from, double to) {

@@ -130,6 +130,25 @@ public:
 	}
 	bool isExact() const { return alwaysExact; }
 
+	/**
+	 * Given points that are inside, finds out whether the surface crosses itself around one of them:
+	 * where a limb reaches into a body, the inside of the body lies in front of the limb's surface,
+	 * here by 0.5 % of the diagonal, since walls of thin plates may cross each other by less. From
+	 * then on, winding numbers decide there. @throws Cancelled. Complexity: a closest() for each;
+	 * O(F log F) if one is in front of the surface.
+	 */
+	void considerCrossings(
+		const std::vector<Point3d>& inside, const Progress& progress = Progress())
+	{
+		const double clearly = 0.005 * box.Diag();
+		detail::cancellableLoop(int(inside.size()), progress, [&](int i) {
+			const Point3d& p = inside[size_t(i)];
+			if (!crossesItself && clearance(p, progress) < -clearly)
+				crossesItself = exactClearance(p, progress) < -clearly
+					&& solid(progress).isInside(solid(progress).in(p));
+		});
+	}
+
 	/// A lower bound of the distance to the surface, inside or outside, see EmptyBalls. Cheap; 0 near
 	/// the surface.
 	double emptyRadius(const Point3d& query) const { return empty.radius(tree, query); }
@@ -179,7 +198,8 @@ public:
 	 * "Signed distance computation using the angle weighted pseudonormal", IEEE TVCG 11(3), 2005).
 	 * Where that sum nearly cancels, or a face is a sliver, the winding number decides: at the
 	 * bottom of a slit, or the edge of a blade, thinner than the precision of the coordinates, and
-	 * at a triangle that is folded over its neighbours, beside which the normal may be wrong.
+	 * at a triangle that is folded over its neighbours, beside which the normal may be wrong. So it
+	 * does in front of a surface that crosses itself, see considerCrossings().
 	 * @param progress cancels what the first such query builds, in O(F log F).
 	 */
 	bool isInside(const Point3d& query, const Hit& hit, const Progress& progress = Progress()) const
@@ -211,9 +231,10 @@ public:
 				add(out / 3, std::atan2((a ^ b).Norm(), a * b));
 			});
 		}
-		if (!isClear || normal.Norm() < minNormal * weights)
+		const bool isBehind = (query - on.point) * normal < 0;
+		if (!isClear || normal.Norm() < minNormal * weights || (crossesItself && !isBehind))
 			return solid(progress).isInside(solid(progress).in(query));
-		return (query - on.point) * normal < 0;
+		return isBehind;
 	}
 
 	/// Distance to the surface: positive inside, negative outside. @param progress see isInside().
@@ -289,7 +310,7 @@ private:
 	PointTree tree;
 	EmptyBalls empty;
 	Box3d box;
-	bool alwaysExact = false;
+	bool alwaysExact = false, crossesItself = false;
 	/// What only exact queries need; made by the first.
 	struct Triangles
 	{
