@@ -181,12 +181,14 @@ struct Section
  * The section of a limb at a point: it is as wide as the distance from the surface stays above half
  * of that at the point.
  * @param axis   of the limb, of unit length.
- * @param widest no section is wider; nothing if it would be.
+ * @param widest no section is wider; nothing if it would be, or if there were more than 64 radii in
+ *               that: limbs are not so wide, and finding that out takes as many queries.
  */
 inline std::optional<Section> sectionAt(
 	const ClosestSurface& surface, Point3d x, const Point3d& axis, double widest)
 {
 	constexpr double minSide = 0.5, pace = 0.25; // radii
+	constexpr double widestLimb = 64;            // radii
 	constexpr int halvings = 3;
 	ClosestSurface::Hit hit = surface.closest(x);
 	ClosestSurface::Ball ball;
@@ -207,6 +209,8 @@ inline std::optional<Section> sectionAt(
 		return std::nullopt;
 	side /= side.Norm();
 	const double r = hit.distance;
+	if (widest > widestLimb * r)
+		return std::nullopt;
 	const auto reach = [&](double sign) {
 		const auto isWithin = [&](double s) {
 			return surface.clearance(x + side * (sign * s)) >= minSide * r;
