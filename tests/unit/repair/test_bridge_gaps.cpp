@@ -4,6 +4,7 @@
 #include "shapes.h"
 
 #include <skeleton/mesh/components.h>
+#include <skeleton/repair/make_solid.h>
 #include <skeleton/repair/mend.h>
 
 #include <gtest/gtest.h>
@@ -151,6 +152,100 @@ TEST(BridgeGaps, ALimbTornOffABody)
 	EXPECT_EQ(made.gaps, 1);
 	EXPECT_EQ(made.pieces, 1);
 	EXPECT_EQ(made.euler, 2);
+}
+
+/// A ball with a limb in front of a hole, as wide as it, that two slits cross, `arm` long from its
+/// middle.
+shapes::Soup limbInFrontOfSlits(double arm)
+{
+	const shapes::Soup body = without(shapes::sphere(5, 1), [&](const Point3d& p) {
+		const double y = std::abs(p[1]), z = std::abs(p[2]);
+		return p[0] > 0
+			&& (std::hypot(y, z) < 0.22 || (std::min(y, z) < 0.06 && std::max(y, z) < arm));
+	});
+	return shapes::joined({body,
+		without(shapes::moved(shapes::capsule(3, 0.2, 24), {2.5, 0, 0}),
+			[](const Point3d& p) { return p[0] < 1.05; })});
+}
+
+TEST(BridgeGaps, ALimbThatSlitsRunAroundIsJoinedByTheWrapNotByATube)
+{
+	const shapes::Soup torn = limbInFrontOfSlits(0.7);
+	const MendedSurface surface = mend(torn.points, torn.triangles);
+	EXPECT_EQ(surface.report.gapsBridged, 0);
+	EXPECT_FALSE(surface.closed);
+	const SolidSurface solid = solidSurface(torn.points, torn.triangles);
+	EXPECT_EQ(solid.report.outcome, SolidReport::Wrapped);
+	int pieces = 0;
+	connectedComponents(solid.surface.mesh, &pieces);
+	EXPECT_EQ(pieces, 1);
+	EXPECT_EQ(solid.surface.mesh.vertexCount() - solid.surface.mesh.faceCount() / 2, 2);
+	const double whole = 4 * M_PI / 3 + M_PI * 0.2 * 0.2 * (3 + 0.2 * 2 / 3);
+	EXPECT_NEAR(solid.surface.mesh.volume(), whole, 0.03 * whole);
+}
+
+TEST(BridgeGaps, TheTeethOfAHoleAreNoSlits)
+{
+	const Outcome made = mended(limbInFrontOfSlits(0.25));
+	EXPECT_EQ(made.gaps, 1);
+	EXPECT_EQ(made.pieces, 1);
+	EXPECT_EQ(made.euler, 2);
+}
+
+/// borderShape() of n corners, corner(angle) of each.
+detail::BorderShape shapeOf(int n, const std::function<Point3d(double)>& corner)
+{
+	std::vector<Point3d> points;
+	std::vector<int> border;
+	for (int i = 0; i < n; ++i) {
+		points.push_back(corner(2 * M_PI * i / n));
+		border.push_back(i);
+	}
+	return detail::borderShape(
+		points, border, detail::areaVector(points, border, Point3d(0, 0, 0)));
+}
+
+TEST(BorderShape, OfACircleEveryLengthIsThatOfItsDisc)
+{
+	for (const double tooth : {0.0, 0.1}) {
+		int i = 0;
+		const detail::BorderShape circle = shapeOf(120, [&](double a) {
+			const double r = 1 + tooth * (i++ % 2 ? 1 : -1);
+			return Point3d(r * std::cos(a), r * std::sin(a), 0);
+		});
+		EXPECT_NEAR(circle.slenderness, 1, 0.02) << tooth;
+		EXPECT_NEAR(circle.concavity, 1, 0.01) << tooth;
+		EXPECT_NEAR(circle.warp, 1, 0.01) << tooth;
+	}
+}
+
+TEST(BorderShape, OfAnEllipseTheSlendernessGrowsAndNothingElse)
+{
+	// The perimeter of an ellipse of 10 by 1 is 40.64.
+	const detail::BorderShape ellipse =
+		shapeOf(400, [](double a) { return Point3d(10 * std::cos(a), 0, std::sin(a)); });
+	EXPECT_NEAR(ellipse.slenderness, 40.64 / (2 * M_PI * std::sqrt(10.0)), 0.02);
+	EXPECT_NEAR(ellipse.concavity, 1, 0.01);
+	EXPECT_NEAR(ellipse.warp, 1, 0.01);
+}
+
+TEST(BorderShape, OfAStarItIsConcave)
+{
+	const detail::BorderShape star = shapeOf(400, [](double a) {
+		const double r = 1 + 0.5 * std::cos(4 * a);
+		return Point3d(r * std::cos(a), r * std::sin(a), 0);
+	});
+	EXPECT_GT(star.concavity, 1.2);
+}
+
+TEST(BorderShape, OfAHoleInTheSideOfATubeItIsWarpedNotConcave)
+{
+	const detail::BorderShape saddle = shapeOf(400, [](double a) {
+		const double y = 0.95 * std::cos(a), z = 0.95 * std::sin(a);
+		return Point3d(std::sqrt(1 - y * y), y, z);
+	});
+	EXPECT_NEAR(saddle.concavity, 1, 0.01);
+	EXPECT_GT(saddle.warp, 1.12);
 }
 
 TEST(BridgeGaps, ARingIsClosedOverAShortGapOnly)
@@ -373,7 +468,7 @@ TEST(BridgeGaps, AThousandLostJunctionsAreBridged)
 	}
 	const std::vector<int> partner =
 		detail::pairedHalfEdges(many.points, many.triangles, nullptr, Progress());
-	EXPECT_EQ(bridgeGaps(many.points, many.triangles, partner, {}), 2 * rows * rows);
+	EXPECT_EQ(bridgeGaps(many.points, many.triangles, partner, {}).tubes, 2 * rows * rows);
 	const std::vector<int> joined =
 		detail::pairedHalfEdges(many.points, many.triangles, nullptr, Progress());
 	const std::vector<int> piece = detail::pieceOfFaces(joined);

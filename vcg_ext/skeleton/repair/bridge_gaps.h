@@ -58,6 +58,15 @@ struct GapLimits
 	int edges = 1000;
 };
 
+/// What bridgeGaps() has done.
+struct BridgedGaps
+{
+	int tubes = 0;
+	/// Border vertices of torn limbs that slits run around, and of all irregular ends then. No tube
+	/// joins them, but where they stay open a wrap does.
+	std::set<int> slits;
+};
+
 namespace detail {
 
 /// Whether the axis of a limb passes through a hole: in the side of a body, or where a trunk is cut
@@ -214,14 +223,13 @@ public:
 		}
 	}
 
-	/// @return the number of gaps bridged.
-	int run(const Progress& progress)
+	BridgedGaps run(const Progress& progress)
 	{
 		const char* const what = "Bridging gaps";
 		progress.report(0.2, what);
 		std::set<FacingLimb> facing = facingEnds(ends, limits, progress.cancelOnly());
 		if (facing.empty())
-			return 0;
+			return {};
 		given = triangles;
 		tree.emplace(points, given, progress.part(0.2, 0.6));
 		std::vector<char> isCorner(points.size(), 0);
@@ -252,7 +260,7 @@ public:
 		}
 		for (const LimbTube& tube : tubes)
 			triangles.insert(triangles.end(), tube.faces.begin(), tube.faces.end());
-		return int(tubes.size());
+		return {int(tubes.size()), std::move(slits)};
 	}
 
 private:
@@ -268,6 +276,7 @@ private:
 	std::set<int> corners;               ///< of the ends that are taken
 	std::vector<LimbTube> tubes;
 	std::vector<int> pieceOfTube;
+	std::set<int> slits; ///< see BridgedGaps
 
 	bool isFree(const LimbEnd& end) const
 	{
@@ -319,7 +328,24 @@ private:
 		return true;
 	}
 
-	/// Joins two ends, unless one of them is taken or a second tube between two pieces would close a
+	/// Leaves a limb and a slit around it open, and with them all irregular ends: by winding numbers a
+	/// gap is joined that is up to about as wide as the limb's radius.
+	void leaveOpen(const LimbEnd& limb, const LimbEnd& slit)
+	{
+		constexpr double near = 2; // radii from the middle of the limb's end
+		if (std::none_of(slit.corner.begin(), slit.corner.end(), [&](int v) {
+				return Distance(points[size_t(v)], limb.centre) <= near * limb.radius;
+			}))
+			return;
+		corners.insert(limb.corner.begin(), limb.corner.end());
+		slits.insert(limb.corner.begin(), limb.corner.end());
+		for (const LimbEnd& end : ends)
+			if (end.isIrregular)
+				slits.insert(end.corner.begin(), end.corner.end());
+		pieces.join(limb.piece, slit.piece);
+	}
+
+	/// Joins two ends, unless one of them is a slit, see leaveOpen(), or taken, or a second tube between two pieces would close a
 	/// ring.
 	void joinEnds(const LimbEnd& a, const LimbEnd& b)
 	{
@@ -327,6 +353,8 @@ private:
 			(b.centre - a.centre).Norm() <= limits.inOnePiece * (a.radius + b.radius) / 2;
 		if (!isFree(a) || !isFree(b) || !(pieces.find(a.piece) != pieces.find(b.piece) || isNear))
 			return;
+		if (b.isIrregular)
+			return leaveOpen(a, b);
 		// Where borders are ragged, a tube may fit in one direction only.
 		if (!join(a, b) && b.isCutThrough)
 			join(b, a);
@@ -419,10 +447,10 @@ private:
  * @param partner   as PartedSurface has it.
  * @param isSpeck   for each face whether its piece is to be dropped unless it is joined to others:
  *                  such a piece is joined only if both ends are cut through. Empty: none is.
- * @return the number of tubes. @throws Cancelled.
+ * Nothing is joined to a slit, see LimbEnd::isIrregular. @throws Cancelled.
  * Complexity: O(F log F + p log p) for p pairs of a limb with an end or a tube within its reach.
  */
-inline int bridgeGaps(std::vector<Point3d>& points, std::vector<Triangle>& triangles,
+inline BridgedGaps bridgeGaps(std::vector<Point3d>& points, std::vector<Triangle>& triangles,
 	const std::vector<int>& partner, const std::vector<char>& isSpeck,
 	const GapLimits& limits = GapLimits(), const Progress& progress = Progress())
 {

@@ -543,11 +543,12 @@ inline std::vector<Triangle> facesNearHoles(const std::vector<Point3d>& points,
  * HoleLimits::anyhow may.
  * @param triangles coherently oriented, parted by partSurface(); get the fillings at their end.
  * @param partner   as PartedSurface has it.
+ * @param leftOpen  holes with one of these vertices are not filled.
  * @throws Cancelled. Complexity: O(F log F + n^3) for holes of n edges.
  */
 inline FilledHoles fillHoles(const std::vector<Point3d>& points, std::vector<Triangle>& triangles,
 	const std::vector<int>& partner, const HoleLimits& limits = HoleLimits(),
-	const Progress& progress = Progress())
+	const Progress& progress = Progress(), const std::set<int>& leftOpen = {})
 {
 	const char* const what = "Filling holes";
 	const Progress cancel = progress.cancelOnly();
@@ -570,13 +571,16 @@ inline FilledHoles fillHoles(const std::vector<Point3d>& points, std::vector<Tri
 	}
 	const TriangleTree tree(points, near, progress.part(0.1, 0.3));
 	const double maxTurn = 1 - std::cos(limits.turn * M_PI / 180);
+	const auto isLeftOpen = [&](int h) {
+		return leftOpen.count(triangles[size_t(h) / 3][size_t(h) % 3]) > 0;
+	};
 	const Progress filling = progress.part(0.3, 1);
 	for (size_t i = 0; i < loops.size(); ++i) {
 		filling.report(double(i) / double(loops.size()), what);
 		const std::vector<int>& loop = loops[i];
 		const int n = int(loop.size());
 		++done.left;
-		if (n < 3 || n > limits.edges)
+		if (n < 3 || n > limits.edges || std::any_of(loop.begin(), loop.end(), isLeftOpen))
 			continue;
 		const detail::BorderPolygon border = detail::borderPolygon(points, triangles, piece, loop);
 		double surface = 0, before = 0;

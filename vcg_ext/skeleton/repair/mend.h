@@ -185,7 +185,8 @@ inline int dropInnerWalls(
  * vertices that coincide; seams (see closeSeams()); orientation; edges and vertices where the
  * surface is not two-manifold (see partSurface()); specks and torn limbs (see bridgeGaps()); small
  * holes (see fillHoles()); cuts by planes (see capCuts()); faces around small holes that are left;
- * open walls inside closed pieces; last, tiny holes, even if their filling folds.
+ * open walls inside closed pieces; last, tiny holes, even if their filling folds. Where a slit runs
+ * around a limb, both stay open, see BridgedGaps::slits.
  *
  * A surface without these defects is returned unchanged. What cannot be mended is left, with
  * `closed` false.
@@ -280,17 +281,20 @@ inline MendedSurface mend(const std::vector<Point3d>& points,
 		report.piecesDropped = dropSpecks(faces, partner, specks, cancel);
 		specks = specksOf(mended.points, faces, partner, cancel);
 	}
-	report.gapsBridged = bridgeGaps(
+	const BridgedGaps gaps = bridgeGaps(
 		mended.points, faces, partner, specks.isOne, GapLimits(), progress.part(0.55, 0.6));
+	report.gapsBridged = gaps.tubes;
 	if (report.gapsBridged > 0) {
 		partner = pairedHalfEdges(mended.points, faces, nullptr, cancel);
 		specks = specksOf(mended.points, faces, partner, cancel);
 	}
 	report.piecesDropped += dropSpecks(faces, partner, specks, cancel);
 	const FilledHoles holes =
-		fillHoles(mended.points, faces, partner, limits, progress.part(0.6, 0.9));
+		fillHoles(mended.points, faces, partner, limits, progress.part(0.6, 0.9), gaps.slits);
 	report.holesClosed = holes.closed;
 	report.holesLeft = holes.left;
+	if (!gaps.slits.empty())
+		return mended;
 	if (report.holesLeft > 0) {
 		partner = pairedHalfEdges(mended.points, faces, nullptr, cancel);
 		const int capped =
