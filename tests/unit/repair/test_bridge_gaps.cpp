@@ -184,6 +184,21 @@ TEST(BridgeGaps, ALimbThatSlitsRunAroundIsJoinedByTheWrapNotByATube)
 	EXPECT_NEAR(solid.surface.mesh.volume(), whole, 0.03 * whole);
 }
 
+TEST(BridgeGaps, APatchWithinASlitIsJoinedByTheWrap)
+{
+	// Filled, the slit would leave the patch as a lens in front of the ball.
+	const shapes::Soup torn = without(shapes::sphere(5, 1),
+		[](const Point3d& p) { return p[0] > 0 && std::abs(std::hypot(p[1], p[2]) - 0.4) < 0.08; });
+	EXPECT_FALSE(mend(torn.points, torn.triangles).closed);
+	const SolidSurface solid = solidSurface(torn.points, torn.triangles);
+	EXPECT_EQ(solid.report.outcome, SolidReport::Wrapped);
+	int pieces = 0;
+	connectedComponents(solid.surface.mesh, &pieces);
+	EXPECT_EQ(pieces, 1);
+	EXPECT_EQ(solid.surface.mesh.vertexCount() - solid.surface.mesh.faceCount() / 2, 2);
+	EXPECT_NEAR(solid.surface.mesh.volume(), 4 * M_PI / 3, 0.03 * 4 * M_PI / 3);
+}
+
 TEST(BridgeGaps, TheTeethOfAHoleAreNoSlits)
 {
 	const Outcome made = mended(limbInFrontOfSlits(0.25));

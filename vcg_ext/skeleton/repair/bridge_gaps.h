@@ -62,8 +62,8 @@ struct GapLimits
 struct BridgedGaps
 {
 	int tubes = 0;
-	/// Border vertices of torn limbs that slits run around, and of all irregular ends then. No tube
-	/// joins them, but where they stay open a wrap does.
+	/// Vertices of borders that no tube can join, and that lie close to each other: of slits that cross,
+	/// of patches between them. Where they stay open a wrap joins them.
 	std::set<int> slits;
 };
 
@@ -228,8 +228,9 @@ public:
 		const char* const what = "Bridging gaps";
 		progress.report(0.2, what);
 		std::set<FacingLimb> facing = facingEnds(ends, limits, progress.cancelOnly());
+		leaveSlitsOpen(progress.cancelOnly());
 		if (facing.empty())
-			return {};
+			return {0, std::move(slits)};
 		given = triangles;
 		tree.emplace(points, given, progress.part(0.2, 0.6));
 		std::vector<char> isCorner(points.size(), 0);
@@ -328,33 +329,55 @@ private:
 		return true;
 	}
 
-	/// Leaves a limb and a slit around it open, and with them all irregular ends: by winding numbers a
-	/// gap is joined that is up to about as wide as the limb's radius.
-	void leaveOpen(const LimbEnd& limb, const LimbEnd& slit)
+	/// Leaves open what no tube joins, irregular ends and patches, with the borders of other pieces
+	/// beside them: by winding numbers a gap is joined that is up to about as wide as the radius of its
+	/// sides. @throws Cancelled
+	void leaveSlitsOpen(const Progress& progress)
 	{
-		constexpr double near = 2; // radii from the middle of the limb's end
-		if (std::none_of(slit.corner.begin(), slit.corner.end(), [&](int v) {
-				return Distance(points[size_t(v)], limb.centre) <= near * limb.radius;
-			}))
-			return;
-		corners.insert(limb.corner.begin(), limb.corner.end());
-		slits.insert(limb.corner.begin(), limb.corner.end());
-		for (const LimbEnd& end : ends)
-			if (end.isIrregular)
-				slits.insert(end.corner.begin(), end.corner.end());
-		pieces.join(limb.piece, slit.piece);
+		std::vector<Box3d> boxes;
+		for (const LimbEnd& end : ends) {
+			boxes.emplace_back();
+			for (int v : end.corner)
+				boxes.back().Add(points[size_t(v)]);
+		}
+		const auto areNear = [&](const LimbEnd& a, const LimbEnd& b) {
+			const double gap = std::min(a.radius, b.radius);
+			return std::any_of(a.corner.begin(), a.corner.end(), [&](int v) {
+				return std::any_of(b.corner.begin(), b.corner.end(), [&](int w) {
+					return SquaredDistance(points[size_t(v)], points[size_t(w)]) <= gap * gap;
+				});
+			});
+		};
+		std::optional<BoxTree> tree;
+		for (const LimbEnd& end : ends) {
+			if (!(end.isIrregular || end.isPatch) || end.isOfSpeck)
+				continue;
+			if (!tree)
+				tree.emplace(boxes, progress);
+			Box3d box = boxes[size_t(&end - ends.data())];
+			box.Offset(end.radius);
+			tree->forEachIn(box, [&](int i) {
+				progress.check();
+				const LimbEnd& other = ends[size_t(i)];
+				if (other.piece == end.piece || other.isOfSpeck || !areNear(end, other))
+					return;
+				for (const LimbEnd* side : {&end, &other}) {
+					slits.insert(side->corner.begin(), side->corner.end());
+					corners.insert(side->corner.begin(), side->corner.end());
+				}
+			});
+		}
 	}
 
-	/// Joins two ends, unless one of them is a slit, see leaveOpen(), or taken, or a second tube between two pieces would close a
-	/// ring.
+	/// Joins two ends, unless one of them is irregular or taken, or a second tube between two pieces
+	/// would close a ring.
 	void joinEnds(const LimbEnd& a, const LimbEnd& b)
 	{
 		const bool isNear =
 			(b.centre - a.centre).Norm() <= limits.inOnePiece * (a.radius + b.radius) / 2;
-		if (!isFree(a) || !isFree(b) || !(pieces.find(a.piece) != pieces.find(b.piece) || isNear))
+		if (b.isIrregular || !isFree(a) || !isFree(b)
+			|| !(pieces.find(a.piece) != pieces.find(b.piece) || isNear))
 			return;
-		if (b.isIrregular)
-			return leaveOpen(a, b);
 		// Where borders are ragged, a tube may fit in one direction only.
 		if (!join(a, b) && b.isCutThrough)
 			join(b, a);

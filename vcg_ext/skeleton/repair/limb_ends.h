@@ -92,6 +92,8 @@ struct LimbEnd
 	/// Whether no limb ends or was torn off there: a slit, or several that cross, in a body or across
 	/// several limbs.
 	bool isIrregular = false;
+	/// Whether the piece of surface is a patch within this border: a filling would lie back on it.
+	bool isPatch = false;
 	/// Whether it is cut through, and the axis of the surface behind leads out of the hole, as that
 	/// of a tube does. Behind a slit the axis is parallel to the slit.
 	bool isOfTube = false;
@@ -160,7 +162,7 @@ inline LimbEnd limbEnd(const std::vector<Point3d>& points, const std::vector<Tri
 	end.radius = std::sqrt(area.Norm() / M_PI);
 	// The integral of the outward conormal along the border: its component along a tube's axis is
 	// the perimeter, however the tube is cut; around a hole in a flat face it is 0.
-	Point3d onwards(0, 0, 0);
+	Point3d onwards(0, 0, 0), normals(0, 0, 0);
 	for (int h : loop) {
 		const Triangle& t = triangles[size_t(h) / 3];
 		const Point3d &p = points[size_t(t[size_t(h) % 3])],
@@ -168,8 +170,10 @@ inline LimbEnd limbEnd(const std::vector<Point3d>& points, const std::vector<Tri
 					  &apex =
 						  points[size_t(t[size_t(SurfaceMesh::next(SurfaceMesh::next(h))) % 3])];
 		const Point3d edge = q - p, normal = edge ^ (apex - p), outOfFace = edge ^ normal;
-		if (const double norm = outOfFace.Norm(); norm > 0)
+		if (const double norm = outOfFace.Norm(); norm > 0) {
 			onwards += outOfFace * (edge.Norm() / norm);
+			normals += normal * (edge.Norm() / normal.Norm());
+		}
 	}
 	end.out = area.Norm() > 0 ? area / area.Norm() : area;
 	end.heading = end.out;
@@ -178,8 +182,10 @@ inline LimbEnd limbEnd(const std::vector<Point3d>& points, const std::vector<Tri
 	const bool isOnwards = perimeter > likeATube * ofDisc && perimeter < likeASlit * ofDisc;
 	end.isIrregular =
 		shape.slenderness > slit || shape.concavity > arms || (isOnwards && shape.warp > warped);
-	if (end.isIrregular || !isOnwards)
+	if (end.isIrregular || !isOnwards) {
+		end.isPatch = normals * end.out < 0;
 		return end;
+	}
 	end.isCutThrough = true;
 	end.radius = perimeter / (2 * M_PI);
 	end.heading = onwards / perimeter;
