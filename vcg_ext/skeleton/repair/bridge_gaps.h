@@ -228,9 +228,8 @@ public:
 		const char* const what = "Bridging gaps";
 		progress.report(0.2, what);
 		std::set<FacingLimb> facing = facingEnds(ends, limits, progress.cancelOnly());
-		leaveSlitsOpen(progress.cancelOnly());
 		if (facing.empty())
-			return {0, std::move(slits)};
+			return {0, slits(progress.cancelOnly())};
 		given = triangles;
 		tree.emplace(points, given, progress.part(0.2, 0.6));
 		std::vector<char> isCorner(points.size(), 0);
@@ -261,7 +260,7 @@ public:
 		}
 		for (const LimbTube& tube : tubes)
 			triangles.insert(triangles.end(), tube.faces.begin(), tube.faces.end());
-		return {int(tubes.size()), std::move(slits)};
+		return {int(tubes.size()), slits(progress.cancelOnly())};
 	}
 
 private:
@@ -277,7 +276,6 @@ private:
 	std::set<int> corners;               ///< of the ends that are taken
 	std::vector<LimbTube> tubes;
 	std::vector<int> pieceOfTube;
-	std::set<int> slits; ///< see BridgedGaps
 
 	bool isFree(const LimbEnd& end) const
 	{
@@ -329,11 +327,12 @@ private:
 		return true;
 	}
 
-	/// Leaves open what no tube joins, irregular ends and patches, with the borders of other pieces
-	/// beside them: by winding numbers a gap is joined that is up to about as wide as the radius of its
-	/// sides. @throws Cancelled
-	void leaveSlitsOpen(const Progress& progress)
+	/// BridgedGaps::slits: of irregular ends and patches, and of the borders of other pieces beside them
+	/// that no tube has joined. By winding numbers a gap is joined that is up to about as wide as the
+	/// radius of its sides. @throws Cancelled
+	std::set<int> slits(const Progress& progress) const
 	{
+		std::set<int> open;
 		std::vector<Box3d> boxes;
 		for (const LimbEnd& end : ends) {
 			boxes.emplace_back();
@@ -359,23 +358,23 @@ private:
 			tree->forEachIn(box, [&](int i) {
 				progress.check();
 				const LimbEnd& other = ends[size_t(i)];
-				if (other.piece == end.piece || other.isOfSpeck || !areNear(end, other))
+				if (other.piece == end.piece || other.isOfSpeck || !isFree(other)
+					|| !areNear(end, other))
 					return;
-				for (const LimbEnd* side : {&end, &other}) {
-					slits.insert(side->corner.begin(), side->corner.end());
-					corners.insert(side->corner.begin(), side->corner.end());
-				}
+				for (const LimbEnd* side : {&end, &other})
+					open.insert(side->corner.begin(), side->corner.end());
 			});
 		}
+		return open;
 	}
 
-	/// Joins two ends, unless one of them is irregular or taken, or a second tube between two pieces
-	/// would close a ring.
+	/// Joins two ends, unless one of them is irregular, a patch, or taken, or a second tube between two
+	/// pieces would close a ring.
 	void joinEnds(const LimbEnd& a, const LimbEnd& b)
 	{
 		const bool isNear =
 			(b.centre - a.centre).Norm() <= limits.inOnePiece * (a.radius + b.radius) / 2;
-		if (b.isIrregular || !isFree(a) || !isFree(b)
+		if (b.isIrregular || b.isPatch || !isFree(a) || !isFree(b)
 			|| !(pieces.find(a.piece) != pieces.find(b.piece) || isNear))
 			return;
 		// Where borders are ragged, a tube may fit in one direction only.
@@ -470,7 +469,7 @@ private:
  * @param partner   as PartedSurface has it.
  * @param isSpeck   for each face whether its piece is to be dropped unless it is joined to others:
  *                  such a piece is joined only if both ends are cut through. Empty: none is.
- * Nothing is joined to a slit, see LimbEnd::isIrregular. @throws Cancelled.
+ * Nothing is joined to slits and patches, see LimbEnd. @throws Cancelled.
  * Complexity: O(F log F + p log p) for p pairs of a limb with an end or a tube within its reach.
  */
 inline BridgedGaps bridgeGaps(std::vector<Point3d>& points, std::vector<Triangle>& triangles,
