@@ -327,9 +327,9 @@ private:
 		return true;
 	}
 
-	/// BridgedGaps::slits: of irregular ends and patches, and of the borders of other pieces beside them
-	/// that no tube has joined. By winding numbers a gap is joined that is up to about as wide as the
-	/// radius of its sides. @throws Cancelled
+	/// BridgedGaps::slits: of irregular ends with the ends beside them of other pieces, and of patches
+	/// with all borders beside them, where no tube has joined them. By winding numbers a gap is joined
+	/// that is up to about as wide as the radius of its sides. @throws Cancelled
 	std::set<int> slits(const Progress& progress) const
 	{
 		std::set<int> open;
@@ -358,6 +358,9 @@ private:
 			tree->forEachIn(box, [&](int i) {
 				progress.check();
 				const LimbEnd& other = ends[size_t(i)];
+				// Beside an irregular end, as of ragged borders, holes in the sides of bodies are filled.
+				if (!(end.isPatch || other.isPatch || other.isIrregular || other.isCutThrough))
+					return;
 				if (other.piece == end.piece || other.isOfSpeck || !isFree(other)
 					|| !areNear(end, other))
 					return;
