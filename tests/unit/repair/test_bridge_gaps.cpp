@@ -40,19 +40,33 @@ struct Outcome
 	double volume = 0;
 };
 
+Outcome outcomeOf(const SurfaceMesh& mesh)
+{
+	Outcome outcome;
+	connectedComponents(mesh, &outcome.pieces);
+	outcome.euler = mesh.vertexCount() - mesh.faceCount() / 2;
+	outcome.volume = mesh.volume();
+	return outcome;
+}
+
 Outcome mended(const shapes::Soup& soup)
 {
 	const MendedSurface surface = mend(soup.points, soup.triangles);
-	Outcome outcome;
-	outcome.gaps = surface.report.gapsBridged;
 	const auto mesh = SurfaceMesh::ifClosedManifold(surface.points, surface.triangles);
 	EXPECT_TRUE(mesh);
-	if (!mesh)
-		return outcome;
-	connectedComponents(*mesh, &outcome.pieces);
-	outcome.euler = mesh->vertexCount() - mesh->faceCount() / 2;
-	outcome.volume = mesh->volume();
+	Outcome outcome = mesh ? outcomeOf(*mesh) : Outcome();
+	outcome.gaps = surface.report.gapsBridged;
 	return outcome;
+}
+
+void expectOneWrappedBody(const shapes::Soup& soup, double volume)
+{
+	const SolidSurface solid = solidSurface(soup.points, soup.triangles);
+	EXPECT_EQ(solid.report.outcome, SolidReport::Wrapped);
+	const Outcome made = outcomeOf(solid.surface.mesh);
+	EXPECT_EQ(made.pieces, 1);
+	EXPECT_EQ(made.euler, 2);
+	EXPECT_NEAR(made.volume, volume, 0.03 * volume);
 }
 
 double volumeOf(const shapes::Soup& soup)
@@ -174,14 +188,7 @@ TEST(BridgeGaps, ALimbThatSlitsRunAroundIsJoinedByTheWrapNotByATube)
 	const MendedSurface surface = mend(torn.points, torn.triangles);
 	EXPECT_EQ(surface.report.gapsBridged, 0);
 	EXPECT_FALSE(surface.closed);
-	const SolidSurface solid = solidSurface(torn.points, torn.triangles);
-	EXPECT_EQ(solid.report.outcome, SolidReport::Wrapped);
-	int pieces = 0;
-	connectedComponents(solid.surface.mesh, &pieces);
-	EXPECT_EQ(pieces, 1);
-	EXPECT_EQ(solid.surface.mesh.vertexCount() - solid.surface.mesh.faceCount() / 2, 2);
-	const double whole = 4 * M_PI / 3 + M_PI * 0.2 * 0.2 * (3 + 0.2 * 2 / 3);
-	EXPECT_NEAR(solid.surface.mesh.volume(), whole, 0.03 * whole);
+	expectOneWrappedBody(torn, 4 * M_PI / 3 + M_PI * 0.2 * 0.2 * (3 + 0.2 * 2 / 3));
 }
 
 TEST(BridgeGaps, APatchWithinASlitIsJoinedByTheWrap)
@@ -190,13 +197,7 @@ TEST(BridgeGaps, APatchWithinASlitIsJoinedByTheWrap)
 	const shapes::Soup torn = without(shapes::sphere(5, 1),
 		[](const Point3d& p) { return p[0] > 0 && std::abs(std::hypot(p[1], p[2]) - 0.4) < 0.08; });
 	EXPECT_FALSE(mend(torn.points, torn.triangles).closed);
-	const SolidSurface solid = solidSurface(torn.points, torn.triangles);
-	EXPECT_EQ(solid.report.outcome, SolidReport::Wrapped);
-	int pieces = 0;
-	connectedComponents(solid.surface.mesh, &pieces);
-	EXPECT_EQ(pieces, 1);
-	EXPECT_EQ(solid.surface.mesh.vertexCount() - solid.surface.mesh.faceCount() / 2, 2);
-	EXPECT_NEAR(solid.surface.mesh.volume(), 4 * M_PI / 3, 0.03 * 4 * M_PI / 3);
+	expectOneWrappedBody(torn, 4 * M_PI / 3);
 }
 
 TEST(BridgeGaps, TheTeethOfAHoleAreNoSlits)

@@ -62,8 +62,8 @@ struct GapLimits
 struct BridgedGaps
 {
 	int tubes = 0;
-	/// Vertices of borders that no tube can join, and that lie close to each other: of slits that cross,
-	/// of patches between them. Where they stay open a wrap joins them.
+	/// Vertices of borders that lie close to each other and that no tube can join: of slits that cross,
+	/// and of patches between them. A wrap joins them if they stay open.
 	std::set<int> slits;
 };
 
@@ -332,7 +332,12 @@ private:
 	/// that is up to about as wide as the radius of its sides. @throws Cancelled
 	std::set<int> slits(const Progress& progress) const
 	{
+		const auto isSlit = [](const LimbEnd& end) {
+			return (end.isIrregular || end.isPatch) && !end.isOfSpeck;
+		};
 		std::set<int> open;
+		if (std::none_of(ends.begin(), ends.end(), isSlit))
+			return open;
 		std::vector<Box3d> boxes;
 		for (const LimbEnd& end : ends) {
 			boxes.emplace_back();
@@ -347,15 +352,13 @@ private:
 				});
 			});
 		};
-		std::optional<BoxTree> tree;
+		const BoxTree boxTree(boxes, progress);
 		for (const LimbEnd& end : ends) {
-			if (!(end.isIrregular || end.isPatch) || end.isOfSpeck)
+			if (!isSlit(end))
 				continue;
-			if (!tree)
-				tree.emplace(boxes, progress);
 			Box3d box = boxes[size_t(&end - ends.data())];
 			box.Offset(end.radius);
-			tree->forEachIn(box, [&](int i) {
+			boxTree.forEachIn(box, [&](int i) {
 				progress.check();
 				const LimbEnd& other = ends[size_t(i)];
 				// Beside an irregular end, as of ragged borders, holes in the sides of bodies are filled.
@@ -465,14 +468,15 @@ private:
  * Joins the two sides of gaps by tubes: two limbs that were cut through, or such a limb and a hole
  * in the side of a body that it faces. Only ends within a cone ahead are joined, see GapLimits, and
  * only where the tube crosses none of the given faces, except near its ends. Where a junction was
- * lost, a third limb is joined to the tube between two others that it faces.
+ * lost, a third limb is joined to the tube between two others that it faces. Nothing is joined to
+ * slits and patches, see LimbEnd.
  *
  * @param points    get those of the tubes at their end.
  * @param triangles coherently oriented, parted by partSurface(); get the tubes at their end.
  * @param partner   as PartedSurface has it.
  * @param isSpeck   for each face whether its piece is to be dropped unless it is joined to others:
  *                  such a piece is joined only if both ends are cut through. Empty: none is.
- * Nothing is joined to slits and patches, see LimbEnd. @throws Cancelled.
+ * @throws Cancelled.
  * Complexity: O(F log F + p log p) for p pairs of a limb with an end or a tube within its reach.
  */
 inline BridgedGaps bridgeGaps(std::vector<Point3d>& points, std::vector<Triangle>& triangles,

@@ -23,16 +23,17 @@
 
 namespace vcg::tri::mcf::detail {
 
-/// The shape of a border without its teeth; lengths are over others.
+/// The shape of a border, smoothed so that its teeth do not count: ratios of its length. Each is 1 for
+/// a circle.
 struct BorderShape
 {
-	double slenderness = 0; ///< over the perimeter of a disc with the area of the hole
-	double concavity = 1;   ///< in the plane of the hole, over that of the convex hull there
-	double warp = 1;        ///< over that of the convex hull in the plane of the hole
+	double slenderness = 0; ///< to the perimeter of a disc with the area of the hole
+	double concavity = 1;   ///< of its projection into the plane of the hole, to that of its hull
+	double warp = 1;        ///< to the perimeter of the convex hull of that projection
 };
 
-/// @param corner  the border. @param area  its area vector, see areaVector().
-/// Complexity: O(n).
+/// The shape of a border. @param corner  its vertices. @param area  its area vector, see areaVector().
+/// Complexity: O(n) for n vertices.
 inline BorderShape borderShape(
 	const std::vector<Point3d>& points, const std::vector<int>& corner, const Point3d& area)
 {
@@ -89,8 +90,7 @@ struct LimbEnd
 	/// Whether the surface heads out of the hole all around: a limb that is cut through, not a
 	/// hole in the side of a body.
 	bool isCutThrough = false;
-	/// Whether no limb ends or was torn off there: a slit, or several that cross, in a body or across
-	/// several limbs.
+	/// Whether no limb ends there and none was torn off: a slit, or several that cross.
 	bool isIrregular = false;
 	/// Whether the piece of surface is a patch within this border: a filling would lie back on it.
 	bool isPatch = false;

@@ -293,7 +293,7 @@ inline MendedSurface mend(const std::vector<Point3d>& points,
 		fillHoles(mended.points, faces, partner, limits, progress.part(0.6, 0.9), gaps.slits);
 	report.holesClosed = holes.closed;
 	report.holesLeft = holes.left;
-	if (!gaps.slits.empty())
+	if (!gaps.slits.empty()) // they are for the wrap, which needs no more fillings
 		return mended;
 	if (report.holesLeft > 0) {
 		partner = pairedHalfEdges(mended.points, faces, nullptr, cancel);
